@@ -1,0 +1,198 @@
+"""Instrument cards and instruments: what is known of a gyro before it is set up.
+
+A value that its maker or a source does not state is None: it is absent, never guessed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+InstrumentKind = Literal["suspended", "automatic"]
+
+
+@dataclass(frozen=True, slots=True)
+class Periods:
+    """Swing periods as measured at one latitude.
+
+    Parameters
+    ----------
+    latitude : float
+        Latitude of the measurement [rad].
+    tracking_s, clamped_s, unspun_s : float or None
+        T1, T2 and T0 [s], full periods.
+    sigma_s : float or None
+        Standard deviation of each [s].
+    """
+
+    latitude: float
+    tracking_s: float | None = None
+    clamped_s: float | None = None
+    unspun_s: float | None = None
+    sigma_s: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ReadingSigmas:
+    """A-priori standard deviations; None where the card does not know.
+
+    Parameters
+    ----------
+    reversal : float or None
+        One turning point [rad].
+    azimuth : float or None
+        One whole determination (one round of an automatic gyro) [rad].
+    scale_div : float or None
+        One scale reading [div].
+    time_s : float or None
+        One timed passage [s].
+    """
+
+    reversal: float | None = None
+    azimuth: float | None = None
+    scale_div: float | None = None
+    time_s: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class TapeZeroCard:
+    """What the card says of the tape zero.
+
+    Parameters
+    ----------
+    limit_div : float or None
+        Largest tolerable zero [div].
+    div_per_tilt : float or None
+        Change of the zero with tilt [div/rad].
+    correction_per_div : float or None
+        What is ADDED to gyro north per division [rad/div] (= -lambda mu) at ``latitude``.
+    latitude : float or None
+        [rad].
+    """
+
+    limit_div: float | None = None
+    div_per_tilt: float | None = None
+    correction_per_div: float | None = None
+    latitude: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ValidRange:
+    """Where the instrument may be used.
+
+    Parameters
+    ----------
+    latitude_max : float or None
+        Largest latitude, absolute [rad].
+    temperature_c : tuple of float or None
+        Lowest and highest temperature [degree Celsius].
+    """
+
+    latitude_max: float | None = None
+    temperature_c: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class InstrumentCard:
+    """One instrument card.
+
+    Parameters
+    ----------
+    id, title, kind, source : str
+        Identity and where the values come from.
+    scale_value : float or None
+        mu, one division of the gyro scale [rad/div]; negative where the scale reads the other way.
+    periods : Periods or None
+    torsion_lambda : float or None
+        lambda = D/M at ``periods.latitude`` [-].
+    transit_c : float or None
+        C at ``periods.latitude`` [rad/(div s)].
+    sigma : ReadingSigmas
+    tape_zero : TapeZeroCard
+    valid : ValidRange
+    resolution : float or None
+        Resolution of the circle reading [rad].
+    calibration_due : str or None
+        ISO date after which the instrument is to be calibrated again.
+    notes : tuple of (str, str)
+        Further facts of the card by key, for the generated page.
+    """
+
+    id: str
+    title: str
+    kind: InstrumentKind
+    source: str
+    scale_value: float | None = None
+    periods: Periods | None = None
+    torsion_lambda: float | None = None
+    transit_c: float | None = None
+    sigma: ReadingSigmas = field(default_factory=ReadingSigmas)
+    tape_zero: TapeZeroCard = field(default_factory=TapeZeroCard)
+    valid: ValidRange = field(default_factory=ValidRange)
+    resolution: float | None = None
+    calibration_due: str | None = None
+    notes: tuple[tuple[str, str], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class AdoptedEffect:
+    """An effect that a diagnosis found and a person adopted.
+
+    Parameters
+    ----------
+    id : str
+        Id in the catalogue of its subject.
+    coefficients : tuple of (name, value, sigma, unit)
+    grid : tuple of (name, value)
+        Non-linear parameters.
+    covariance : tuple of tuple of float
+        Covariance of the coefficients, in their units, shape (p, p).
+    valid : tuple of (column, low, high)
+        Range of the data that chose it.
+    data_sha256 : str
+    before, after, confirm : float or None
+        rms before and after on the data that chose it, and on the data that did not.
+    adopted_at : str
+        ISO 8601.
+    software : str
+    unit : str
+        Unit of before, after and confirm.
+    """
+
+    id: str
+    coefficients: tuple[tuple[str, float, float, str], ...] = ()
+    grid: tuple[tuple[str, float], ...] = ()
+    covariance: tuple[tuple[float, ...], ...] = ()
+    valid: tuple[tuple[str, float, float], ...] = ()
+    data_sha256: str = ""
+    before: float | None = None
+    after: float | None = None
+    confirm: float | None = None
+    adopted_at: str = ""
+    software: str = ""
+    unit: str = "arcsec"
+
+
+@dataclass(frozen=True, slots=True)
+class Instrument:
+    """An instrument of a project: a card with what the project overrides, and its history.
+
+    Parameters
+    ----------
+    id : str
+    card : InstrumentCard
+        Overrides of the project already in it.
+    serial : str
+    known_constant : tuple of (float, float) or None
+        Instrument constant known beforehand and its sigma [rad].
+    constant_choice : str
+        pooled | interpolated | nearest | line:A-B | known.
+    effects : tuple of AdoptedEffect
+    """
+
+    id: str
+    card: InstrumentCard
+    serial: str = ""
+    known_constant: tuple[float, float] | None = None
+    constant_choice: str = "pooled"
+    effects: tuple[AdoptedEffect, ...] = ()

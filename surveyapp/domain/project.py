@@ -1,0 +1,239 @@
+"""A project: stations, instruments, orientation sessions, traverses, grid and rule book.
+
+Read from a folder by ``surveyapp.io.project``; nothing here touches a file.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from datetime import date
+from typing import Literal
+
+from surveyapp.domain.instrument import AdoptedEffect, Instrument
+from surveyapp.domain.readings import FieldBook
+from surveyapp_models.angles import ARCSEC, AngleUnit
+
+Method = Literal["tracking", "amplitude", "transit", "automatic"]
+Purpose = Literal["calibration", "survey"]
+
+DEFAULT_DEFLECTION_SIGMA = 5.0 * ARCSEC
+"""Sigma of an unknown deflection of the vertical, each component (design.md section 2)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Deflection:
+    """Deflection of the vertical at a station.
+
+    Parameters
+    ----------
+    xi, eta : float
+        Components towards north and east [rad].
+    sigma : float
+        Standard deviation of each component [rad].
+    known : bool
+        False where nobody gave one: then both are 0 and sigma is the default.
+    """
+
+    xi: float = 0.0
+    eta: float = 0.0
+    sigma: float = DEFAULT_DEFLECTION_SIGMA
+    known: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Station:
+    """A station. Every position is optional; ``e`` and ``n`` are always true east and north.
+
+    Parameters
+    ----------
+    name : str
+    e, n : float or None
+        Grid coordinates [m].
+    latitude, longitude : float or None
+        Geographic coordinates [rad], north and east positive.
+    h : float or None
+        Height [m].
+    fixed : bool
+    deflection : Deflection
+    """
+
+    name: str
+    e: float | None = None
+    n: float | None = None
+    latitude: float | None = None
+    longitude: float | None = None
+    h: float | None = None
+    fixed: bool = False
+    deflection: Deflection = field(default_factory=Deflection)
+
+    @property
+    def has_grid_position(self) -> bool:
+        """Whether e and n are both known."""
+        return self.e is not None and self.n is not None
+
+
+@dataclass(frozen=True, slots=True)
+class Eccentric:
+    """A set-up or a target beside its mark.
+
+    Parameters
+    ----------
+    distance_m : float
+        Horizontal distance from the mark to where instrument (or target) really stood [m].
+    direction : float
+        Circle reading, at the instrument, towards the mark (``at`` = station) or, at the mark of
+        the target, azimuth-like direction from the mark to the real target [rad].
+    at : str
+        ``station`` or ``target``.
+    sigma_m : float or None
+        Standard deviation of the offset [m].
+    """
+
+    distance_m: float
+    direction: float
+    at: Literal["station", "target"] = "station"
+    sigma_m: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class OrientationSession:
+    """One occupation of a station with a gyro.
+
+    Parameters
+    ----------
+    id, station, instrument : str
+    method : str
+        tracking | amplitude | transit | automatic.
+    purpose : str
+        calibration | survey.
+    book : FieldBook
+    book_path : str
+        As written in project.toml.
+    target : str or None
+    azimuth_known : float or None
+        Known grid azimuth of the line [rad].
+    constant_choice : str or None
+        Overrides the instrument's.
+    date : datetime.date or None
+    order : float or None
+        Place in the sequence where times are missing.
+    circle_shift : float or None
+        [rad].
+    observer : str
+    reference_temperature_c : float or None
+    resolution : float or None
+        Reading resolution [rad].
+    eccentric : Eccentric or None
+    effects : tuple of AdoptedEffect
+    override : tuple of (str, object)
+        Further keys of the table, kept for those who know them.
+    """
+
+    id: str
+    station: str
+    instrument: str
+    method: Method
+    purpose: Purpose
+    book: FieldBook
+    book_path: str = ""
+    target: str | None = None
+    azimuth_known: float | None = None
+    constant_choice: str | None = None
+    date: date | None = None
+    order: float | None = None
+    circle_shift: float | None = None
+    observer: str = ""
+    reference_temperature_c: float | None = None
+    resolution: float | None = None
+    eccentric: Eccentric | None = None
+    effects: tuple[AdoptedEffect, ...] = ()
+    override: tuple[tuple[str, object], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Centring:
+    """Standard deviation of centring, each horizontal component [m]."""
+
+    instrument_m: float = 0.001
+    target_m: float = 0.001
+    known: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Warning_:
+    """Something a reader of the result must know; data, not a log line."""
+
+    code: str
+    text: str
+
+    def to_dict(self) -> dict[str, str]:
+        """Keys of the JSON."""
+        return {"code": self.code, "text": self.text}
+
+
+@dataclass(frozen=True, slots=True)
+class Project:
+    """A whole project as read.
+
+    Parameters
+    ----------
+    name : str
+    stations : tuple of Station
+    instruments : tuple of Instrument
+    sessions : tuple of OrientationSession
+    crs : str or None
+        As written.
+    angle_unit : AngleUnit
+    rule_book : str or None
+        Id of an installed rule book or a path.
+    centring : Centring
+        For sights of orientation sessions.
+    digest : str
+        sha256 over project.toml and every file it names.
+    path : str
+        Folder, for messages only.
+    tables : mapping
+        The parsed TOML of tables that other readers interpret (traverse, penetration, shaft,
+        sensor_log), by name.
+    warnings : tuple of Warning_
+    """
+
+    name: str
+    stations: tuple[Station, ...] = ()
+    instruments: tuple[Instrument, ...] = ()
+    sessions: tuple[OrientationSession, ...] = ()
+    crs: str | None = None
+    angle_unit: AngleUnit = AngleUnit.DMS
+    rule_book: str | None = None
+    centring: Centring = field(default_factory=Centring)
+    digest: str = ""
+    path: str = ""
+    tables: dict[str, object] = field(default_factory=dict)
+    warnings: tuple[Warning_, ...] = ()
+
+    def station(self, name: str) -> Station:
+        """Station by name; io has made sure that every name used exists."""
+        return next(station for station in self.stations if station.name == name)
+
+    def instrument(self, identity: str) -> Instrument:
+        """Instrument by id; io has made sure that every id used exists."""
+        return next(item for item in self.instruments if item.id == identity)
+
+    def session(self, identity: str) -> OrientationSession:
+        """Session by id."""
+        return next(item for item in self.sessions if item.id == identity)
+
+
+def grid_bearing(start: Station, end: Station) -> float | None:
+    """Grid azimuth [rad, not wrapped] of the line between two stations, None without positions."""
+    if start.e is None or start.n is None or end.e is None or end.n is None:
+        return None
+    return math.atan2(end.e - start.e, end.n - start.n)
+
+
+def grid_distance_m(start: Station, end: Station) -> float | None:
+    """Grid distance of two stations [m], None without positions."""
+    if start.e is None or start.n is None or end.e is None or end.n is None:
+        return None
+    return math.hypot(end.e - start.e, end.n - start.n)
