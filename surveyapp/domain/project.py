@@ -77,17 +77,19 @@ class Station:
 class Eccentric:
     """A set-up or a target beside its mark.
 
+    One rule for both: ``direction`` is the direction from where the thing really stood TOWARDS its
+    mark, on the instrument's own circle (clockwise, as a circle reading).
+
     Parameters
     ----------
     distance_m : float
-        Horizontal distance from the mark to where instrument (or target) really stood [m].
+        Horizontal distance between the mark and where instrument (or target) really stood [m].
     direction : float
-        Circle reading, at the instrument, towards the mark (``at`` = station) or, at the mark of
-        the target, azimuth-like direction from the mark to the real target [rad].
+        Circle reading from there towards the mark [rad].
     at : str
-        ``station`` or ``target``.
+        ``station``: the instrument stood beside its mark; ``target``: the target did.
     sigma_m : float or None
-        Standard deviation of the offset [m].
+        Standard deviation of the offset, each component [m].
     """
 
     distance_m: float
