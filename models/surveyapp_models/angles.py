@@ -69,8 +69,7 @@ def wrap_two_pi(angle: float) -> float:
 
 def wrap_pi(angle: float) -> float:
     """Wrap one difference of angles [rad] to (-pi, pi]."""
-    wrapped = math.pi - wrap_two_pi(math.pi - angle)
-    return wrapped
+    return math.pi - wrap_two_pi(math.pi - angle)
 
 
 def wrap_pi_array(angles: ArrayLike) -> NDArray[np.float64]:

@@ -163,7 +163,7 @@ class Centring:
 
 
 @dataclass(frozen=True, slots=True)
-class Warning_:
+class ResultWarning:
     """Something a reader of the result must know; data, not a log line."""
 
     code: str
@@ -198,7 +198,7 @@ class Project:
     tables : mapping
         The parsed TOML of tables that other readers interpret (traverse, penetration, shaft,
         sensor_log), by name.
-    warnings : tuple of Warning_
+    warnings : tuple of ResultWarning
     """
 
     name: str
@@ -212,7 +212,7 @@ class Project:
     digest: str = ""
     path: str = ""
     tables: dict[str, object] = field(default_factory=dict)
-    warnings: tuple[Warning_, ...] = ()
+    warnings: tuple[ResultWarning, ...] = ()
 
     def station(self, name: str) -> Station:
         """Station by name; io has made sure that every name used exists."""

@@ -1,0 +1,1 @@
+"""Electronic compass forward models."""

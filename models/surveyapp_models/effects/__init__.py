@@ -1,0 +1,1 @@
+"""The catalogue of effects: one physical cause per file."""

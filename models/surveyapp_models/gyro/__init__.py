@@ -1,0 +1,1 @@
+"""The suspended gyro: moments, periods and coefficients against latitude; its motion."""

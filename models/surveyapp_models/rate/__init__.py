@@ -1,0 +1,1 @@
+"""FOG and MEMS rate sensor forward models."""

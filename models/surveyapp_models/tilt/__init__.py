@@ -1,0 +1,1 @@
+"""Tilt sensor forward models."""

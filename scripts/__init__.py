@@ -1,0 +1,1 @@
+"""Committed scripts that make documentation and pictures."""

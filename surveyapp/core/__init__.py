@@ -1,0 +1,1 @@
+"""Estimation on values: no files, no clock, no randomness of its own."""

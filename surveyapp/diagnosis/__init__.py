@@ -1,0 +1,1 @@
+"""Find the residual, name the effect, prove it."""

@@ -1,0 +1,1 @@
+"""Project folders, field books, cards, foreign formats: the border where input is checked."""

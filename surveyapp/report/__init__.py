@@ -1,0 +1,1 @@
+"""Results turned into plain blocks; the PDF writer knows no surveying."""

@@ -1,0 +1,1 @@
+"""The terminal screens; all numbers come from surveyapp.api."""
