@@ -1,1 +1,57 @@
-"""The catalogue of effects: one physical cause per file."""
+"""The catalogue of effects: one physical cause per file, one line per effect.
+
+The catalogue is an explicit tuple. Nothing is found by itself: an effect that is not listed here
+or handed over by the user does not exist.
+"""
+
+from __future__ import annotations
+
+from surveyapp_models.effects import campaign, reversal_run
+from surveyapp_models.effects.campaign import circle_eccentricity as _c_circle_eccentricity
+from surveyapp_models.effects.campaign import gyro_block as _c_gyro_block
+from surveyapp_models.effects.campaign import latitude as _c_latitude
+from surveyapp_models.effects.campaign import line_offset as _c_line_offset
+from surveyapp_models.effects.campaign import temperature as _c_temperature
+from surveyapp_models.effects.campaign import time_drift as _c_time_drift
+from surveyapp_models.effects.campaign import transport_step as _c_transport_step
+from surveyapp_models.effects.campaign import warm_up as _c_warm_up
+from surveyapp_models.effects.effect import Effect, Subject
+from surveyapp_models.effects.reversal_run import amplitude_asymmetry as _r_amplitude_asymmetry
+from surveyapp_models.effects.reversal_run import damping_break as _r_damping_break
+from surveyapp_models.effects.reversal_run import dry_friction as _r_dry_friction
+from surveyapp_models.effects.reversal_run import gross_error as _r_gross_error
+from surveyapp_models.effects.reversal_run import midpoint_drift as _r_midpoint_drift
+from surveyapp_models.effects.reversal_run import midpoint_step as _r_midpoint_step
+from surveyapp_models.effects.reversal_run import quadratic_drag as _r_quadratic_drag
+from surveyapp_models.effects.reversal_run import secondary_oscillation as _r_secondary_oscillation
+from surveyapp_models.effects.reversal_run import temperature as _r_temperature
+from surveyapp_models.effects.reversal_run import warm_up as _r_warm_up
+
+CATALOGUE: tuple[Effect, ...] = (
+    _r_damping_break.EFFECT,
+    _r_quadratic_drag.EFFECT,
+    _r_dry_friction.EFFECT,
+    _r_midpoint_drift.EFFECT,
+    _r_midpoint_step.EFFECT,
+    _r_warm_up.EFFECT,
+    _r_secondary_oscillation.EFFECT,
+    _r_temperature.EFFECT,
+    _r_amplitude_asymmetry.EFFECT,
+    _r_gross_error.EFFECT,
+    _c_temperature.EFFECT,
+    _c_latitude.EFFECT,
+    _c_time_drift.EFFECT,
+    _c_transport_step.EFFECT,
+    _c_circle_eccentricity.EFFECT,
+    _c_line_offset.EFFECT,
+    _c_gyro_block.EFFECT,
+    _c_warm_up.EFFECT,
+)
+
+
+def of_subject(subject: Subject) -> tuple[Effect, ...]:
+    """Effects of one subject in the order of the catalogue."""
+    return tuple(effect for effect in CATALOGUE if effect.subject == subject)
+
+
+__all__ = ["CATALOGUE", "Effect", "Subject", "campaign", "of_subject", "reversal_run"]

@@ -1,0 +1,1 @@
+"""Effects of the subject campaign, one physical cause per file."""

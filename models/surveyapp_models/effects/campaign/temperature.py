@@ -1,0 +1,52 @@
+"""The constant depends on the temperature of the instrument."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from surveyapp_models.angles import ARCSEC
+from surveyapp_models.effects.effect import Array, Coefficient, Column, Columns, Effect
+
+
+def basis(columns: Columns, /, **grid: float) -> Array:
+    """Theta - mean(theta)."""
+    del grid
+    theta = columns["temperature_c"]
+    return np.asarray(theta - theta.mean())[:, None]
+
+
+def at_datum(
+    columns: Columns, references: Mapping[str, float], /, **grid: float
+) -> tuple[tuple[str, tuple[float, ...]], ...]:
+    """The reference temperature, else the mean."""
+    del grid
+    mean = float(columns["temperature_c"].mean())
+    reference = references.get("temperature_c", mean)
+    return ((f"{reference:g} degrees Celsius", (reference - mean,)),)
+
+
+EFFECT = Effect(
+    id="temperature",
+    title="Temperature coefficient of the instrument constant",
+    subject="campaign",
+    needs=(Column("temperature_c", "degree Celsius"),),
+    coefficients=(
+        Coefficient(
+            "coefficient", "arcsec/K", ARCSEC, -10.0, 10.0, "change of constant per kelvin"
+        ),
+    ),
+    basis=basis,
+    datum="the constant at the reference temperature, else at the mean of the campaign",
+    source="Delta = Delta_0 + a (theta - theta_0), instrument calibration practice",
+    remedy=(
+        "Let the instrument reach the temperature of the place; determine the constant at the "
+        "temperature of the mine, or apply the coefficient inside its range."
+    ),
+    symptom="the constant followed the temperature",
+    separate_by="determinations at another temperature in the same season",
+    per="instrument",
+    confusable_with=("time_drift", "latitude", "warm_up"),
+    at_datum=at_datum,
+)

@@ -1,0 +1,62 @@
+"""The constant jumped once: transport, a knock, a repair, a new band."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from surveyapp_models.angles import ARCSEC
+from surveyapp_models.effects.effect import (
+    Array,
+    Coefficient,
+    Column,
+    Columns,
+    Effect,
+    GridParameter,
+)
+
+FEW = 6
+"""Below this number of dates a plateau may consist of one determination."""
+
+
+def basis(columns: Columns, /, **grid: float) -> Array:
+    """H(t - t0)."""
+    return (columns["elapsed_days"] > grid["after_day"] + 1e-9).astype(np.float64)[:, None]
+
+
+def positions(columns: Columns) -> Array:
+    """Last date before the step, two determinations on either side (one where there are few)."""
+    dates = np.sort(columns["elapsed_days"])
+    margin = 2 if dates.size >= FEW else 1
+    inner = dates[margin - 1 : dates.size - margin]
+    return np.unique(inner[inner < dates[-margin]])
+
+
+def at_datum(
+    columns: Columns, references: Mapping[str, float], /, **grid: float
+) -> tuple[tuple[str, tuple[float, ...]], ...]:
+    """Both plateaus."""
+    del columns, references, grid
+    return (("before the step", (0.0,)), ("after the step", (1.0,)))
+
+
+EFFECT = Effect(
+    id="transport_step",
+    title="Step of the instrument constant",
+    subject="campaign",
+    needs=(Column("elapsed_days", "d"),),
+    coefficients=(
+        Coefficient("step", "arcsec", ARCSEC, -300.0, 300.0, "constant after minus before"),
+    ),
+    grid=(GridParameter("after_day", "d", positions, "last determination before the step"),),
+    basis=basis,
+    datum="the constant after the step counts for later work",
+    source="the 3-2-3 programme: stability of the constant before and after",
+    remedy="Use only the determinations after the step; look for its cause.",
+    symptom="the constant jumped once",
+    separate_by="repeat the determination on the first line",
+    per="instrument",
+    confusable_with=("time_drift", "line_offset", "gyro_block"),
+    at_datum=at_datum,
+)

@@ -1,0 +1,236 @@
+"""What an effect is: one physical cause as a small value, the same for every subject.
+
+An effect describes nature, not statistics: which columns it needs, which shape it has, how large
+it can be, what the surveyor does about it. It must not fit, test or rank anything; that is done
+once for all effects in ``surveyapp.diagnosis``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Columns = Mapping[str, Array]
+Subject = Literal["reversal_run", "campaign", "traverse", "compass", "tilt", "rate"]
+SUBJECTS: tuple[Subject, ...] = (
+    "reversal_run",
+    "campaign",
+    "traverse",
+    "compass",
+    "tilt",
+    "rate",
+)
+
+
+class Basis(Protocol):
+    """Columns of an effect: reading = base model + basis @ coefficients."""
+
+    def __call__(self, columns: Columns, /, **grid: float) -> Array:
+        """Return the columns, shape (n, p), for one value of each non-linear parameter."""
+        ...
+
+
+class AmplitudeLaw(Protocol):
+    """Amplitude of the swing at each turning point; every argument broadcasts."""
+
+    def __call__(
+        self,
+        half_swing: Array,
+        first_amplitude: Array,
+        decay: Array,
+        coefficient: Array,
+        /,
+        **grid: float | Array,
+    ) -> Array:
+        """Return the amplitude [unit of first_amplitude]; coefficient 0 = A exp(-k t)."""
+        ...
+
+
+class DatumRows(Protocol):
+    """Rows of the basis at the state to which a result may be referred."""
+
+    def __call__(
+        self, columns: Columns, references: Mapping[str, float], /, **grid: float
+    ) -> tuple[tuple[str, tuple[float, ...]], ...]:
+        """Return (what the state is, row of p numbers) for each state."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A column that an effect reads.
+
+    Parameters
+    ----------
+    name : str
+        Key in the columns.
+    unit : str
+        Unit in which it is handed over.
+    """
+
+    name: str
+    unit: str
+
+
+@dataclass(frozen=True, slots=True)
+class Coefficient:
+    """A linear coefficient (of an amplitude law: its one parameter). Zero = effect absent.
+
+    Parameters
+    ----------
+    name : str
+        In the trade's words.
+    unit : str
+        Unit in which it is printed: ``arcsec``, ``arcsec/K``, ``1/half swing`` ...
+    scale : float
+        SI value of one printed unit (an arc-second in radians).
+    low, high : float
+        Plausible range in the printed unit.
+    meaning : str
+        What one unit does, with its sign.
+    """
+
+    name: str
+    unit: str
+    scale: float
+    low: float
+    high: float
+    meaning: str
+
+
+@dataclass(frozen=True, slots=True)
+class GridParameter:
+    """A non-linear parameter that is scanned; the scan is part of every test.
+
+    Parameters
+    ----------
+    name : str
+        Keyword of ``basis`` and ``law``.
+    unit : str
+    values : callable
+        From the columns to the values to try.
+    meaning : str
+    continuous : bool
+        Whether the basis is differentiable in it, so that its uncertainty enters the covariance.
+    neutral : float or None
+        A value at which it is not searched and so not paid for.
+    """
+
+    name: str
+    unit: str
+    values: Callable[[Columns], Array]
+    meaning: str
+    continuous: bool = False
+    neutral: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Effect:
+    """One physical cause.
+
+    Parameters
+    ----------
+    id : str
+        Unique within its subject, equal to the file's name, never renamed.
+    title : str
+        For people.
+    subject : str
+    needs : tuple of Column
+        Without them the effect is not applicable.
+    coefficients : tuple of Coefficient
+    basis : callable
+        ``basis(columns, **grid) -> (n, p)``, pure. For an amplitude law the derivative of the
+        reading with respect to the coefficient where that is 0.
+    datum : str
+        What the result means with the effect in the model.
+    source : str
+    remedy : str
+        What the surveyor does about it.
+    symptom : str
+        What it looks like in the readings, one clause that follows "as if".
+    separate_by : str
+        The observation that would tell it from its partners.
+    grid : tuple of GridParameter
+    per : str or None
+        session | instrument | line: what a coefficient belongs to; None = the one record.
+    confusable_with : tuple of str
+        Ids of the same subject.
+    law : callable or None
+        How it multiplies or replaces the exponential amplitude law of a swing; such an effect has
+        exactly one coefficient.
+    acts_on : str
+        ``midpoint`` (added to the observation), ``amplitude`` (through ``law``), ``observation``
+        (a single faulty value).
+    one_sided : bool
+        Whether the coefficient can only be positive (a loss).
+    at_datum : callable or None
+        Rows of the basis at the states of ``value_at_datum``; None = the effect has no datum.
+    """
+
+    id: str
+    title: str
+    subject: Subject
+    needs: tuple[Column, ...]
+    coefficients: tuple[Coefficient, ...]
+    basis: Basis
+    datum: str
+    source: str
+    remedy: str
+    symptom: str
+    separate_by: str
+    grid: tuple[GridParameter, ...] = ()
+    per: Literal["session", "instrument", "line"] | None = None
+    confusable_with: tuple[str, ...] = ()
+    law: AmplitudeLaw | None = None
+    acts_on: Literal["midpoint", "amplitude", "observation"] = "midpoint"
+    one_sided: bool = False
+    at_datum: DatumRows | None = None
+
+    def __post_init__(self) -> None:
+        if self.law is not None and len(self.coefficients) != 1:
+            raise ValueError(f"effect {self.id}: an amplitude law has exactly one coefficient")
+        if (self.law is not None) != (self.acts_on == "amplitude"):
+            raise ValueError(f"effect {self.id}: acts_on='amplitude' and law belong together")
+        if self.subject not in SUBJECTS:
+            raise ValueError(f"effect {self.id}: unknown subject {self.subject!r}")
+        if not self.coefficients:
+            raise ValueError(f"effect {self.id}: at least one coefficient")
+
+    def grid_points(self, columns: Columns) -> tuple[dict[str, float], ...]:
+        """Every combination of the scanned parameters; one empty point where there is none."""
+        points: tuple[dict[str, float], ...] = ({},)
+        for parameter in self.grid:
+            values = parameter.values(columns)
+            points = tuple({**p, parameter.name: float(v)} for p in points for v in values)
+        return points
+
+    def searched(self, point: Mapping[str, float]) -> int:
+        """How many parameters were searched to arrive at this grid point."""
+        return sum(1 for g in self.grid if g.neutral is None or point[g.name] != g.neutral)
+
+
+HALF_SWING = Column("half_swing", "half swings since the first turning point")
+SIDE = Column("side", "+1 right (east), -1 left")
+RELATIVE_AMPLITUDE = Column("relative_amplitude", "amplitude / amplitude of the first point")
+FIRST_AMPLITUDE = Column("first_amplitude", "rad")
+DECAY = Column("decay", "1/half swing")
+
+
+def mean_loss_time(half_swing: Array, decay: Array) -> Array:
+    """(1 - exp(-k t)) / k, the time t as the damping shortens it, also for k = 0."""
+    product = np.asarray(half_swing * decay, dtype=np.float64)
+    small = np.abs(product) < 1e-6
+    safe = np.where(small, 1.0, product)
+    ratio = np.where(small, 1.0 - 0.5 * product, -np.expm1(-safe) / safe)
+    return np.asarray(half_swing * ratio)
+
+
+def inner_positions(positions: Array, *, margin: int) -> Array:
+    """Sorted different positions with at least ``margin`` of them left on either side."""
+    different = np.unique(positions)
+    return different[margin - 1 : different.size - margin]

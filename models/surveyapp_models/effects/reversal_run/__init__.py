@@ -1,0 +1,1 @@
+"""Effects of the subject reversal_run, one physical cause per file."""

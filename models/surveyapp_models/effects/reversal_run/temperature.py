@@ -1,0 +1,46 @@
+"""North follows the temperature during the run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from surveyapp_models.angles import ARCSEC
+from surveyapp_models.effects.effect import Array, Coefficient, Column, Columns, Effect
+
+
+def basis(columns: Columns, /, **grid: float) -> Array:
+    """Theta - mean(theta)."""
+    del grid
+    theta = columns["temperature_c"]
+    return np.asarray(theta - theta.mean())[:, None]
+
+
+def at_datum(
+    columns: Columns, references: Mapping[str, float], /, **grid: float
+) -> tuple[tuple[str, tuple[float, ...]], ...]:
+    """The reference temperature, else the mean."""
+    del grid
+    mean = float(columns["temperature_c"].mean())
+    reference = references.get("temperature_c", mean)
+    return ((f"{reference:g} degrees Celsius", (reference - mean,)),)
+
+
+EFFECT = Effect(
+    id="temperature",
+    title="Temperature during the run",
+    subject="reversal_run",
+    needs=(Column("temperature_c", "degree Celsius"),),
+    coefficients=(
+        Coefficient("coefficient", "arcsec/K", ARCSEC, -60.0, 60.0, "change of north per kelvin"),
+    ),
+    basis=basis,
+    datum="north at the session's reference temperature, else at the mean temperature",
+    source="instrument calibration practice: first-order coefficient about a reference",
+    remedy="Let the instrument reach the temperature of the place; log the temperature.",
+    symptom="north followed the temperature",
+    separate_by="a run in which the temperature goes the other way",
+    confusable_with=("midpoint_drift", "warm_up"),
+    at_datum=at_datum,
+)
