@@ -175,8 +175,12 @@ class FieldBook:
         return tuple(row for row in self.live if row.kind in kinds)
 
     def place_of(self, row: Reading) -> Place:
-        """Tell whether a live row stands before, during or after the observation itself."""
-        places = [i for i, other in enumerate(self.live) if other.kind in SWING_KINDS]
+        """Tell whether a live row stands before, during or after the observation itself.
+
+        A ``missed`` row bounds nothing: it may stand among the tape zeros as well.
+        """
+        kinds = SWING_KINDS - {ReadingKind.MISSED}
+        places = [i for i, other in enumerate(self.live) if other.kind in kinds]
         index = self.live.index(row)
         if not places or index < places[0]:
             return Place.BEFORE

@@ -1,0 +1,69 @@
+"""One writer to a project folder: a lock file beside project.toml, never a lock on a book.
+
+Whoever comes second, and whoever stands before a read-only folder, reads. Nothing waits.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from filelock import BaseFileLock
+
+LOCK_FILE: Final = ".surveyapp.lock"
+
+
+class ProjectLock:
+    """The right to write to a project folder, where it is to be had.
+
+    Use it as a context manager, or call ``release`` when done.
+
+    Parameters
+    ----------
+    folder : Path
+        The project folder.
+
+    Attributes
+    ----------
+    writable : bool
+        Whether this handle may write. False for the second opener and in a read-only folder.
+    """
+
+    __slots__ = ("_lock", "folder", "writable")
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.writable = False
+        self._lock: BaseFileLock | None = None
+        self._acquire()
+
+    def _acquire(self) -> None:
+        import filelock
+
+        lock = filelock.FileLock(str(self.folder / LOCK_FILE), timeout=0)
+        try:
+            lock.acquire()
+        except (filelock.Timeout, OSError, ValueError, NotImplementedError):
+            return
+        self._lock = lock
+        self.writable = True
+
+    def release(self) -> None:
+        """Give the right to write back; a second call does nothing."""
+        if self._lock is not None:
+            self._lock.release()
+        self._lock = None
+        self.writable = False
+
+    def __enter__(self) -> ProjectLock:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.release()

@@ -1,0 +1,388 @@
+"""The tables of project.toml, one function each: stations, instruments, sessions, effects.
+
+Each returns a domain object in any case; what is wrong is noted in the table's findings, and the
+reader of the project raises before anybody sees the object.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, Literal, cast
+
+from surveyapp.domain.instrument import AdoptedEffect, Instrument, InstrumentCard
+from surveyapp.domain.project import (
+    DEFAULT_DEFLECTION_SIGMA,
+    Centring,
+    Deflection,
+    Eccentric,
+    Method,
+    OrientationSession,
+    Purpose,
+    Station,
+)
+from surveyapp.domain.readings import FieldBook
+from surveyapp.errors import Problem, nearest_names
+from surveyapp.io.cards import CARD_KEYS, load_card, number_pair
+from surveyapp.io.files import shown
+from surveyapp.io.tables import Findings, Table, as_number
+from surveyapp_models.angles import ARCSEC, AngleUnit
+
+METHODS: Final = ("tracking", "amplitude", "transit", "automatic")
+PURPOSES: Final = ("calibration", "survey")
+CHOICES: Final = ("pooled", "interpolated", "nearest", "known")
+
+_GRID_LIMIT_M: Final = 1e8
+_HEIGHT_LIMITS_M: Final = (-12000.0, 12000.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Names:
+    """What sessions may refer to.
+
+    Parameters
+    ----------
+    stations, instruments : tuple of str
+    known_constants : frozenset of str
+        Instruments with a constant known beforehand.
+    unit : AngleUnit
+        The project's unit of angles.
+    """
+
+    stations: tuple[str, ...]
+    instruments: tuple[str, ...]
+    known_constants: frozenset[str]
+    unit: AngleUnit
+
+    def check_station(self, table: Table, name: str | None, what: str) -> None:
+        """Note a problem for a name that is no declared station."""
+        if name and name not in self.stations:
+            table.problem(what, name, "a name of a [[station]]", nearest_names(name, self.stations))
+
+    def check_targets(self, table: Table, book: FieldBook, path: str) -> None:
+        """Every target in a book is a station."""
+        seen: set[str] = set()
+        for row in book.rows:
+            if row.target and row.target not in self.stations and row.target not in seen:
+                seen.add(row.target)
+                table.findings.problems.append(
+                    Problem(
+                        "a sight whose target is no station",
+                        f"{path}, line {row.line} (seq {row.seq})",
+                        shown(row.target),
+                        "a name of a [[station]]",
+                        nearest_names(row.target, self.stations),
+                    )
+                )
+
+    def check_choice(self, table: Table, choice: str, instrument: str) -> None:
+        """A constant choice is a known word or names a line between two stations."""
+        if choice == "known" and instrument not in self.known_constants:
+            table.problem(
+                "constant_choice is known, but the instrument has no constant",
+                choice,
+                "constant = { arcsec = ..., sigma_arcsec = ... } in [[instrument]]",
+            )
+        if choice in CHOICES:
+            return
+        expected = " | ".join(CHOICES) + " | line:A-B"
+        if not choice.startswith("line:"):
+            hint = nearest_names(choice, CHOICES)
+            table.problem("constant_choice is not known", choice, expected, hint)
+        elif split_line(choice[5:], self.stations) is None:
+            hint = nearest_names(choice[5:].partition("-")[0], self.stations)
+            table.problem("constant_choice names no line between stations", choice, expected, hint)
+
+
+def split_line(line: str, stations: Sequence[str]) -> tuple[str, str] | None:
+    """Split ``A-B`` into two stations; their names may hold hyphens themselves."""
+    for index, character in enumerate(line):
+        if character == "-" and line[:index] in stations and line[index + 1 :] in stations:
+            return line[:index], line[index + 1 :]
+    return None
+
+
+def unique(names: Sequence[str], kind: str, findings: Findings) -> tuple[str, ...]:
+    """Note a problem for every name that stands twice; return the names once each."""
+    for name in sorted({n for n in names if n and names.count(n) > 1}):
+        problem = Problem(
+            f"there are {names.count(name)} tables [[{kind}]] of one name",
+            "project.toml",
+            shown(name),
+            "each name once",
+        )
+        findings.problems.append(problem)
+    return tuple(dict.fromkeys(n for n in names if n))
+
+
+def read_station(table: Table) -> Station:
+    """One [[station]]: positions as e/n, y_west/x_south or lat/lon, all optional."""
+    name = table.text("name", required=True) or ""
+    e, n = _pair(table, ("e", "n"), (_GRID_LIMIT_M, _GRID_LIMIT_M))
+    west, south = _pair(table, ("y_west", "x_south"), (_GRID_LIMIT_M, _GRID_LIMIT_M))
+    latitude, longitude = _pair(table, ("lat", "lon"), (90.0, 180.0))
+    given = [
+        keys
+        for keys in (("e", "n"), ("y_west", "x_south"), ("lat", "lon"))
+        if any(key in table for key in keys)
+    ]
+    if len(given) > 1:
+        found = " and ".join("/".join(keys) for keys in given)
+        table.problem("the position is given twice", found, "e/n, or y_west/x_south, or lat/lon")
+    if west is not None and south is not None:
+        e, n = -west, -south
+    station = Station(
+        name=name,
+        e=e,
+        n=n,
+        latitude=None if latitude is None else math.radians(latitude),
+        longitude=None if longitude is None else math.radians(longitude),
+        h=table.number("h", low=_HEIGHT_LIMITS_M[0], high=_HEIGHT_LIMITS_M[1]),
+        fixed=table.boolean("fixed"),
+        deflection=_deflection(table),
+    )
+    table.get("note")
+    table.warn_unknown()
+    return station
+
+
+def _pair(
+    table: Table, keys: tuple[str, str], limits: tuple[float, float]
+) -> tuple[float | None, float | None]:
+    values = [
+        table.number(key, low=-limit, high=limit) for key, limit in zip(keys, limits, strict=True)
+    ]
+    if (keys[0] in table) != (keys[1] in table):
+        given, absent = keys if keys[0] in table else keys[::-1]
+        table.problem(f"{given} stands without {absent}", "", "both or none")
+    return values[0], values[1]
+
+
+def _deflection(station: Table) -> Deflection:
+    table = station.table("deflection")
+    if table is None:
+        return Deflection()
+    xi, eta = _pair(table, ("xi_arcsec", "eta_arcsec"), (300.0, 300.0))
+    sigma = table.number("sigma_arcsec", low=0.0, high=300.0)
+    table.warn_unknown()
+    return Deflection(
+        xi=(xi or 0.0) * ARCSEC,
+        eta=(eta or 0.0) * ARCSEC,
+        sigma=DEFAULT_DEFLECTION_SIGMA if sigma is None else sigma * ARCSEC,
+        known=xi is not None,
+    )
+
+
+def read_centring(table: Table) -> Centring | None:
+    """``centring_mm = { instrument, target }`` of the project or of a session."""
+    inner = table.table("centring_mm")
+    if inner is None:
+        return None
+    default = Centring()
+    values = [inner.number(key, low=0.0, high=1e4) for key in ("instrument", "target")]
+    inner.warn_unknown()
+    return Centring(
+        instrument_m=default.instrument_m if values[0] is None else values[0] / 1000.0,
+        target_m=default.target_m if values[1] is None else values[1] / 1000.0,
+        known=True,
+    )
+
+
+def read_instrument(table: Table, folder: Path) -> Instrument:
+    """One [[instrument]]: its card with what the project overrides."""
+    identity = table.text("id", required=True) or ""
+    name = table.text("card", required=True)
+    override = {key: table.get(key) for key in CARD_KEYS if key in table}
+    card: InstrumentCard | None = None
+    if name is not None:
+        card = load_card(name, base=folder, override=override, findings=table.findings)
+    constant = table.table("constant")
+    known = None
+    if constant is not None:
+        value = constant.number("arcsec", low=-648000.0, high=648000.0, required=True)
+        sigma = constant.number("sigma_arcsec", high=36000.0, required=True, positive=True)
+        constant.warn_unknown()
+        if value is not None and sigma is not None:
+            known = (value * ARCSEC, sigma * ARCSEC)
+    instrument = Instrument(
+        id=identity,
+        card=card or InstrumentCard("", "", "suspended", ""),
+        serial=_serial(table),
+        known_constant=known,
+        constant_choice=table.text("constant_choice") or "pooled",
+        effects=tuple(read_effect(t) for t in table.tables("effect")),
+    )
+    table.get("note")
+    table.warn_unknown(*CARD_KEYS)
+    return instrument
+
+
+def _serial(table: Table) -> str:
+    value = table.get("serial")
+    if isinstance(value, int) and not isinstance(value, bool):
+        return shown(value)
+    return table.text("serial") or ""
+
+
+def read_session(table: Table, names: Names) -> OrientationSession:
+    """One [[orientation]], still without its book."""
+    identity = table.text("id", required=True) or ""
+    station = table.text("station", required=True) or ""
+    target = table.text("target")
+    instrument = table.text("instrument", required=True) or ""
+    names.check_station(table, station, "the session stands on no station")
+    names.check_station(table, target, "a sight whose target is no station")
+    if target and target == station:
+        table.problem("the target is the station itself", target, "another station")
+    if instrument and instrument not in names.instruments:
+        hint = nearest_names(instrument, names.instruments)
+        table.problem("there is no such instrument", instrument, "an id of [[instrument]]", hint)
+    choice = table.text("constant_choice")
+    if choice is not None:
+        names.check_choice(table, choice, instrument)
+    method = table.choice("method", METHODS, required=True)
+    purpose = table.choice("purpose", PURPOSES)
+    azimuth = table.angle("azimuth_known", names.unit)
+    if azimuth is not None and purpose is None and "purpose" not in table:
+        table.problem("azimuth_known stands without purpose", "", " | ".join(PURPOSES))
+    resolution = table.number("resolution_arcsec", high=36000.0, positive=True)
+    session = OrientationSession(
+        id=identity,
+        station=station,
+        instrument=instrument,
+        method=cast("Method", method or "tracking"),
+        purpose=cast("Purpose", purpose or "survey"),
+        book=FieldBook((), ()),
+        book_path=table.text("book", required=True) or "",
+        target=target or None,
+        azimuth_known=azimuth,
+        constant_choice=choice,
+        date=table.date("date"),
+        order=table.number("order"),
+        circle_shift=table.angle("circle_shift", names.unit),
+        observer=table.text("observer") or "",
+        reference_temperature_c=table.number("reference_temperature_c", low=-90.0, high=150.0),
+        resolution=None if resolution is None else resolution * ARCSEC,
+        eccentric=_eccentric(table, names.unit),
+        effects=tuple(read_effect(t) for t in table.tables("effect")),
+        override=_session_override(table),
+    )
+    table.warn_unknown("rounds", "sigma_arcsec")
+    return session
+
+
+def _session_override(table: Table) -> tuple[tuple[str, object], ...]:
+    """Further keys: what is known of them is checked, the rest is kept as it stands."""
+    pairs: list[tuple[str, object]] = []
+    rounds = table.number("rounds", low=1.0, high=1000.0)
+    if rounds is not None:
+        if rounds != int(rounds):
+            table.problem("rounds is no whole number", table.get("rounds"), "1, 2, 3 ...")
+        pairs.append(("rounds", int(rounds)))
+    sigma = table.number("sigma_arcsec", high=36000.0, positive=True)
+    if sigma is not None:
+        pairs.append(("sigma_arcsec", sigma))
+    centring = read_centring(table)
+    if centring is not None:
+        pairs.append(("centring", centring))
+    note = table.text("note", multiline=True)
+    if note is not None:
+        pairs.append(("note", note))
+    pairs += [(key, table.data[key]) for key in table.unread()]
+    return tuple(pairs)
+
+
+def _eccentric(session: Table, unit: AngleUnit) -> Eccentric | None:
+    table = session.table("eccentric")
+    if table is None:
+        return None
+    distance = table.number("distance_m", low=0.0, high=1e4, required=True)
+    direction = table.angle("direction", unit)
+    if direction is None and "direction" not in table and distance != 0.0:
+        table.problem("direction is missing", "", "the circle reading towards the mark")
+    at = table.choice("at", ("station", "target"))
+    sigma = table.number("sigma_m", low=0.0, high=1e3)
+    table.warn_unknown()
+    where = cast("Literal['station', 'target']", at or "station")
+    return Eccentric(distance or 0.0, direction or 0.0, where, sigma)
+
+
+def read_effect(table: Table) -> AdoptedEffect:
+    """One adopted effect of a session or an instrument."""
+    coefficients = []
+    inner = table.table("coefficients")
+    for name in inner.data if inner is not None else ():
+        one = inner.table(name) if inner is not None else None
+        if one is None:
+            continue
+        value = one.number("value", required=True)
+        sigma = one.number("sigma", low=0.0)
+        coefficients.append((name, value or 0.0, sigma or 0.0, one.text("unit") or ""))
+        one.warn_unknown()
+    adopted_at = table.get("adopted_at")
+    effect = AdoptedEffect(
+        id=table.text("id", required=True) or "",
+        coefficients=tuple(coefficients),
+        grid=_grid(table),
+        covariance=_covariance(table, len(coefficients)),
+        valid=_valid(table),
+        data_sha256=table.text("sha256") or "",
+        before=table.number("before", low=0.0),
+        after=table.number("after", low=0.0),
+        confirm=table.number("confirm", low=0.0),
+        adopted_at="" if adopted_at is None else str(adopted_at),
+        software=table.text("software") or "",
+        unit=table.text("unit") or "arcsec",
+    )
+    table.get("note")
+    table.warn_unknown()
+    return effect
+
+
+def _grid(effect: Table) -> tuple[tuple[str, float], ...]:
+    table = effect.table("grid")
+    if table is None:
+        return ()
+    pairs = [(name, table.number(name)) for name in table.data]
+    return tuple((name, value) for name, value in pairs if value is not None)
+
+
+def _covariance(effect: Table, size: int) -> tuple[tuple[float, ...], ...]:
+    value = effect.get("covariance")
+    if value is None:
+        return ()
+    rows = value if isinstance(value, list) else []
+    matrix = [[as_number(item) for item in row] if isinstance(row, list) else [] for row in rows]
+    numbers = [tuple(x for x in row if x is not None) for row in matrix]
+    if (
+        len(numbers) != size
+        or any(len(row) != size for row in numbers)
+        or any(len(row) != len(given) for row, given in zip(numbers, matrix, strict=True))
+    ):
+        effect.problem(
+            "covariance does not fit the coefficients", value, f"{size} x {size} numbers"
+        )
+        return ()
+    return tuple(numbers)
+
+
+def _valid(effect: Table) -> tuple[tuple[str, float, float], ...]:
+    table = effect.table("valid")
+    if table is None:
+        return ()
+    ranges = []
+    for name, value in table.data.items():
+        pair = number_pair(value)
+        if pair is None:
+            table.problem(f"{shown(name)} is no range", value, "[lowest, highest]")
+        else:
+            ranges.append((name, *pair))
+        table.get(name)
+    return tuple(ranges)
+
+
+def mapping_keys(value: object) -> tuple[str, ...]:
+    """Keys of a parsed table, none for anything else."""
+    return tuple(value) if isinstance(value, Mapping) else ()

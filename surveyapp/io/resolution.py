@@ -1,0 +1,54 @@
+"""The resolution with which a surveyor read, taken from the readings themselves.
+
+The coarsest usual step that divides every reading of one kind (design.md section 3). It never
+looks at more than one kind: the caller passes turning points by themselves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, TWO_PI
+
+ARCSEC_STEPS: Final = (60.0, 30.0, 20.0, 10.0, 6.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1)
+_DECADES: Final = range(1, -8, -1)
+_TOLERANCE: Final = 1e-3
+"""Share of a step within which a reading counts as a multiple: far above the rounding of a float
+(2e-9 of 0.1" at 360 degrees), far below half a step."""
+
+
+def infer_resolution(readings: Sequence[float], unit: str) -> float:
+    """Coarsest usual step that divides every reading.
+
+    Parameters
+    ----------
+    readings : sequence of float
+        Readings of one kind: angles [rad], or [div] for scale kinds.
+    unit : str
+        Unit token in which they were written: dms, gon, deg, or div (or any other unit of a
+        plain number).
+
+    Returns
+    -------
+    float
+        The step [rad], for plain numbers in their unit. Without a usual step, or without
+        readings, the finest one.
+    """
+    if unit == "dms":
+        return _coarsest([value * RHO_ARCSEC for value in readings], ARCSEC_STEPS) * ARCSEC
+    factor = {"gon": 400.0 / TWO_PI, "deg": 360.0 / TWO_PI}.get(unit, 1.0)
+    steps = tuple(m * 10.0**k for k in _DECADES for m in (5.0, 2.0, 1.0))
+    return _coarsest([value * factor for value in readings], steps) / factor
+
+
+def _coarsest(values: Sequence[float], steps: Sequence[float]) -> float:
+    if not values:
+        return steps[-1]
+    return next((step for step in steps if all(_divides(step, v) for v in values)), steps[-1])
+
+
+def _divides(step: float, value: float) -> bool:
+    quotient = value / step
+    floor = 1e-12 * abs(value) / step
+    return abs(quotient - round(quotient)) <= max(_TOLERANCE, floor)

@@ -1,0 +1,243 @@
+"""One parsed TOML table, read key by key: wrong values become problems, unread keys warnings.
+
+A reader asks a ``Table`` for what it knows; what nobody asked for is unknown. No reader of a
+table raises for a wrong value: it gets None and goes on, so that all problems of a file come
+together.
+"""
+
+from __future__ import annotations
+
+import datetime as dt
+import math
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Final
+
+from surveyapp.domain.project import ResultWarning
+from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.io.files import has_control, shown
+from surveyapp_models.angles import TWO_PI, AngleError, AngleUnit, parse_angle
+
+_LONGEST_NAME: Final = 200
+
+
+@dataclass(slots=True)
+class Findings:
+    """Everything that was found wrong or odd while reading."""
+
+    problems: list[Problem] = field(default_factory=list)
+    warnings: list[ResultWarning] = field(default_factory=list)
+
+    def absorb(self, error: SurveyError) -> None:
+        """Take over the problems of an error."""
+        self.problems.extend(error.problems)
+
+    def raise_if_any(self) -> None:
+        """Raise one error with all problems, if there are any."""
+        if self.problems:
+            raise SurveyError(self.problems)
+
+
+def parse_toml(text: str, *, where: str) -> dict[str, object]:
+    """Parse TOML; a syntax error becomes a problem that names line and column.
+
+    Raises
+    ------
+    SurveyError
+    """
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise SurveyError(
+            Problem(
+                "this is no valid TOML",
+                where,
+                shown(str(error)),
+                "key = value lines and [[table]] headers",
+                "texts stand in double quotes, numbers do not",
+            )
+        ) from None
+    except (ValueError, RecursionError, OverflowError):
+        raise SurveyError(
+            Problem("this is no usable TOML: a number or a nesting is beyond all bounds", where)
+        ) from None
+
+
+class Table:
+    """A mapping of one file with the place it came from.
+
+    Parameters
+    ----------
+    data : mapping
+        The parsed table.
+    where : str
+        Place for messages.
+    findings : Findings
+        Where problems and warnings go.
+    """
+
+    __slots__ = ("_asked", "data", "findings", "where")
+
+    def __init__(self, data: Mapping[str, object], where: str, findings: Findings) -> None:
+        self.data = data
+        self.where = where
+        self.findings = findings
+        self._asked: set[str] = set()
+
+    def __contains__(self, key: str) -> bool:
+        return key in self.data
+
+    def problem(self, what: str, found: object = "", expected: str = "", hint: str = "") -> None:
+        """Note a problem of this table."""
+        self.findings.problems.append(Problem(what, self.where, shown(found), expected, hint))
+
+    def get(self, key: str) -> object:
+        """Value as it stands, None where absent; the key counts as known."""
+        self._asked.add(key)
+        return self.data.get(key)
+
+    def text(self, key: str, *, required: bool = False, multiline: bool = False) -> str | None:
+        """Text, or None. A present text may not be blank where it is required."""
+        value = self.get(key)
+        if value is None:
+            if required:
+                self.problem(f"{key} is missing", "", f'{key} = "..."')
+            return None
+        if not isinstance(value, str):
+            self.problem(f"{key} is no text", value, "a text in double quotes")
+            return None
+        if (not value.strip() and required) or (
+            not multiline and (has_control(value) or "\n" in value or len(value) > _LONGEST_NAME)
+        ):
+            self.problem(f"{key} is no usable text", value, "one line of printable characters")
+            return None
+        return value
+
+    def choice(self, key: str, choices: Sequence[str], *, required: bool = False) -> str | None:
+        """One of the given words, or None."""
+        value = self.text(key, required=required)
+        if value is None or value in choices:
+            return value
+        self.problem(
+            f"{key} is not known", value, " | ".join(choices), nearest_names(value, choices)
+        )
+        return None
+
+    def number(
+        self,
+        key: str,
+        *,
+        low: float = -1e12,
+        high: float = 1e12,
+        required: bool = False,
+        positive: bool = False,
+    ) -> float | None:
+        """Finite number within [low, high], or None; ``positive`` excludes zero as well."""
+        value = self.get(key)
+        if value is None:
+            if required:
+                self.problem(f"{key} is missing", "", f"{key} = a number")
+            return None
+        number = as_number(value)
+        if number is None:
+            self.problem(f"{key} is no number", value, "a finite number without quotes")
+            return None
+        if not low <= number <= high or (positive and number <= 0.0):
+            expected = "more than 0" if positive and number <= 0.0 else f"{low:g} to {high:g}"
+            self.problem(f"{key} is out of range", value, expected)
+            return None
+        return number
+
+    def boolean(self, key: str, *, default: bool = False) -> bool:
+        """``true`` or ``false``."""
+        value = self.get(key)
+        if value is None or isinstance(value, bool):
+            return default if value is None else value
+        self.problem(f"{key} is neither true nor false", value, "true | false")
+        return default
+
+    def angle(self, key: str, unit: AngleUnit) -> float | None:
+        """Direction in [0, 2 pi) [rad]: angle text, or a number where the unit is gon or deg."""
+        value = self.get(key)
+        if value is None:
+            return None
+        number = as_number(value)
+        if isinstance(value, str) or (number is not None and unit is not AngleUnit.DMS):
+            text = value if isinstance(value, str) else f"{number:.12f}"
+            try:
+                angle = parse_angle(text, unit)
+            except AngleError as error:
+                self.problem(f"{key} is no angle", value, error.expected, error.hint)
+                return None
+            return angle % TWO_PI
+        self.problem(f"{key} is no angle", value, f"angle text in {unit}, in double quotes")
+        return None
+
+    def date(self, key: str) -> dt.date | None:
+        """Calendar date, or None; a date and time gives its date."""
+        value = self.get(key)
+        if isinstance(value, str):
+            try:
+                value = dt.date.fromisoformat(value.strip())
+            except ValueError:
+                self.problem(f"{key} is no date", value, "a date like 2015-10-26")
+                return None
+        if isinstance(value, dt.datetime):
+            return value.date()
+        if value is None or isinstance(value, dt.date):
+            return value
+        self.problem(f"{key} is no date", value, "a date like 2015-10-26")
+        return None
+
+    def table(self, key: str) -> Table | None:
+        """Sub-table, or None."""
+        value = self.get(key)
+        if value is None:
+            return None
+        if not isinstance(value, Mapping):
+            self.problem(f"{key} is no table", value, f"{key} = {{ ... }} or [{key}]")
+            return None
+        return Table(value, f"{self.where}, {key}", self.findings)
+
+    def tables(self, key: str, lines: Sequence[int] = ()) -> list[Table]:
+        """Every ``[[key]]`` table; ``lines`` are the lines of their headers where known."""
+        value = self.get(key)
+        if value is None:
+            return []
+        if not isinstance(value, list) or not all(isinstance(item, Mapping) for item in value):
+            self.problem(f"{key} is no list of tables", value, f"[[{key}]]", "two brackets")
+            return []
+        placed = lines if len(lines) == len(value) else [0] * len(value)
+        found = []
+        for index, (item, line) in enumerate(zip(value, placed, strict=True), start=1):
+            name = item.get("id", item.get("name"))
+            label = shown(name) if isinstance(name, str) and name else f"number {index}"
+            place = f" line {line}" if line else ""
+            found.append(Table(item, f"{self.where}{place}, [[{key}]] {label}", self.findings))
+        return found
+
+    def unread(self) -> list[str]:
+        """Keys that nobody has asked for."""
+        return [key for key in self.data if key not in self._asked]
+
+    def warn_unknown(self, *also_known: str) -> None:
+        """Note a warning for every key that nobody has asked for."""
+        known = self._asked.union(also_known)
+        for key in self.data:
+            if key not in known:
+                text = f"{self.where}: {shown(key)} is not known and was not used. "
+                self.findings.warnings.append(
+                    ResultWarning("unknown_key", text + nearest_names(key, known))
+                )
+
+
+def as_number(value: object) -> float | None:
+    """Finite float of a TOML integer or float, None for anything else."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return None
+    try:
+        number = float(value)
+    except OverflowError:
+        return None
+    return number if math.isfinite(number) else None
