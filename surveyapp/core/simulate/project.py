@@ -1,0 +1,255 @@
+"""Simulated sessions made into a whole project that the program can read.
+
+Both lines lie on the central meridian of the project's own grid and the plumb lines are without
+deflection, so that the grid azimuth is the astronomic one: what is judged is the orientation.
+Text only: whoever calls writes the files.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import timedelta
+from typing import Literal
+
+import numpy as np
+
+from surveyapp.core.simulate.session import SimulatedSession, book_text, simulate_session
+from surveyapp.core.simulate.specification import Effect, SessionSpec
+from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, format_angle, wrap_two_pi
+from surveyapp_models.constants import WGS84
+from surveyapp_models.gyro.periods import clamped_period_s, tracking_period_s, unspun_period_s
+
+CENTRAL_MERIDIAN_DEG = 25.0
+SIGHT_LENGTH_M = 300.0
+PERIOD_SIGMA_S = 0.1
+
+
+@dataclass(frozen=True, slots=True)
+class ProjectSession:
+    """A simulated session in its place.
+
+    Parameters
+    ----------
+    id : str
+    purpose : {"calibration", "survey"}
+    station, target : str
+    simulated : SimulatedSession
+    """
+
+    id: str
+    purpose: Literal["calibration", "survey"]
+    station: str
+    target: str
+    simulated: SimulatedSession
+
+
+@dataclass(frozen=True, slots=True)
+class SimulatedProject:
+    """A simulated project.
+
+    Parameters
+    ----------
+    name : str
+    sessions : tuple of ProjectSession
+    card : str
+        Text of the instrument card.
+    """
+
+    name: str
+    sessions: tuple[ProjectSession, ...]
+    card: str
+
+
+def simulate_reversal_project(
+    survey: SessionSpec,
+    rng: np.random.Generator,
+    *,
+    name: str = "Simulated reversal runs",
+    calibrations: int = 2,
+    surveys: int = 2,
+    calibration_latitude: float | None = None,
+    calibration_effects: Sequence[Effect] = (),
+) -> SimulatedProject:
+    """Simulate a project: rounds on a known line, rounds on the line that is to be found.
+
+    Parameters
+    ----------
+    survey : SessionSpec
+        The survey sessions, with their effects; a second one can confirm what the first shows.
+    rng : numpy.random.Generator
+    name : str
+    calibrations, surveys : int
+        Sessions on each line.
+    calibration_latitude : float, optional
+        Of the known line and of the card's periods [rad]; the survey's own if absent.
+    calibration_effects : sequence of Effect
+        None by default: the known side was observed undisturbed.
+
+    Returns
+    -------
+    SimulatedProject
+    """
+    latitude = survey.latitude if calibration_latitude is None else calibration_latitude
+    known = dataclasses.replace(survey, latitude=latitude, effects=tuple(calibration_effects))
+    unknown_azimuth = wrap_two_pi(survey.line_azimuth + 0.7)
+    sessions = []
+    for index in range(calibrations):
+        spec = _moved(known, index, rng)
+        sessions.append(
+            ProjectSession(
+                f"cal-{index + 1}", "calibration", "K1", "K2", simulate_session(spec, rng)
+            )
+        )
+    for index in range(surveys):
+        moved = _moved(survey, calibrations + index, rng)
+        spec = dataclasses.replace(moved, line_azimuth=unknown_azimuth)
+        sessions.append(
+            ProjectSession(f"run-{index + 1}", "survey", "U1", "U2", simulate_session(spec, rng))
+        )
+    return SimulatedProject(name, tuple(sessions), _card(known, rng))
+
+
+def _moved(spec: SessionSpec, index: int, rng: np.random.Generator) -> SessionSpec:
+    """The next round: later, and on another part of the circle."""
+    return dataclasses.replace(
+        spec,
+        start=spec.start + timedelta(hours=3 * index),
+        circle_of_north=wrap_two_pi(spec.circle_of_north + float(rng.uniform(-0.5, 0.5))),
+    )
+
+
+def project_files(project: SimulatedProject) -> dict[str, str]:
+    """Return the text of each file of the project by its relative path, the truth not included."""
+    files = {"project.toml": _project_toml(project), "cards/simulated-gyro.toml": project.card}
+    for session in project.sessions:
+        files[f"observations/{session.id}.csv"] = book_text(session.simulated.rows)
+    return files
+
+
+def project_truth(project: SimulatedProject) -> dict[str, object]:
+    """Return the truth of every session, for a file that no other command reads."""
+    return {
+        "schema": "surveyapp.truth/1",
+        "origin": "simulated from the integrated two-axis equation of motion",
+        "sessions": {
+            session.id: {
+                "station": session.station,
+                "target": session.target,
+                "purpose": session.purpose,
+                **session.simulated.truth,
+            }
+            for session in project.sessions
+        },
+    }
+
+
+def _card(spec: SessionSpec, rng: np.random.Generator) -> str:
+    periods = [
+        period + float(rng.normal(scale=PERIOD_SIGMA_S))
+        for period in (
+            tracking_period_s(spec.gyro, spec.latitude),
+            clamped_period_s(spec.gyro, spec.latitude),
+            unspun_period_s(spec.gyro),
+        )
+    ]
+    noise = spec.noise
+    return f"""id = "simulated-gyro"
+title = "Simulated gyro attachment"
+kind = "suspended"
+source = "simulated: periods measured with the stated sigma on the simulated instrument"
+scale_value_arcsec = {spec.scale_value * RHO_ARCSEC:.6f}
+
+[period]
+latitude_deg = {math.degrees(spec.latitude):.9f}
+tracking_s = {periods[0]:.3f}
+clamped_s = {periods[1]:.3f}
+unspun_s = {periods[2]:.3f}
+sigma_s = {PERIOD_SIGMA_S}
+
+[sigma]
+reversal_arcsec = {noise.reading * RHO_ARCSEC:.3f}
+scale_div = {noise.scale_div}
+time_s = {noise.time_s}
+
+[range]
+latitude_max_deg = 75.0
+"""
+
+
+def _project_toml(project: SimulatedProject) -> str:
+    parts = [
+        "# Simulated: made from the integrated equation of motion, not observed.\n"
+        "format = 1\n"
+        f'name = "{project.name}"\n'
+        f'crs = "+proj=tmerc +lat_0=0 +lon_0={CENTRAL_MERIDIAN_DEG:g} +k=1 +x_0=500000 +y_0=0 '
+        '+ellps=WGS84 +units=m +type=crs"\n'
+        'angle_unit = "dms"\n',
+        '[[instrument]]\nid = "G1"\ncard = "cards/simulated-gyro.toml"\nserial = "simulated"\n',
+    ]
+    parts += [_station_pair(session) for session in _one_per_line(project.sessions)]
+    parts += [_orientation(session) for session in project.sessions]
+    return "\n".join(parts)
+
+
+def _one_per_line(sessions: Sequence[ProjectSession]) -> list[ProjectSession]:
+    return list({session.station: session for session in sessions}.values())
+
+
+def _station_pair(session: ProjectSession) -> str:
+    spec = session.simulated.spec
+    latitude = spec.latitude
+    longitude = math.radians(CENTRAL_MERIDIAN_DEG)
+    end = direct_position(latitude, longitude, azimuth=spec.line_azimuth, distance_m=SIGHT_LENGTH_M)
+    text = ""
+    for name, (lat, lon) in (
+        (session.station, (latitude, longitude)),
+        (session.target, end),
+    ):
+        text += (
+            f'[[station]]\nname = "{name}"\n'
+            f"lat = {math.degrees(lat):.12f}\nlon = {math.degrees(lon):.12f}\n"
+            "deflection = { xi_arcsec = 0.0, eta_arcsec = 0.0, sigma_arcsec = 0.0 }\n\n"
+        )
+    return text.rstrip("\n") + "\n"
+
+
+def direct_position(
+    latitude: float, longitude: float, *, azimuth: float, distance_m: float
+) -> tuple[float, float]:
+    """Return latitude and longitude [rad] of the end of a short line on WGS 84.
+
+    Gauss's mid-latitude formulae, good to 1e-4 arc-second of azimuth over a few hundred metres.
+    """
+    squared = WGS84.first_eccentricity_squared
+    north = east = turn = 0.0
+    for _ in range(6):
+        middle = latitude + 0.5 * north
+        bracket = 1.0 - squared * math.sin(middle) ** 2
+        normal = WGS84.semi_major_m / math.sqrt(bracket)
+        meridian = normal * (1.0 - squared) / bracket
+        north = distance_m * math.cos(azimuth + 0.5 * turn) / meridian
+        east = distance_m * math.sin(azimuth + 0.5 * turn) / (normal * math.cos(middle))
+        turn = east * math.sin(middle)
+    return latitude + north, longitude + east
+
+
+def _orientation(session: ProjectSession) -> str:
+    spec = session.simulated.spec
+    method = "transit" if spec.method == "full_fit" else spec.method
+    known = ""
+    if session.purpose == "calibration":
+        azimuth = format_angle(wrap_two_pi(spec.line_azimuth), AngleUnit.DMS, 3)
+        known = f'azimuth_known = "{azimuth}"\n'
+    temperature = ""
+    if spec.temperature_span_c > 0.0:
+        temperature = f"reference_temperature_c = {spec.temperature_c}\n"
+    return (
+        f'[[orientation]]\nid = "{session.id}"\n'
+        f'station = "{session.station}"\ntarget = "{session.target}"\n'
+        f'instrument = "G1"\nmethod = "{method}"\npurpose = "{session.purpose}"\n'
+        f"date = {spec.start.date().isoformat()}\n{known}{temperature}"
+        f'book = "observations/{session.id}.csv"\n'
+    )

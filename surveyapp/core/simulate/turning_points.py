@@ -1,0 +1,239 @@
+"""Turning points and passages of an ensemble of runs, from the integrated equation of motion.
+
+Everything is in one array operation per integration step, so that hundreds of runs cost little
+more than one. What is returned beside the readings is the truth: it goes into truth files and
+tests, never into an estimator.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surveyapp.core.simulate.disturbing import Disturbed, RunDesign, damped_gyro, disturb, tape_top
+from surveyapp.core.simulate.specification import SessionSpec
+from surveyapp_models.gyro.integration import Start, integrate
+from surveyapp_models.gyro.moments import directive_moment
+from surveyapp_models.gyro.motion import Events, passages, turning_points
+from surveyapp_models.gyro.periods import clamped_period_s, tracking_period_s, unspun_period_s
+
+FloatArray = NDArray[np.float64]
+
+STEPS_PER_HALF_SWING = 48
+"""Integration steps; 0.001 arc-second at 2 degrees of amplitude."""
+LEAD = 0.25
+"""The motion starts this many half swings before the first turning point."""
+
+
+@dataclass(frozen=True, slots=True)
+class SimulatedPoints:
+    """Readings of an ensemble with their truth; n turning points, p passages of each line.
+
+    Parameters
+    ----------
+    readings : ndarray, shape (runs, n)
+        Circle [rad] (tracking), not wrapped, or scale [div] (clamped), as read.
+    motion : ndarray, shape (runs, n)
+        The same without noise, rounding and gross errors.
+    time_s : ndarray, shape (runs, n)
+        True moments, 0 near the first turning point [s].
+    midpoint : ndarray, shape (runs, n)
+        Circle reading of the quasi-static equilibrium [rad], tape torsion included.
+    swing_centre : ndarray, shape (runs, n)
+        The same with what an asymmetric restoring torque or follow-up adds between turning points.
+    gyro_north : ndarray, shape (runs, n)
+        Circle reading of gyro north freed from the tape [rad]; its mean is the run's true north.
+    temperature_c : ndarray, shape (runs, n)
+        As read.
+    passage_time_s : ndarray, shape (runs, lines, p)
+        Timed passages as read [s]; (runs, 0, 0) where nothing is timed.
+    passage_eastward : ndarray of bool, shape (runs, lines, p)
+        The scale reading grows.
+    drawn : dict
+        Places, phases and the like that were drawn, (runs,) each.
+    """
+
+    readings: FloatArray
+    motion: FloatArray
+    time_s: FloatArray
+    midpoint: FloatArray
+    swing_centre: FloatArray
+    gyro_north: FloatArray
+    temperature_c: FloatArray
+    passage_time_s: FloatArray
+    passage_eastward: NDArray[np.bool_]
+    drawn: dict[str, FloatArray]
+
+
+@dataclass(frozen=True, slots=True)
+class Timetable:
+    """When things happen, in seconds from the first turning point.
+
+    Parameters
+    ----------
+    half_swing_s : float
+        Of the method in force.
+    unspun_half_swing_s : float
+    last_s : float
+        Nominal last turning point.
+    zero_before_s, zero_after_s : float
+        Middle of the tape zeros.
+    """
+
+    half_swing_s: float
+    unspun_half_swing_s: float
+    last_s: float
+    zero_before_s: float
+    zero_after_s: float
+
+
+def timetable(spec: SessionSpec) -> Timetable:
+    """Lay out a session: tape zero, run-up, swing, run-down, tape zero."""
+    gyro = damped_gyro(spec)
+    period = clamped_period_s if spec.clamped else tracking_period_s
+    half = 0.5 * period(gyro, spec.latitude)
+    unspun = 0.5 * unspun_period_s(gyro)
+    last = (spec.turns - 1) * half
+    reach = 0.5 * max(spec.tape_zero_points - 1, 0) * unspun
+    return Timetable(half, unspun, last, -600.0 - reach, last + 600.0 + reach)
+
+
+def tape_zero_div(spec: SessionSpec, time_s: FloatArray) -> FloatArray:
+    """Return the true tape zero [div] at times from the first turning point [s]."""
+    table = timetable(spec)
+    share = (time_s - table.zero_before_s) / (table.zero_after_s - table.zero_before_s)
+    before, after = spec.tape_zero_div
+    return np.asarray(before + (after - before) * share)
+
+
+def simulate_turning_points(
+    spec: SessionSpec, runs: int, rng: np.random.Generator
+) -> SimulatedPoints:
+    """Simulate an ensemble of runs of one session.
+
+    Parameters
+    ----------
+    spec : SessionSpec
+    runs : int
+        Each draws its own noise, paths, places and phases.
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    SimulatedPoints
+    """
+    table = timetable(spec)
+    design = RunDesign(runs, table.half_swing_s, spec.turns)
+    disturbed = disturb(spec, design, rng)
+    turns, lines = _integrate(spec, disturbed, design)
+    moment = directive_moment(disturbed.gyro, spec.latitude)
+    ratio = disturbed.gyro.torsion / moment
+    shift = disturbed.north_shift(turns.time_s)
+    zero = spec.scale_value * tape_zero_div(spec, turns.time_s)
+    north = spec.circle_of_north + spec.constant + shift
+    if spec.clamped:
+        equilibrium = (ratio * (spec.clamp_offset + zero) + shift) / (1.0 + ratio)
+    else:
+        equilibrium = shift + ratio * zero
+    origin = spec.circle_of_north + spec.constant
+    swing = np.abs(turns.azimuth - equilibrium)
+    centre = disturbed.asymmetry * swing**2 - 0.5 * ratio * disturbed.eastward_lag
+    if spec.clamped:
+        motion = (turns.azimuth - spec.clamp_offset) / spec.scale_value
+    else:
+        motion = origin + turns.azimuth
+    temperature = disturbed.temperature_c(turns.time_s)
+    noise = spec.noise
+    sigma = noise.scale_div if spec.clamped else noise.reading
+    step = noise.scale_resolution_div if spec.clamped else noise.reading_resolution
+    gross = _gross(spec, motion.shape, rng)
+    return SimulatedPoints(
+        readings=_rounded(motion + gross + sigma * rng.normal(size=motion.shape), step),
+        motion=motion,
+        time_s=turns.time_s,
+        midpoint=origin + equilibrium,
+        swing_centre=origin + equilibrium + centre,
+        gyro_north=north,
+        temperature_c=_rounded(
+            temperature + noise.temperature_c * rng.normal(size=motion.shape),
+            noise.temperature_resolution_c,
+        ),
+        passage_time_s=_rounded(
+            lines.time_s + noise.time_s * rng.normal(size=lines.time_s.shape),
+            noise.time_resolution_s,
+        ),
+        passage_eastward=lines.rising if spec.scale_value > 0.0 else ~lines.rising,
+        drawn=disturbed.drawn,
+    )
+
+
+def _integrate(spec: SessionSpec, disturbed: Disturbed, design: RunDesign) -> tuple[Events, Events]:
+    """Turning points (runs, n) and passages (runs, lines, p) of the ensemble."""
+    gyro, half = disturbed.gyro, design.half_swing_s
+    moment = directive_moment(gyro, spec.latitude)
+    ratio = gyro.torsion / moment
+    lead = np.asarray(-LEAD * half)
+    offset = spec.scale_value * float(tape_zero_div(spec, lead))
+    shift = disturbed.north_shift(lead)[:, 0]
+    if spec.clamped:
+        centre = (ratio * (spec.clamp_offset + offset) + shift) / (1.0 + ratio)
+    else:
+        centre = shift + ratio * offset
+    phase = LEAD * math.pi
+    start = Start(
+        azimuth=centre + spec.first_amplitude * math.cos(phase),
+        velocity=np.full(design.runs, spec.first_amplitude * math.sin(phase) * math.pi / half),
+        time_s=float(lead),
+    )
+    motion = integrate(
+        gyro,
+        spec.latitude,
+        start,
+        duration_s=(design.points + LEAD) * half,
+        step_s=half / STEPS_PER_HALF_SWING,
+        tape=tape_top(spec, disturbed, lambda t: tape_zero_div(spec, t)),
+        disturbance=disturbed.disturbance,
+    )
+    turns = turning_points(motion, design.points)
+    if not spec.timed:
+        empty = np.empty((design.runs, 0, 0))
+        return turns, Events(empty, empty, np.empty((design.runs, 0, 0), dtype=np.bool_))
+    # what passed before the first turning point is not observed
+    observed = motion.time_s >= 0.05 * half
+    seen = type(motion)(
+        motion.time_s[observed],
+        motion.azimuth[observed],
+        motion.velocity[observed],
+        motion.acceleration[observed],
+    )
+    found = [
+        passages(seen, spec.clamp_offset + line * spec.scale_value, spec.points)
+        for line in spec.lines_div
+    ]
+    return turns, Events(
+        np.stack([events.time_s for events in found], axis=1),
+        np.stack([events.azimuth for events in found], axis=1),
+        np.stack([events.rising for events in found], axis=1),
+    )
+
+
+def _gross(spec: SessionSpec, shape: tuple[int, ...], rng: np.random.Generator) -> FloatArray:
+    """Gross errors of readings: the size as given for the first of each run, then either sign."""
+    result = np.zeros(shape)
+    for effect in spec.effects:
+        if effect.id != "gross_error":
+            continue
+        count = int(effect.option("count") or 1)
+        size = effect.size / (abs(spec.scale_value) if spec.clamped else 1.0)
+        places = rng.permuted(np.tile(np.arange(shape[1]), (shape[0], 1)), axis=1)[:, :count]
+        signs = rng.choice([-1.0, 1.0], size=places.shape)
+        signs[:, 0] = 1.0
+        np.put_along_axis(result, places, size * signs, axis=1)
+    return result
+
+
+def _rounded(values: FloatArray, resolution: float) -> FloatArray:
+    return values if resolution <= 0.0 else np.round(values / resolution) * resolution
