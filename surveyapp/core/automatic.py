@@ -1,0 +1,122 @@
+"""Rounds of an automatic gyro: it delivers azimuths of the line, or circle readings of north.
+
+A book that holds only the printed mean of several rounds says so with ``rounds`` (and
+``sigma_arcsec``) in its session.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from surveyapp.core.gyrofit import unwrap
+from surveyapp.core.reduction import Reduction, need_points, reading_sigma
+from surveyapp.core.resolution import reading_resolution
+from surveyapp.core.uncertain import Source, Uncertain
+from surveyapp.domain.instrument import InstrumentCard
+from surveyapp.domain.project import OrientationSession, ResultWarning
+from surveyapp.domain.readings import ReadingKind
+from surveyapp.domain.results import PointResult
+from surveyapp.errors import Problem, SurveyError
+from surveyapp_models.angles import ARCSEC, wrap_two_pi
+
+
+def stated_rounds(session: OrientationSession) -> int | None:
+    """Number of rounds behind a printed mean, None where the book holds the rounds themselves."""
+    value = dict(session.override).get("rounds")
+    return value if isinstance(value, int) and not isinstance(value, bool) and value > 0 else None
+
+
+def stated_sigma(session: OrientationSession) -> float | None:
+    """Sigma [rad] stated for the session's mean, None without."""
+    value = dict(session.override).get("sigma_arcsec")
+    if isinstance(value, int | float) and not isinstance(value, bool) and value > 0:
+        return float(value) * ARCSEC
+    return None
+
+
+def reduce_automatic(
+    session: OrientationSession, card: InstrumentCard, *, target: str | None = None
+) -> Reduction:
+    """Mean of the rounds of an automatic gyro.
+
+    Parameters
+    ----------
+    session : OrientationSession
+    card : InstrumentCard
+    target : str or None
+        Whose delivered azimuths are meant, None for the session's own target.
+
+    Raises
+    ------
+    SurveyError
+        If there is no round, or if the book mixes delivered azimuths and circle readings of north.
+    """
+    kinds = [
+        kind for kind in (ReadingKind.AZIMUTH, ReadingKind.NORTH) if session.book.of_kind(kind)
+    ]
+    need_points(session, found=len(kinds), needed=1, kind="azimuth or north")
+    if len(kinds) > 1:
+        raise SurveyError(
+            Problem(
+                what="an automatic gyro delivers either azimuths of the line or readings of north",
+                where=f"session {session.id}, {session.book_path}",
+                found="rows of both kinds",
+                expected="azimuth rows, or north rows with sights",
+                hint="Make two sessions of it.",
+            )
+        )
+    wanted = target or session.target or ""
+    rows = tuple(
+        row
+        for row in session.book.of_kind(kinds[0])
+        if kinds[0] is ReadingKind.NORTH or (row.target or session.target or "") == wanted
+    )
+    need_points(session, found=len(rows), needed=1, kind=f"{kinds[0].value} (target {wanted})")
+    readings = np.array([row.value for row in rows], dtype=np.float64)
+    offsets = unwrap(readings)
+    mean = float(offsets.mean())
+    residuals = offsets - mean
+    dof = readings.size - 1
+    rounds = stated_rounds(session) or readings.size
+    resolution = session.resolution or reading_resolution(rows)
+    sigma = reading_sigma(
+        count=readings.size,
+        variance=float(residuals @ residuals) / dof if dof else None,
+        dof=dof,
+        card_sigma=card.sigma.azimuth,
+        resolution=resolution,
+    )
+    stated = stated_sigma(session)
+    source = Source("rounds", session.id, math.inf if stated is not None else sigma.dof, wanted)
+    contribution = stated if stated is not None else sigma.value / math.sqrt(rounds)
+    value = Uncertain(float(readings[0]) + mean, {source: contribution})
+    origin = "card" if stated is not None else sigma.origin
+    warnings = []
+    if origin is None:
+        text = f"session {session.id}: neither the scatter of the rounds nor the card tells a sigma"
+        warnings.append(ResultWarning("sigma_unknown", text))
+    return Reduction(
+        estimator="mean",
+        north=value if kinds[0] is ReadingKind.NORTH else None,
+        azimuth=value if kinds[0] is ReadingKind.AZIMUTH else None,
+        points_used=rounds,
+        dof=dof,
+        sigma_source=origin,
+        reading_sigma=sigma.value if math.isfinite(sigma.value) else None,
+        residual_rms=math.sqrt(float(residuals @ residuals) / readings.size),
+        points=tuple(
+            PointResult(
+                seq=row.seq,
+                index=i,
+                side="",
+                observed=float(row.value if row.value is not None else math.nan),
+                fitted=wrap_two_pi(value.value),
+                residual=residual,
+                elapsed_s=row.elapsed_s,
+            )
+            for i, (row, residual) in enumerate(zip(rows, residuals.tolist(), strict=True))
+        ),
+        warnings=tuple(warnings),
+    )

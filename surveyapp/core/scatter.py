@@ -1,0 +1,167 @@
+"""Repeated determinations: weighted means, their consistency, and what scatters between them.
+
+A run tells its own reading error; what changes from run to run (the set-up, the tape, the spin)
+shows only between runs. It is estimated from all groups of repeated determinations of one
+instrument, and added to every one of them where it is significant.
+
+Source: Mandel, J. & Paule, R. C. (1970), Interlaboratory evaluation of a material with unequal
+numbers of replicates, Anal. Chem. 42, 1194-1197; physics.md 3.2.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from surveyapp.core.statistics.distributions import f_tail
+from surveyapp.core.uncertain import Source, Uncertain, combine
+
+SHARED = ("centring", "deflection", "known azimuth", "torsion ratio", "known constant")
+"""Sources that repeated determinations of one line share: they do not average down."""
+
+SCATTER_GATE = 0.05
+
+
+def own_variance(item: Uncertain) -> float:
+    """Variance [rad^2] of what belongs to one determination alone."""
+    return item.without(*SHARED).variance
+
+
+def weights_of(items: Sequence[Uncertain]) -> list[float]:
+    """Weights (sum 1) by the inverse variance of what is independent in each.
+
+    Determinations whose sigma nothing tells get no weight, unless that is so for all of them.
+    """
+    variances = [own_variance(item) for item in items]
+    if not any(math.isfinite(variance) for variance in variances):
+        return [1.0 / len(items)] * len(items)
+    if any(variance == 0.0 for variance in variances):
+        raw = [1.0 if variance == 0.0 else 0.0 for variance in variances]
+    else:
+        raw = [1.0 / variance for variance in variances]
+    total = math.fsum(raw)
+    return [value / total for value in raw]
+
+
+def weighted_mean(items: Sequence[Uncertain]) -> Uncertain:
+    """Mean by inverse variance of the independent parts; shared parts stay whole."""
+    weights = weights_of(items)
+    return combine(
+        (weight, item) for weight, item in zip(weights, items, strict=True) if weight > 0.0
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Consistency:
+    """Whether groups of repeated determinations agree within their own sigmas.
+
+    Parameters
+    ----------
+    statistic : float
+        Weighted sum of squares divided by its degrees of freedom (1 where they agree).
+    dof : int
+    probability : float
+        Of a statistic this large if they agree.
+    """
+
+    statistic: float
+    dof: int
+    probability: float
+
+
+def consistency(groups: Sequence[Sequence[Uncertain]]) -> Consistency | None:
+    """Test all groups together, each about its own mean; None without a repetition.
+
+    The statistic is compared with F, its denominator the pooled effective degrees of freedom of
+    the determinations.
+    """
+    squares, dof = 0.0, 0
+    variance_sum, variance_parts = 0.0, 0.0
+    for group in groups:
+        usable = [item for item in group if 0.0 < own_variance(item) < math.inf]
+        if len(usable) < 2:
+            continue
+        mean = weighted_mean(usable).value
+        squares += math.fsum((item.value - mean) ** 2 / own_variance(item) for item in usable)
+        dof += len(usable) - 1
+        for item in usable:
+            own = item.without(*SHARED)
+            variance_sum += own.variance
+            variance_parts += own.variance**2 / own.dof if own.dof < math.inf else 0.0
+    if dof == 0:
+        return None
+    denominator = variance_sum**2 / variance_parts if variance_parts > 0.0 else math.inf
+    probability = f_tail(squares / dof, dof_numerator=dof, dof_denominator=denominator)
+    return Consistency(squares / dof, dof, probability)
+
+
+def between_variance(groups: Sequence[Sequence[Uncertain]]) -> float:
+    """Variance between runs [rad^2] that makes the groups consistent (Mandel-Paule), >= 0."""
+
+    def statistic(extra: float) -> float:
+        total = 0.0
+        for group in groups:
+            variances = [own_variance(item) + extra for item in group]
+            if len(group) < 2 or not all(0.0 < v < math.inf for v in variances):
+                continue
+            weights = [1.0 / v for v in variances]
+            mean = math.fsum(
+                w * item.value for w, item in zip(weights, group, strict=True)
+            ) / math.fsum(weights)
+            total += math.fsum(
+                w * (item.value - mean) ** 2 for w, item in zip(weights, group, strict=True)
+            )
+        return total
+
+    dof = sum(
+        len(group) - 1
+        for group in groups
+        if len(group) >= 2 and all(0.0 < own_variance(item) < math.inf for item in group)
+    )
+    if dof == 0 or statistic(0.0) <= dof:
+        return 0.0
+    low, high = 0.0, max(own_variance(item) for group in groups for item in group)
+    while statistic(high) > dof:
+        high *= 4.0
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if statistic(middle) > dof else (low, middle)
+        if high - low <= 1e-12 * high:
+            break
+    return high
+
+
+@dataclass(frozen=True, slots=True)
+class RunScatter:
+    """What scatters between runs of one instrument.
+
+    Parameters
+    ----------
+    sigma : float
+        [rad], 0 where the runs agree within their own sigmas.
+    dof : int
+    test : Consistency or None
+    """
+
+    sigma: float
+    dof: int
+    test: Consistency | None
+
+    def applied(self, item: Uncertain, session: str) -> Uncertain:
+        """Add the scatter to one determination."""
+        if self.sigma == 0.0:
+            return item
+        return item.with_part(Source("run-to-run scatter", session, float(self.dof)), self.sigma)
+
+
+def run_scatter(groups: Sequence[Sequence[Uncertain]]) -> RunScatter:
+    """Estimate the scatter between runs from groups of repeated determinations.
+
+    It is taken into account only where the groups disagree at the 5 % level: then honest sigmas
+    need it, and its degrees of freedom are those of the repetitions.
+    """
+    test = consistency(groups)
+    if test is None or test.probability >= SCATTER_GATE:
+        return RunScatter(0.0, 0 if test is None else test.dof, test)
+    return RunScatter(math.sqrt(between_variance(groups)), test.dof, test)

@@ -1,0 +1,242 @@
+"""One occupation of a station: method, sights, set-up, to the gyro azimuth of each target."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from surveyapp.core.automatic import reduce_automatic
+from surveyapp.core.reduction import Reduction
+from surveyapp.core.resolution import reading_resolution, rounding_sigma
+from surveyapp.core.sights import SightSet, eccentric_correction, reduce_sights
+from surveyapp.core.tracking import reduce_tracking
+from surveyapp.core.uncertain import Source, Uncertain
+from surveyapp.domain.instrument import InstrumentCard
+from surveyapp.domain.project import OrientationSession, ResultWarning, Station, grid_distance_m
+from surveyapp.domain.readings import ReadingKind
+from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp_models.angles import wrap_two_pi
+
+ESTIMATORS: Mapping[str, tuple[str, ...]] = {
+    "tracking": ("least-squares", "schuler"),
+    "amplitude": ("least-squares", "amplitude"),
+    "transit": ("least-squares", "transit"),
+    "automatic": ("mean",),
+}
+"""Estimators by method; the first is the default (tracking: from six turning points on)."""
+
+
+@dataclass(frozen=True, slots=True)
+class SightSigma:
+    """Standard deviation of one pointing [rad], its degrees of freedom and its origin."""
+
+    value: float
+    dof: float
+    origin: str
+
+
+@dataclass(frozen=True, slots=True)
+class TargetReduction:
+    """One target of a reduced session.
+
+    Parameters
+    ----------
+    target : str
+    sights : SightSet or None
+        None where the instrument delivered the azimuth.
+    line_reading : Uncertain or None
+        B with the eccentric correction in it [rad].
+    eccentric : float
+        That correction [rad].
+    gyro_azimuth : Uncertain or None
+        A_g = B - N [rad]; None without gyro north.
+    """
+
+    target: str
+    sights: SightSet | None
+    line_reading: Uncertain | None
+    eccentric: float
+    gyro_azimuth: Uncertain | None
+
+
+@dataclass(frozen=True, slots=True)
+class ReducedSession:
+    """A session after everything that needs no other session."""
+
+    session: OrientationSession
+    reduction: Reduction
+    targets: tuple[TargetReduction, ...]
+    warnings: tuple[ResultWarning, ...]
+
+
+def estimator_for(session: OrientationSession, estimator: str | None) -> str | None:
+    """Check that an estimator asked for suits the session's method.
+
+    Raises
+    ------
+    SurveyError
+        If it does not; an automatic gyro knows no estimator and takes none.
+    """
+    if estimator is None or session.method == "automatic":
+        return None
+    allowed = ESTIMATORS[session.method]
+    if estimator in allowed:
+        return estimator
+    raise SurveyError(
+        Problem(
+            what=f"the estimator {estimator} does not suit the method {session.method}",
+            where=f"session {session.id}",
+            found=estimator,
+            expected=" or ".join(allowed),
+            hint="Choose another estimator, or name the session with --session.",
+        )
+    )
+
+
+def reduce_swing(
+    session: OrientationSession,
+    card: InstrumentCard,
+    rng: np.random.Generator,
+    *,
+    latitude: float | None,
+    estimator: str | None,
+) -> Reduction:
+    """Reduce the observation itself by the session's method."""
+    chosen = estimator_for(session, estimator)
+    if session.method == "automatic":
+        return reduce_automatic(session, card)
+    return reduce_tracking(session, card, rng, latitude=latitude, estimator=chosen)
+
+
+def sight_targets(session: OrientationSession) -> tuple[str, ...]:
+    """Names of all targets of a session, its own first."""
+    names = [session.target] if session.target else []
+    kinds = (ReadingKind.BACKSIGHT, ReadingKind.AZIMUTH)
+    names += [row.target for row in session.book.of_kind(*kinds) if row.target]
+    return tuple(dict.fromkeys(names))
+
+
+def collect_sights(session: OrientationSession) -> dict[str, SightSet]:
+    """Reduced sights of every target that was sighted."""
+    found = {}
+    for target in sight_targets(session):
+        sights = reduce_sights(session.book, target, default_target=session.target)
+        if sights is not None:
+            found[target] = sights
+    return found
+
+
+def pooled_sight_sigma(
+    sights: Sequence[SightSet], *, resolution: float, fallback: float | None
+) -> SightSigma:
+    """Standard deviation of one pointing from all sights of one instrument.
+
+    Parameters
+    ----------
+    sights : sequence of SightSet
+        Of every session of the instrument: collimation and tripod drift differ from set-up to
+        set-up and are taken out, the pointing error is one.
+    resolution : float
+        Reading resolution [rad]; rounding is the floor.
+    fallback : float or None
+        The card's sigma of a turning point, which contains a circle reading: an upper bound, used
+        where the sights have no redundancy.
+    """
+    dof = sum(item.dof for item in sights)
+    floor = rounding_sigma(resolution)
+    if dof > 0:
+        sigma = math.sqrt(math.fsum(item.sum_of_squares for item in sights) / dof)
+        return SightSigma(max(sigma, floor), float(dof), "residuals of the sights")
+    if fallback is not None:
+        return SightSigma(max(fallback, floor), math.inf, "the card's reading sigma")
+    return SightSigma(floor, math.inf, "rounding alone")
+
+
+def sight_resolution(session: OrientationSession) -> float:
+    """Resolution of the sights of a session [rad]."""
+    if session.resolution is not None:
+        return session.resolution
+    return reading_resolution(session.book.of_kind(ReadingKind.BACKSIGHT))
+
+
+def eccentric_of(
+    session: OrientationSession, target: str, line_reading: float, stations: Mapping[str, Station]
+) -> tuple[float, float]:
+    """Eccentric correction of a line reading and the 1-sigma of it [rad].
+
+    Raises
+    ------
+    SurveyError
+        If the distance of the marks is not known, or not longer than the offset.
+    """
+    eccentric = session.eccentric
+    if eccentric is None or eccentric.distance_m == 0.0:
+        return 0.0, 0.0
+    if eccentric.at == "target" and target != session.target:
+        return 0.0, 0.0
+    distance = None
+    if target in stations:
+        distance = grid_distance_m(stations[session.station], stations[target])
+    if distance is None or distance <= eccentric.distance_m:
+        raise SurveyError(
+            Problem(
+                what="an eccentric set-up needs the distance of the two marks",
+                where=f"session {session.id}, line {session.station}-{target}",
+                found="no grid positions of both" if distance is None else f"{distance:.3f} m",
+                expected=f"a distance above {eccentric.distance_m:g} m",
+                hint="Give e and n (or lat and lon with a crs) of station and target.",
+            )
+        )
+    ratio = eccentric.distance_m / distance
+    correction = eccentric_correction(
+        line_reading=line_reading, direction=eccentric.direction, ratio=ratio, at=eccentric.at
+    )
+    return correction, (eccentric.sigma_m or 0.0) / distance
+
+
+def reduce_targets(
+    session: OrientationSession,
+    reduction: Reduction,
+    sights: Mapping[str, SightSet],
+    *,
+    sigma: SightSigma,
+    stations: Mapping[str, Station],
+    card: InstrumentCard,
+) -> tuple[TargetReduction, ...]:
+    """Gyro azimuth of every target of a session."""
+    results = []
+    if reduction.azimuth is not None:
+        for target in sight_targets(session):
+            own = reduce_automatic(session, card, target=target).azimuth
+            results.append(TargetReduction(target, None, None, 0.0, own))
+        return tuple(results)
+    for target, item in sights.items():
+        correction, spread = eccentric_of(session, target, item.line_reading, stations)
+        source = Source("sights", session.id, sigma.dof, target)
+        reading = Uncertain(
+            wrap_two_pi(item.line_reading + correction),
+            {source: math.sqrt(item.cofactor) * sigma.value},
+        )
+        if spread > 0.0:
+            reading = reading.with_part(Source("eccentricity", session.id), spread)
+        azimuth = None if reduction.north is None else reading - reduction.north
+        results.append(TargetReduction(target, item, reading, correction, azimuth))
+    return tuple(results)
+
+
+def known_target(session: OrientationSession, stations: Mapping[str, Station]) -> None:
+    """Refuse a sight whose target is no station of the project."""
+    for target in sight_targets(session):
+        if target not in stations:
+            raise SurveyError(
+                Problem(
+                    what="a sight whose target is no station",
+                    where=f"session {session.id}",
+                    found=target,
+                    expected="the name of a [[station]]",
+                    hint=nearest_names(target, stations),
+                )
+            )

@@ -1,0 +1,1 @@
+"""Distributions and tests, exact and without scipy, so that ``orient`` starts at once."""

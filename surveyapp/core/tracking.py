@@ -1,0 +1,287 @@
+"""The reversal-point method: turning points of a tracked swing to gyro north.
+
+Source: physics.md 1.4 (tracking: N = N_obs - lambda mu d) and 2.1.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surveyapp.core.goodness import FitTest, goodness_of_fit
+from surveyapp.core.gyrofit import SwingFit, design, fit_swing, schuler_means, unwrap
+from surveyapp.core.reduction import (
+    ReadingSigma,
+    Reduction,
+    need_points,
+    reading_sigma,
+    tape_zero_parts,
+)
+from surveyapp.core.resolution import reading_resolution
+from surveyapp.core.sights import moments
+from surveyapp.core.tapezero import (
+    TapeZero,
+    TapeZeroCoefficient,
+    reduce_tape_zero,
+    tape_zero_coefficient,
+)
+from surveyapp.core.uncertain import Source, Uncertain
+from surveyapp.domain.instrument import InstrumentCard
+from surveyapp.domain.project import OrientationSession, ResultWarning
+from surveyapp.domain.readings import Reading, ReadingKind, Side
+from surveyapp.domain.results import PointResult
+from surveyapp.errors import Problem, SurveyError
+from surveyapp_models.angles import RHO_ARCSEC, wrap_two_pi
+
+Floats = NDArray[np.float64]
+
+MIN_POINTS = 3
+LEAST_SQUARES_FROM = 6
+
+
+@dataclass(frozen=True, slots=True)
+class TurningPoints:
+    """Turning points of one run, ready for estimation.
+
+    Parameters
+    ----------
+    rows : tuple of Reading
+    values : ndarray, shape (n,)
+        [rad], unwrapped relative to ``origin``.
+    index : ndarray, shape (n,)
+        Number of each point, missed ones counted.
+    sides : ndarray, shape (n,)
+        +1 right, -1 left.
+    origin : float
+        First reading [rad].
+    resolution : float
+        [rad].
+    """
+
+    rows: tuple[Reading, ...]
+    values: Floats
+    index: Floats
+    sides: Floats
+    origin: float
+    resolution: float
+
+
+def turning_points(
+    session: OrientationSession, kind: ReadingKind = ReadingKind.REVERSAL
+) -> TurningPoints:
+    """Collect the live turning points of one session; missed ones count in the index."""
+    swing = session.book.of_kind(kind, ReadingKind.MISSED)
+    numbered = [(i, row) for i, row in enumerate(swing) if row.kind is kind]
+    rows = tuple(row for _, row in numbered)
+    need_points(session, found=len(rows), needed=MIN_POINTS, kind=kind.value)
+    index = np.array([i for i, _ in numbered], dtype=np.float64)
+    readings = np.array([row.value for row in rows], dtype=np.float64)
+    sides = np.array([1.0 if row.side is Side.RIGHT else -1.0 for row in rows])
+    angular = kind is ReadingKind.REVERSAL
+    stated = session.resolution if angular else None
+    return TurningPoints(
+        rows=rows,
+        values=unwrap(readings) if angular else readings - readings[0],
+        index=index - index[0],
+        sides=sides,
+        origin=float(readings[0]),
+        resolution=stated if stated is not None else reading_resolution(rows),
+    )
+
+
+def period_from_times(rows: Sequence[Reading], index: Floats) -> float | None:
+    """Full period [s] from the moments of the turning points, None without them."""
+    times = moments(rows)
+    if times is None or times.size < 2 or index[-1] == index[0]:
+        return None
+    slope = float(np.polyfit(index, times - times[0], 1)[0])
+    return 2.0 * slope if slope > 0.0 else None
+
+
+def reduce_tracking(
+    session: OrientationSession,
+    card: InstrumentCard,
+    rng: np.random.Generator,
+    *,
+    latitude: float | None,
+    estimator: str | None,
+) -> Reduction:
+    """Reduce one session of turning points.
+
+    Parameters
+    ----------
+    session : OrientationSession
+    card : InstrumentCard
+    rng : numpy.random.Generator
+        For the null distributions of the tests of fit.
+    latitude : float or None
+        [rad].
+    estimator : str or None
+        ``least-squares`` or ``schuler``; None chooses least squares from six points on.
+
+    Raises
+    ------
+    SurveyError
+        If there are fewer than three turning points, or no three consecutive ones for Schuler, or
+        if the damped fit does not converge.
+    """
+    points = turning_points(session)
+    chosen = estimator or (
+        "least-squares" if points.values.size >= LEAST_SQUARES_FROM else "schuler"
+    )
+    fit = _fit(session, points)
+    means, weights = schuler_means(points.values, points.index)
+    if chosen == "schuler" and means.size == 0:
+        if estimator is not None:
+            raise SurveyError(_no_triple(session))
+        chosen = "least-squares"
+    if chosen == "schuler":
+        observed, norm = float(means.mean()), float(np.sqrt(weights @ weights))
+    else:
+        observed, norm = fit.north, math.sqrt(fit.cofactor[0, 0])
+    sigma = reading_sigma(
+        count=points.values.size,
+        variance=fit.variance,
+        dof=fit.dof,
+        card_sigma=card.sigma.reversal,
+        resolution=points.resolution,
+    )
+    zero, coefficient, correction, warnings = tape_zero_of(session, card, points.rows, latitude)
+    north = Uncertain(
+        points.origin + observed,
+        {Source("turning points", session.id, sigma.dof): norm * sigma.value},
+    )
+    return Reduction(
+        estimator=chosen,
+        north=north if correction is None else north + correction,
+        points_used=points.values.size,
+        dof=fit.dof,
+        sigma_source=sigma.origin,
+        reading_sigma=sigma.value if math.isfinite(sigma.value) else None,
+        residual_rms=fit.residual_rms,
+        amplitude=fit.amplitude,
+        damping_ratio=fit.damping_ratio,
+        period_s=period_from_times(points.rows, points.index),
+        tape_zero=zero,
+        coefficient=coefficient,
+        tape_zero_correction=_correction_value(zero, correction),
+        tests=_tests(points, fit, rng, card),
+        points=_point_results(points, fit),
+        schuler_means=tuple(wrap_two_pi(points.origin + mean) for mean in means.tolist()),
+        warnings=(*warnings, *_sigma_warnings(session, sigma)),
+    )
+
+
+def _fit(session: OrientationSession, points: TurningPoints) -> SwingFit:
+    fit = fit_swing(points.values, points.index, points.sides)
+    if fit.converged or points.values.size < LEAST_SQUARES_FROM:
+        return fit
+    raise SurveyError(
+        Problem(
+            what="the damped swing does not fit: the turning points do not swing about one middle",
+            where=f"session {session.id}, {session.book_path}",
+            found=f"{points.values.size} turning points whose amplitude does not decay smoothly",
+            expected="readings alternating about north with slowly falling amplitude",
+            hint="Look for a mistyped degree or a missed turning point.",
+        )
+    )
+
+
+def _no_triple(session: OrientationSession) -> Problem:
+    return Problem(
+        what="no three consecutive turning points: there is no Schuler mean",
+        where=f"session {session.id}, {session.book_path}",
+        expected="three turning points without a missed one between",
+        hint="Use the estimator least-squares: it bridges missed points.",
+    )
+
+
+def tape_zero_of(
+    session: OrientationSession,
+    card: InstrumentCard,
+    swing: Sequence[Reading],
+    latitude: float | None,
+) -> tuple[TapeZero | None, TapeZeroCoefficient | None, Uncertain | None, list[ResultWarning]]:
+    """Tape zero of a session, its coefficient, the correction with its error, and warnings."""
+    zero = reduce_tape_zero(session.book, swing)
+    coefficient = tape_zero_coefficient(card, latitude)
+    if zero is None:
+        text = f"session {session.id}: no tape zero was observed"
+        if coefficient is not None and card.tape_zero.limit_div is not None:
+            worst = abs(coefficient.value) * card.tape_zero.limit_div * RHO_ARCSEC
+            text += f"; at the card's limit of {card.tape_zero.limit_div:g} div it moves north by "
+            text += f'{worst:.0f}"'
+        return None, coefficient, None, [ResultWarning("no_tape_zero", text)]
+    warnings = []
+    if zero.interpolation == "single":
+        text = f"session {session.id}: tape zero observed on one side of the run only"
+        warnings.append(ResultWarning("tape_zero_one_sided", text))
+    if coefficient is None:
+        text = (
+            f"session {session.id}: the tape zero of {zero.value_div:+.3f} div is known, but the "
+            "card states neither torsion ratio and scale value nor a correction: gyro north is "
+            "not corrected"
+        )
+        return zero, None, None, [*warnings, ResultWarning("tape_zero_correction_unknown", text)]
+    rows = session.book.of_kind(ReadingKind.TAPE_ZERO)
+    correction = tape_zero_parts(
+        session,
+        zero,
+        coefficient,
+        scale_sigma=card.sigma.scale_div,
+        scale_resolution=reading_resolution(rows),
+    )
+    return zero, coefficient, correction, warnings
+
+
+def _correction_value(zero: TapeZero | None, correction: Uncertain | None) -> float | None:
+    if correction is not None:
+        return correction.value
+    return 0.0 if zero is None else None
+
+
+def _tests(
+    points: TurningPoints, fit: SwingFit, rng: np.random.Generator, card: InstrumentCard
+) -> tuple[FitTest, ...]:
+    jacobian = design(
+        points.index, points.sides, amplitude=fit.amplitude, log_decrement=fit.log_decrement
+    )
+    return goodness_of_fit(
+        fit.residuals, jacobian, rng, sigma=card.sigma.reversal, resolution=points.resolution
+    )
+
+
+def _point_results(points: TurningPoints, fit: SwingFit) -> tuple[PointResult, ...]:
+    return tuple(
+        PointResult(
+            seq=row.seq,
+            index=int(index),
+            side="R" if side > 0 else "L",
+            observed=wrap_two_pi(points.origin + value),
+            fitted=wrap_two_pi(points.origin + value - residual),
+            residual=residual,
+            elapsed_s=row.elapsed_s,
+        )
+        for row, index, side, value, residual in zip(
+            points.rows,
+            points.index.tolist(),
+            points.sides.tolist(),
+            points.values.tolist(),
+            fit.residuals.tolist(),
+            strict=True,
+        )
+    )
+
+
+def _sigma_warnings(session: OrientationSession, sigma: ReadingSigma) -> list[ResultWarning]:
+    if sigma.origin == "card":
+        text = f"session {session.id}: too few turning points to judge by: sigma is the card's"
+        return [ResultWarning("sigma_from_card", text)]
+    if sigma.origin is None:
+        text = f"session {session.id}: neither residuals nor card tell a sigma"
+        return [ResultWarning("sigma_unknown", text)]
+    return []

@@ -1,0 +1,121 @@
+"""A value with its sources of error, kept apart until the end.
+
+Every quantity of the reduction carries its error as signed contributions, one per independent
+source. Sums and differences add the contributions of the same source with their signs, so that
+what two quantities share (the deflection at one station, a torsion ratio, a constant) cancels or
+adds as it does in nature; the budget of the grid azimuth is read off at the end.
+
+Source of the effective degrees of freedom: Welch-Satterthwaite, JCGM 100:2008 (GUM), G.4.1.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+from surveyapp.core.statistics.distributions import student_quantile
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """One independent source of error.
+
+    Parameters
+    ----------
+    name : str
+        The kind of error in the trade's words; rows of the budget are made by it.
+    entity : str
+        Whose error it is: the id of a session, a station, an instrument, a line.
+    dof : float
+        Degrees of freedom of its estimate; infinite where it was stated beforehand.
+    detail : str
+        Tells several errors of one kind and entity apart.
+    """
+
+    name: str
+    entity: str
+    dof: float = math.inf
+    detail: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Uncertain:
+    """A value [rad] with its contributions [rad].
+
+    Parameters
+    ----------
+    value : float
+        Not wrapped: wrapping is the business of whoever prints it.
+    parts : mapping of Source to float
+        Signed one-sigma contribution of each independent source.
+    """
+
+    value: float
+    parts: Mapping[Source, float] = field(default_factory=dict)
+
+    @property
+    def variance(self) -> float:
+        """Sum of the squared contributions [rad^2]."""
+        return math.fsum(part * part for part in self.parts.values())
+
+    @property
+    def sigma(self) -> float:
+        """Standard deviation [rad]."""
+        return math.sqrt(self.variance)
+
+    @property
+    def dof(self) -> float:
+        """Effective degrees of freedom (Welch-Satterthwaite)."""
+        denominator = math.fsum(
+            part**4 / source.dof for source, part in self.parts.items() if source.dof < math.inf
+        )
+        return self.variance**2 / denominator if denominator > 0.0 else math.inf
+
+    @property
+    def interval95(self) -> float:
+        """Half-width of the 95 % interval [rad]."""
+        return student_quantile(0.975, max(self.dof, 1.0)) * self.sigma
+
+    def only(self, *names: str) -> Uncertain:
+        """Keep the contributions of the named sources alone."""
+        return Uncertain(self.value, {s: p for s, p in self.parts.items() if s.name in names})
+
+    def without(self, *names: str) -> Uncertain:
+        """Drop the contributions of the named sources."""
+        return Uncertain(self.value, {s: p for s, p in self.parts.items() if s.name not in names})
+
+    def shifted(self, offset: float) -> Uncertain:
+        """Add an exact offset [rad]."""
+        return Uncertain(self.value + offset, self.parts)
+
+    def with_part(self, source: Source, contribution: float) -> Uncertain:
+        """Add one contribution [rad]."""
+        return combine([(1.0, self), (1.0, Uncertain(0.0, {source: contribution}))])
+
+    def __add__(self, other: Uncertain) -> Uncertain:
+        return combine([(1.0, self), (1.0, other)])
+
+    def __sub__(self, other: Uncertain) -> Uncertain:
+        return combine([(1.0, self), (-1.0, other)])
+
+
+def combine(terms: Iterable[tuple[float, Uncertain]]) -> Uncertain:
+    """Linear combination of uncertain values.
+
+    Parameters
+    ----------
+    terms : iterable of (factor, Uncertain)
+
+    Returns
+    -------
+    Uncertain
+        Contributions of one source are added with their signs before anything is squared.
+    """
+    value = 0.0
+    parts: dict[Source, float] = {}
+    for factor, term in terms:
+        value += factor * term.value
+        for source, part in term.parts.items():
+            parts[source] = parts.get(source, 0.0) + factor * part
+    return Uncertain(value, {s: p for s, p in parts.items() if p != 0.0})
