@@ -1,1 +1,137 @@
-"""What scripts call: the same functions as the command line, on values instead of text."""
+"""What scripts call: the same functions as the command line, on values instead of text.
+
+Every function returns a frozen dataclass with ``to_dict()``, the JSON of the command of its name.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from surveyapp import __version__
+from surveyapp.domain.instrument import InstrumentCard
+from surveyapp.domain.project import Project
+from surveyapp.domain.results import Check, OrientationResult
+from surveyapp.errors import Problem, SurveyError, nearest_names
+
+if TYPE_CHECKING:
+    import numpy as np
+
+Folder = str | os.PathLike[str]
+
+SOFTWARE = f"surveyapp {__version__}"
+
+
+def open_project(folder: Folder) -> Project:
+    """Read a project folder.
+
+    Raises
+    ------
+    SurveyError
+        With all problems of project.toml and of every book together.
+    """
+    from surveyapp.io.project import read_project
+
+    return read_project(Path(folder))
+
+
+def generator_of(project: Project) -> np.random.Generator:
+    """Random generator whose seed is the digest of the input: the same input, the same result."""
+    import numpy as np
+
+    return np.random.default_rng(int(project.digest[:16] or "0", 16))
+
+
+def orient(
+    project: Project | Folder,
+    *,
+    session: str | None = None,
+    line: str | None = None,
+    estimator: str | None = None,
+) -> OrientationResult:
+    """Reduce the sessions of a project and orient its lines.
+
+    Parameters
+    ----------
+    project : Project or path
+    session : str or None
+        Show this session alone, and orient its lines from it alone; constants come from all
+        calibration sessions.
+    line : str or None
+        Show this line (``station-target``) alone.
+    estimator : str or None
+        ``least-squares``, ``schuler``, ``amplitude`` or ``transit``; None for the default.
+
+    Raises
+    ------
+    SurveyError
+        If the project cannot be used, if a session or line of that name does not exist, or if a
+        line asked for has no azimuth.
+    """
+    from dataclasses import replace
+
+    from surveyapp.core.orientation import orient_project
+    from surveyapp.core.outcome import outcome
+
+    if not isinstance(project, Project):
+        project = open_project(project)
+    if session is not None:
+        _require(session, [item.id for item in project.sessions], "session")
+    computed = orient_project(project, generator_of(project), estimator=estimator, only=session)
+    result = outcome(computed, software=SOFTWARE, only=session)
+    if line is not None:
+        names = {f"{item.station}-{item.target}": item for item in result.lines}
+        _require(line, names, "line")
+        if names[line].true_azimuth is None:
+            raise SurveyError(
+                Problem(
+                    what=f"the azimuth of line {line} cannot be determined",
+                    where=f"instrument {names[line].instrument}",
+                    found="no instrument constant",
+                    expected="calibration sessions on a known line, or a known constant",
+                    hint="Add a calibration session, or constant = { arcsec, sigma_arcsec }.",
+                )
+            )
+        result = replace(result, lines=(names[line],))
+    return result
+
+
+def _require(name: str, known: Iterable[str], kind: str) -> None:
+    names = list(known)
+    if name not in names:
+        raise SurveyError(
+            Problem(
+                what=f"there is no {kind} of this name",
+                where=f"--{kind}",
+                found=name,
+                expected=f"the name of a {kind} of the project",
+                hint=nearest_names(name, names),
+            )
+        )
+
+
+def check(project: Project | Folder) -> tuple[Check, ...]:
+    """Apply every limit and test that the project's data can answer."""
+    return orient(project).checks
+
+
+def models() -> tuple[InstrumentCard, ...]:
+    """Every installed instrument card."""
+    from surveyapp.io.cards import installed_card_ids
+
+    return tuple(model(identity) for identity in installed_card_ids())
+
+
+def model(identity: str) -> InstrumentCard:
+    """One instrument card by id, or by the path of a file.
+
+    Raises
+    ------
+    SurveyError
+        If there is none; the nearest id is named.
+    """
+    from surveyapp.io.cards import read_card
+
+    return read_card(identity, base=Path(), override={})

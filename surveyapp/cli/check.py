@@ -1,0 +1,27 @@
+"""``surveyapp check``: apply every limit and test that the project's data can answer."""
+
+from __future__ import annotations
+
+import argparse
+
+from surveyapp.cli.orient import checks_text
+from surveyapp.cli.output import print_json
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    parser.add_argument("folder", metavar="DIR", help="project folder")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Check and print; 1 if a confirmed limit or test is not met."""
+    from surveyapp import api
+
+    checks = api.check(options.folder)
+    if options.json:
+        rows = [check.to_dict() for check in checks]
+        print_json({"schema": "surveyapp.check/1", "checks": rows})
+    else:
+        print(checks_text(checks) or "Nothing in this project can be checked yet.")
+    return int(any(check.confirmed and check.passed is False for check in checks))

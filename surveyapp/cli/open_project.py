@@ -1,0 +1,26 @@
+"""``surveyapp open DIR``, and ``surveyapp`` alone: the terminal screens."""
+
+from __future__ import annotations
+
+import argparse
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    parser.add_argument("folder", metavar="DIR", help="project folder")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Open the screens on one project; bad input is told before the screen is taken."""
+    from surveyapp import api
+    from surveyapp.tui.app import run_app
+
+    api.open_project(options.folder)
+    return run_app(options.folder)
+
+
+def run_home() -> int:
+    """Open the screens without a project."""
+    from surveyapp.tui.app import run_app
+
+    return run_app(None)

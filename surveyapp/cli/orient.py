@@ -1,0 +1,174 @@
+"""``surveyapp orient``: field book to gyro north, constant and grid azimuth."""
+
+from __future__ import annotations
+
+import argparse
+
+from surveyapp.cli.output import heading, number, print_json, table
+from surveyapp.domain.results import (
+    AngleResult,
+    Check,
+    LineResult,
+    OrientationResult,
+    finite,
+    to_arcsec,
+)
+from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, format_angle
+
+ESTIMATORS = ("least-squares", "schuler", "amplitude", "transit")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    parser.add_argument("folder", metavar="DIR", help="project folder")
+    parser.add_argument("--session", metavar="ID", help="one session; its line from it alone")
+    parser.add_argument("--line", metavar="STATION-TARGET", help="one line; an error if impossible")
+    parser.add_argument("--estimator", choices=ESTIMATORS, help="instead of the method's default")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Orient and print; 1 if a confirmed limit or test is not met."""
+    from surveyapp import api
+
+    project = api.open_project(options.folder)
+    result = api.orient(
+        project, session=options.session, line=options.line, estimator=options.estimator
+    )
+    if options.json:
+        print_json(result.to_dict())
+    else:
+        print(orientation_text(result, project.angle_unit))
+    return 0 if result.passed else 1
+
+
+def orientation_text(result: OrientationResult, unit: AngleUnit) -> str:
+    """The whole result as readable tables, angles in the project's unit."""
+    parts = [heading(f"{result.project}: orientation")]
+    parts += [_sessions(result, unit), _constants(result)]
+    parts += [_line(line, unit) for line in result.lines]
+    parts += [checks_text(result.checks), warnings_text(result)]
+    return "\n\n".join(part for part in parts if part)
+
+
+def _angle(item: AngleResult | None, unit: AngleUnit) -> tuple[str, str]:
+    if item is None:
+        return "-", "-"
+    return format_angle(item.value, unit), number(to_arcsec(item.sigma))
+
+
+def _sessions(result: OrientationResult, unit: AngleUnit) -> str:
+    head = ["session", "method", "points", "gyro north", '±"', "line", "gyro azimuth", '±"', "rms"]
+    rows = []
+    for session in result.sessions:
+        north, north_sigma = _angle(session.gyro_north, unit)
+        method = f"{session.method}, {session.estimator}"
+        first = [session.id, method, str(session.points_used), north, north_sigma]
+        rms = number(to_arcsec(session.residual_rms))
+        if not session.targets:
+            rows.append([*first, "-", "-", "-", rms])
+        for target in session.targets:
+            azimuth, sigma = _angle(target.gyro_azimuth, unit)
+            line = f"{session.station}-{target.target}"
+            rows.append([*first, line, azimuth, sigma, rms])
+            first = ["", "", "", "", ""]
+            rms = ""
+    return "Sessions\n" + table(head, rows) if rows else ""
+
+
+def _constants(result: OrientationResult) -> str:
+    rows = []
+    for constant in result.constants:
+        rows += [
+            [
+                constant.instrument,
+                f"{line.station}-{line.target}",
+                number(to_arcsec(line.value), 2, sign=True),
+                number(to_arcsec(line.sigma), 2),
+                str(line.count),
+                str(line.rounds),
+                number(line.distance_m, 1),
+            ]
+            for line in constant.by_line
+        ]
+        if constant.value is not None:
+            stable = {True: "stable", False: "NOT STABLE", None: ""}[constant.stable]
+            rows.append(
+                [
+                    constant.instrument,
+                    f"{constant.choice} {stable}".strip(),
+                    number(to_arcsec(constant.value), 2, sign=True),
+                    number(to_arcsec(constant.sigma), 2),
+                    str(constant.count),
+                    "",
+                    "",
+                ]
+            )
+    head = ["instrument", "line", 'constant "', '±"', "n", "rounds", "length m"]
+    return "Instrument constant (true minus gyro)\n" + table(head, rows) if rows else ""
+
+
+def _line(line: LineResult, unit: AngleUnit) -> str:
+    rows: list[list[str]] = []
+
+    def angle(label: str, item: AngleResult | None) -> None:
+        if item is not None:
+            value, sigma = _angle(item, unit)
+            interval = number(to_arcsec(finite(item.interval95)))
+            rows.append([label, value, sigma, interval])
+
+    def small(label: str, value: float | None, sigma: float | None = None) -> None:
+        if value is not None:
+            rows.append([label, small_angle(value), number(to_arcsec(sigma)), ""])
+
+    angle("gyro azimuth", line.gyro_azimuth)
+    small(f"+ constant ({line.constant_choice})", line.constant, line.constant_sigma)
+    angle("= true azimuth (astronomic)", line.true_azimuth)
+    small("- deflection of the vertical", line.deflection)
+    small("- meridian convergence", line.convergence)
+    small("- arc-to-chord", line.arc_to_chord)
+    angle("= grid azimuth", line.grid_azimuth)
+    if line.direction_from_south is not None:
+        text = format_angle(line.direction_from_south, unit)
+        rows.append(["direction from south", text, "", ""])
+    head = [f"line {line.station}-{line.target}", "", '±"', '95 % ±"']
+    text = table(head, rows, indent=0)
+    if line.budget:
+        budget = [
+            [item.source, number(to_arcsec(item.sigma), 2), f"{item.share:.0%}"]
+            for item in line.budget
+        ]
+        text += "\n" + table(["  budget", '±"', "share"], [["  " + b[0], *b[1:]] for b in budget])
+    return text
+
+
+def small_angle(value: float) -> str:
+    """A small angle [rad] with its sign: seconds, from a minute on minutes and seconds."""
+    seconds = abs(value) * RHO_ARCSEC
+    sign = "-" if value < 0.0 else "+"
+    minutes, rest = divmod(round(seconds, 2), 60.0)
+    return f"{sign}{minutes:.0f}'{rest:05.2f}\"" if minutes else f'{sign}{rest:.2f}"'
+
+
+def checks_text(checks: tuple[Check, ...]) -> str:
+    """The checks, one a line, the verdict as a word."""
+    if not checks:
+        return ""
+    words = {True: "met", False: "NOT MET", None: "open"}
+    rows = []
+    for check in checks:
+        verdict = words[check.passed]
+        if check.passed is False and not check.confirmed:
+            verdict = "warning"
+        limit = "-" if check.limit is None else f"{check.limit:.4g}"
+        value = "-" if check.value is None else f"{check.value:.4g}"
+        rows.append([verdict, check.rule, check.where, value, limit, check.unit, check.clause])
+    head = ["verdict", "check", "where", "value", "limit", "unit", "clause"]
+    return "Checks\n" + table(head, rows)
+
+
+def warnings_text(result: OrientationResult) -> str:
+    """The warnings, one a line."""
+    if not result.warnings:
+        return ""
+    return "Warnings\n" + "\n".join(f"  {item.code}: {item.text}" for item in result.warnings)

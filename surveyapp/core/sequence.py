@@ -1,0 +1,47 @@
+"""The order of sessions: when each took place, before or after the survey."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from surveyapp.core.instrument_constant import Phase
+from surveyapp.core.sights import moments
+from surveyapp.domain.project import OrientationSession, Project
+from surveyapp.domain.readings import SWING_KINDS
+
+
+def session_moments(project: Project, instrument: str) -> dict[str, tuple[float, int]]:
+    """When each session of an instrument took place: comparable keys, ties in file order.
+
+    Times if every session has them, else dates, else ``order``, else the order of the file.
+    """
+    own = [session for session in project.sessions if session.instrument == instrument]
+    stamps = {session.id: _timestamp(session) for session in own}
+    if any(stamp is None for stamp in stamps.values()):
+        stamps = {s.id: None if s.date is None else s.date.toordinal() * 86400.0 for s in own}
+        if len(set(stamps.values())) == 1 and all(s.order is not None for s in own):
+            stamps = {session.id: session.order for session in own}
+    if any(stamp is None for stamp in stamps.values()):
+        stamps = {session.id: session.order for session in own}
+    if any(stamp is None for stamp in stamps.values()):
+        stamps = {session.id: 0.0 for session in own}
+    return {
+        session.id: (stamp if (stamp := stamps[session.id]) is not None else 0.0, place)
+        for place, session in enumerate(own)
+    }
+
+
+def _timestamp(session: OrientationSession) -> float | None:
+    rows = [row for row in session.book.live if row.kind in SWING_KINDS and row.time is not None]
+    times = moments(rows) if rows and all(row.elapsed_s is None for row in rows) else None
+    if times is not None:
+        return float(times.mean())
+    stamps = [row.time.timestamp() for row in rows if row.time is not None]
+    return sum(stamps) / len(stamps) if stamps else None
+
+
+def phase_of(key: tuple[float, int], surveys: Sequence[tuple[float, int]]) -> Phase:
+    """Tell whether a session stands before, between or after the survey sessions."""
+    if not surveys or key < min(surveys):
+        return "before"
+    return "after" if key > max(surveys) else "between"
