@@ -1,1 +1,1 @@
-"""The terminal screens; all numbers come from surveyapp.api."""
+"""Terminal screens: what a surveyor sees and types. No arithmetic: numbers come from the API."""

@@ -1,0 +1,155 @@
+"""One project: its sessions, lines, constants, checks and warnings.
+
+The screen reads and shows. The computation runs in a thread on the project as it was read; its
+result comes back as a message.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from rich.text import Text
+from textual import work
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.message import Message
+from textual.screen import Screen
+from textual.widgets import DataTable, Footer, TabbedContent, TabPane
+
+from surveyapp import api
+from surveyapp.domain.project import Project
+from surveyapp.domain.results import OrientationResult
+from surveyapp.errors import SurveyError
+from surveyapp.tui import texts
+from surveyapp.tui.views.checks import CHECK_COLUMNS, check_rows, check_texts, summary
+from surveyapp.tui.views.constants import CONSTANT_COLUMNS, constant_rows
+from surveyapp.tui.views.lines import LINE_COLUMNS, budget_rows, chain_rows, line_rows
+from surveyapp.tui.views.session import SESSION_COLUMNS, session_details, session_rows
+from surveyapp.tui.widgets.problems import Problems
+from surveyapp.tui.widgets.records import Records, pairs_text, table_text
+from surveyapp.tui.widgets.titlebar import TitleBar
+
+PAGES = ("sessions", "lines", "constants", "checks", "warnings")
+
+
+class ProjectScreen(Screen[None]):
+    """Shows one project folder."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("1", f"page('{PAGES[0]}')", texts.KEY_TABS, key_display="1-5"),
+        *[Binding(str(i), f"page('{name}')", show=False) for i, name in enumerate(PAGES[1:], 2)],
+        Binding("f5", "reload", texts.KEY_RELOAD),
+        Binding("escape", "back", texts.KEY_BACK),
+    ]
+
+    class Oriented(Message):
+        """The computation has ended."""
+
+        def __init__(self, project: Project, result: OrientationResult) -> None:
+            super().__init__()
+            self.project = project
+            self.result = result
+
+    class Failed(Message):
+        """The project cannot be used."""
+
+        def __init__(self, error: SurveyError) -> None:
+            super().__init__()
+            self.error = error
+
+    def __init__(self, folder: str, name: str) -> None:
+        super().__init__()
+        self.folder = folder
+        self.title_text = texts.PROJECT_TITLE.format(name=name)
+        self.project: Project | None = None
+        self.result: OrientationResult | None = None
+
+    def compose(self) -> ComposeResult:
+        """Title, pages, keys."""
+        yield TitleBar(self.title_text)
+        with TabbedContent():
+            with TabPane(texts.TAB_SESSIONS, id="sessions"):
+                yield Records(SESSION_COLUMNS, empty=texts.NO_SESSIONS, details=self._session)
+            with TabPane(texts.TAB_LINES, id="lines"):
+                yield Records(LINE_COLUMNS, empty=texts.NO_LINES, details=self._line)
+            with TabPane(texts.TAB_CONSTANTS, id="constants"):
+                yield Records(CONSTANT_COLUMNS, empty=texts.NO_CONSTANTS)
+            with TabPane(texts.TAB_CHECKS, id="checks"):
+                yield Records(CHECK_COLUMNS, empty=texts.NO_CHECK_ROWS, details=self._check)
+            with TabPane(texts.TAB_WARNINGS, id="warnings"):
+                yield Records(("",), empty=texts.NO_WARNINGS, details=self._warning)
+        yield Footer()
+
+    def on_mount(self) -> None:
+        """Begin to compute."""
+        self.action_reload()
+
+    def action_reload(self) -> None:
+        """Read the folder again."""
+        self.query_one(TitleBar).state = texts.COMPUTING
+        self.compute()
+
+    @work(thread=True, exclusive=True)
+    def compute(self) -> None:
+        """Orient in a thread; the result comes as a message."""
+        try:
+            project = api.open_project(self.folder)
+            self.post_message(self.Oriented(project, api.orient(project)))
+        except SurveyError as error:
+            self.post_message(self.Failed(error))
+
+    def on_project_screen_oriented(self, message: Oriented) -> None:
+        """Fill the pages."""
+        self.query(Problems).remove()
+        self.query_one(TabbedContent).display = True
+        self.project, self.result = message.project, message.result
+        unit = message.project.angle_unit
+        result = message.result
+        self.query_one(TitleBar).state = summary(result)
+        rows: dict[str, list[tuple[str, ...]]] = {
+            "sessions": session_rows(result, unit),
+            "lines": line_rows(result, unit),
+            "constants": constant_rows(result),
+            "checks": check_rows(result),
+            "warnings": [(warning.code,) for warning in result.warnings],
+        }
+        for name, values in rows.items():
+            self.query_one(f"#{name} Records", Records).show(values)
+
+    async def on_project_screen_failed(self, message: Failed) -> None:
+        """Say in words what is wrong."""
+        await self.query(Problems).remove()
+        self.query_one(TitleBar).state = ""
+        self.query_one(TabbedContent).display = False
+        await self.mount(Problems(message.error), before=self.query_one(Footer))
+
+    def action_page(self, name: str) -> None:
+        """Show one page."""
+        pages = self.query_one(TabbedContent)
+        if pages.display:
+            pages.active = name
+            self.query_one(f"#{name} DataTable", DataTable).focus()
+
+    async def action_back(self) -> None:
+        """Leave the project; nothing is unsaved here."""
+        await self.app.run_action("leave")
+
+    def _session(self, row: int) -> Text:
+        if self.result is None or self.project is None:
+            return Text()
+        return pairs_text(session_details(self.result.sessions[row], self.project.angle_unit))
+
+    def _line(self, row: int) -> Text:
+        if self.result is None or self.project is None:
+            return Text()
+        line = self.result.lines[row]
+        text = table_text(chain_rows(line, self.project.angle_unit))
+        text.append("\n")
+        head = (texts.D_BUDGET, texts.COL_SIGMA, texts.D_SHARE)
+        return text.append_text(table_text([head, *budget_rows(line)]))
+
+    def _check(self, row: int) -> Text:
+        return Text() if self.result is None else Text(check_texts(self.result)[row])
+
+    def _warning(self, row: int) -> Text:
+        return Text() if self.result is None else Text(self.result.warnings[row].text)

@@ -1,0 +1,60 @@
+"""Checks as rows of text; the verdict is a word and never a colour alone."""
+
+from __future__ import annotations
+
+from surveyapp.domain.results import Check, OrientationResult
+from surveyapp.tui import texts
+
+CHECK_COLUMNS = (
+    texts.COL_VERDICT,
+    texts.COL_CHECK,
+    texts.COL_WHERE,
+    texts.COL_VALUE,
+    texts.COL_LIMIT,
+)
+
+
+def verdict_word(check: Check) -> str:
+    """Met, NOT MET, warning (an unconfirmed limit) or open."""
+    if check.passed is None:
+        return texts.OPEN
+    if check.passed:
+        return texts.MET
+    return texts.NOT_MET if check.confirmed else texts.WARNS
+
+
+def check_rows(result: OrientationResult) -> list[tuple[str, ...]]:
+    """Each check in one row, what is not met first."""
+    ordered = sorted(result.checks, key=lambda check: check.passed is not False)
+    return [
+        (
+            verdict_word(check),
+            check.rule,
+            check.where,
+            _quantity(check.value, check.unit),
+            _quantity(check.limit, check.unit),
+        )
+        for check in ordered
+    ]
+
+
+def check_texts(result: OrientationResult) -> list[str]:
+    """Sentence and clause of each check, in the order of ``check_rows``."""
+    ordered = sorted(result.checks, key=lambda check: check.passed is not False)
+    return [f"{check.text}\n{check.clause}" for check in ordered]
+
+
+def _quantity(value: float | None, unit: str) -> str:
+    if value is None:
+        return texts.NOT_DETERMINED
+    mark = {"arcsec": '"'}.get(unit, f" {unit}" if unit else "")
+    return f"{value:.4g}{mark}"
+
+
+def summary(result: OrientationResult) -> str:
+    """All confirmed checks in half a sentence."""
+    confirmed = [check for check in result.checks if check.confirmed and check.passed is not None]
+    failed = [check for check in confirmed if not check.passed]
+    if failed:
+        return texts.SOME_NOT_MET.format(count=len(failed), total=len(confirmed))
+    return texts.ALL_MET if confirmed else texts.NO_CHECKS

@@ -1,0 +1,40 @@
+"""What is wrong with an input, in words: every problem with what was found and what to do."""
+
+from __future__ import annotations
+
+from rich.text import Text
+from textual.app import ComposeResult
+from textual.containers import VerticalScroll
+from textual.widgets import Static
+
+from surveyapp.errors import SurveyError
+from surveyapp.tui import texts
+
+
+class Problems(VerticalScroll):
+    """All problems of an error, one below the other."""
+
+    def __init__(self, error: SurveyError) -> None:
+        super().__init__()
+        self.error = error
+
+    def compose(self) -> ComposeResult:
+        """The problems as text."""
+        yield Static(problems_text(self.error), markup=False)
+
+
+def problems_text(error: SurveyError) -> Text:
+    """Every problem as a paragraph."""
+    text = Text()
+    text.append(f"{texts.CANNOT_USE}\n\n", style="bold")
+    for problem in error.problems:
+        head = f"{problem.where}: {problem.what}" if problem.where else problem.what
+        text.append(f"{head}\n")
+        if problem.found:
+            text.append(f"  {texts.FOUND.format(text=problem.found)}\n")
+        if problem.expected:
+            text.append(f"  {texts.EXPECTED.format(text=problem.expected)}\n")
+        if problem.hint:
+            text.append(f"  {problem.hint}\n")
+        text.append("\n")
+    return text
