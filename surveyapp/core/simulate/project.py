@@ -179,35 +179,40 @@ latitude_max_deg = 75.0
 """
 
 
-def _project_toml(project: SimulatedProject) -> str:
-    parts = [
-        "# Simulated: made from the integrated equation of motion, not observed.\n"
+def toml_head(name: str, card: str) -> str:
+    """Return the head of a simulated project.toml: its grid and its one instrument."""
+    return (
+        "# Simulated: made by the program, not observed.\n"
         "format = 1\n"
-        f'name = "{project.name}"\n'
+        f'name = "{name}"\n'
         f'crs = "+proj=tmerc +lat_0=0 +lon_0={CENTRAL_MERIDIAN_DEG:g} +k=1 +x_0=500000 +y_0=0 '
         '+ellps=WGS84 +units=m +type=crs"\n'
-        'angle_unit = "dms"\n',
-        '[[instrument]]\nid = "G1"\ncard = "cards/simulated-gyro.toml"\nserial = "simulated"\n',
+        'angle_unit = "dms"\n\n'
+        f'[[instrument]]\nid = "G1"\ncard = "{card}"\nserial = "simulated"\n'
+    )
+
+
+def _project_toml(project: SimulatedProject) -> str:
+    lines = {session.station: session for session in project.sessions}
+    parts = [toml_head(project.name, "cards/simulated-gyro.toml")]
+    parts += [
+        station_pair(
+            (session.station, session.target),
+            latitude=session.simulated.spec.latitude,
+            azimuth=session.simulated.spec.line_azimuth,
+        )
+        for session in lines.values()
     ]
-    parts += [_station_pair(session) for session in _one_per_line(project.sessions)]
     parts += [_orientation(session) for session in project.sessions]
     return "\n".join(parts)
 
 
-def _one_per_line(sessions: Sequence[ProjectSession]) -> list[ProjectSession]:
-    return list({session.station: session for session in sessions}.values())
-
-
-def _station_pair(session: ProjectSession) -> str:
-    spec = session.simulated.spec
-    latitude = spec.latitude
+def station_pair(names: tuple[str, str], *, latitude: float, azimuth: float) -> str:
+    """Return the two stations of a line that begins on the central meridian, angles [rad]."""
     longitude = math.radians(CENTRAL_MERIDIAN_DEG)
-    end = direct_position(latitude, longitude, azimuth=spec.line_azimuth, distance_m=SIGHT_LENGTH_M)
+    end = direct_position(latitude, longitude, azimuth=azimuth, distance_m=SIGHT_LENGTH_M)
     text = ""
-    for name, (lat, lon) in (
-        (session.station, (latitude, longitude)),
-        (session.target, end),
-    ):
+    for name, (lat, lon) in zip(names, ((latitude, longitude), end), strict=True):
         text += (
             f'[[station]]\nname = "{name}"\n'
             f"lat = {math.degrees(lat):.12f}\nlon = {math.degrees(lon):.12f}\n"
