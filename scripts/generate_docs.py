@@ -13,7 +13,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "models")]
 
-PAGE_MODULES: tuple[str, ...] = ("pages_effects",)
+PAGE_MODULES: tuple[str, ...] = ("pages_effects", "pages_estimators", "pages_latitude")
 
 
 def all_pages() -> dict[str, str]:

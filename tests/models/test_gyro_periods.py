@@ -15,6 +15,7 @@ from surveyapp_models.gyro.coefficients import (
     torsion_ratio_from_periods,
     transfer_torsion_ratio,
     transfer_transit_coefficient,
+    transit_coefficient_at_latitude,
     transit_coefficient_from_clampings,
     transit_coefficient_from_periods,
     transit_coefficient_latitude_slope,
@@ -263,6 +264,40 @@ def test_transit_coefficient_sigma_after_transfer_is_the_derivative():
     ) / (2 * step)
     gain = transit_coefficient_ratio(0.2, latitude=here, to_latitude=there)
     assert moved.sigma == pytest.approx(math.hypot(gain * 0.02, 2.91 * by_ratio * 0.01), rel=1e-8)
+
+
+def test_transit_coefficient_elsewhere_from_the_periods_here():
+    gyro, here, there = table_gyro(), rad(47), rad(-63)
+    periods = [f(gyro, here) for f in (tracking_period_s, clamped_period_s)]
+
+    def value(t1: float, t2: float) -> float:
+        return transit_coefficient_at_latitude(
+            Estimate(t1, 0.0),
+            Estimate(t2, 0.0),
+            scale_value=600.0,
+            latitude=here,
+            to_latitude=there,
+        ).value
+
+    expected = transit_coefficient_from_periods(
+        Estimate(tracking_period_s(gyro, there), 0),
+        Estimate(clamped_period_s(gyro, there), 0),
+        scale_value=600.0,
+    ).value
+    assert value(*periods) == pytest.approx(expected, rel=2e-5)
+    step = 1e-4
+    slopes = [
+        (value(periods[0] + step, periods[1]) - value(periods[0] - step, periods[1])) / (2 * step),
+        (value(periods[0], periods[1] + step) - value(periods[0], periods[1] - step)) / (2 * step),
+    ]
+    sigma = transit_coefficient_at_latitude(
+        Estimate(periods[0], 0.3),
+        Estimate(periods[1], 0.2),
+        scale_value=600.0,
+        latitude=here,
+        to_latitude=there,
+    ).sigma
+    assert sigma == pytest.approx(math.hypot(0.3 * slopes[0], 0.2 * slopes[1]), rel=1e-7)
 
 
 def test_unspun_period_identity():

@@ -157,7 +157,8 @@ def transfer_transit_coefficient(
     coefficient : Estimate
         C at ``latitude``, any unit.
     ratio : Estimate
-        lambda at ``latitude``, independent of C.
+        lambda at ``latitude``, independent of C; where both come from the same periods use
+        ``transit_coefficient_at_latitude``.
     latitude, to_latitude : float
         [rad].
 
@@ -171,6 +172,41 @@ def transfer_transit_coefficient(
     by_ratio = 1.5 * (rise / (1.0 + ratio.value * rise) - 1.0 / (1.0 + ratio.value))
     value = coefficient.value * factor
     return propagated(value, coefficient.sigma * factor, value * by_ratio * ratio.sigma)
+
+
+def transit_coefficient_at_latitude(
+    tracking: Estimate,
+    clamped: Estimate,
+    *,
+    scale_value: float,
+    latitude: float,
+    to_latitude: float,
+) -> Estimate:
+    """Find C at a latitude from the periods of another one.
+
+    Parameters
+    ----------
+    tracking, clamped : Estimate
+        T1 and T2 at ``latitude`` [s], independent.
+    scale_value : float
+        mu [rad/div].
+    latitude, to_latitude : float
+        [rad].
+
+    Returns
+    -------
+    Estimate
+        C at ``to_latitude`` [rad/(div s)]; the sigma is propagated from the two periods, through
+        both of which lambda enters as well.
+    """
+    torsion_ratio_from_periods(tracking, clamped)  # refuses exchanged periods
+    t1, t2 = tracking.value, clamped.value
+    fall = math.cos(to_latitude) / math.cos(latitude)
+    inverse = t2**-2 + (fall - 1.0) * t1**-2
+    value = 0.5 * math.pi * scale_value * t1**2 / fall * inverse**1.5
+    by_tracking = value * (2.0 / t1 - 3.0 * (fall - 1.0) / (t1**3 * inverse))
+    by_clamped = -3.0 * value / (t2**3 * inverse)
+    return propagated(value, by_tracking * tracking.sigma, by_clamped * clamped.sigma)
 
 
 def transit_coefficient_latitude_slope(ratio: float, latitude: float) -> float:
