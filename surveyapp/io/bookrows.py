@@ -49,6 +49,8 @@ _LIMITS: Final = {
 }
 """Plausible values, far wider than any instrument: outside is a slip of the pen."""
 _LARGEST_SEQ: Final = 10**9
+_MOST_ROWS: Final = 20_000
+"""No set-up has more; a larger file is a sensor log."""
 _LARGEST_ELAPSED_S: Final = 1e8
 _NUMBER = re.compile(r"[+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?")
 _DECIMAL_COMMA = re.compile(r"[+\-−]?\d+,\d+")
@@ -97,6 +99,10 @@ def parse_rows(text: str, *, angle_unit: AngleUnit, where: str) -> RawBook:
                 return book
             continue
         cells = [cell.strip() for cell in cells]
+        if len(book.rows) >= _MOST_ROWS:
+            problem = Problem("the book is too long", place, "", f"at most {_MOST_ROWS} rows")
+            book.problems.append((None, problem))
+            return book
         if header is None:
             header = tuple(name.lower() for name in cells)
             problems = _header_problems(header, line, place)

@@ -40,6 +40,8 @@ class ProjectLock:
         self._acquire()
 
     def _acquire(self) -> None:
+        if not self.folder.is_dir():
+            return
         import filelock
 
         lock = filelock.FileLock(str(self.folder / LOCK_FILE), timeout=0)

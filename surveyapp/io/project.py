@@ -18,8 +18,8 @@ from typing import Final
 from surveyapp.domain.project import Centring, Project, ResultWarning
 from surveyapp.domain.readings import FieldBook
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.io.bookreading import interpret, move_tail_aside, split_tail
 from surveyapp.io.cards import is_path
-from surveyapp.io.fieldbook import interpret, move_tail_aside, split_tail
 from surveyapp.io.files import decode, read_bytes, shown
 from surveyapp.io.project_tables import (
     Names,
@@ -169,14 +169,12 @@ def _read_tables(
     unit = AngleUnit(top.choice("angle_unit", [str(u) for u in AngleUnit]) or AngleUnit.DMS)
     findings = files.findings
     stations = [read_station(t) for t in top.tables("station", lines.get("station", ()))]
-    instruments = [
-        read_instrument(t, files.path)
-        for t in top.tables("instrument", lines.get("instrument", ()))
-    ]
+    cards = top.tables("instrument", lines.get("instrument", ()))
+    instruments = [read_instrument(t, files.path) for t in cards]
     names = Names(
         stations=unique([s.name for s in stations], "station", findings),
         instruments=unique([i.id for i in instruments], "instrument", findings),
-        known_constants=frozenset(i.id for i in instruments if i.known_constant is not None),
+        known_constants=frozenset(str(t.get("id")) for t in cards if "constant" in t),
         unit=unit,
     )
     sessions = []
@@ -187,9 +185,9 @@ def _read_tables(
         sessions.append(replace(session, book=book))
     unique([s.id for s in sessions], "orientation", findings)
     _warn_shared_books([s.book_path for s in sessions], findings)
-    for instrument, table in zip(instruments, top.tables("instrument"), strict=True):
+    for instrument, table in zip(instruments, cards, strict=True):
         names.check_choice(table, instrument.constant_choice, instrument.id)
-        if is_path(str(table.get("card"))):
+        if instrument.card.id and is_path(str(table.get("card"))):
             files.read(str(table.get("card")), table.where)
     rule_book = top.text("rule_book")
     if rule_book is not None and is_path(rule_book):
@@ -226,10 +224,10 @@ def _session_book(
     data = files.read(name, table.where)
     if data is None:
         return empty
-    whole, tail = split_tail(data)
-    files.contents[name] = whole
     try:
-        book, odd = interpret(decode(whole, where=name), angle_unit=unit, where=name)
+        text, tail = split_tail(data, where=name)
+        files.contents[name] = data[: len(data) - len(tail)]
+        book, odd = interpret(text, angle_unit=unit, where=name)
     except SurveyError as error:
         findings.absorb(error)
         return empty

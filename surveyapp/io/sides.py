@@ -23,6 +23,8 @@ TURNING_KINDS: Final = frozenset(
 _SHORT_STEP: Final = 0.25
 """A step below this share of its neighbour joins two points of one side: a swing would have to
 lose three quarters of its width in one half swing, where 10 % is already a faulty gyro."""
+_WIDE_STEP: Final = 0.5
+"""Two points of one side that differ by more than this share of the swing's width are on two."""
 _MISSED_HINT: Final = (
     "a turning point that was not read is entered as a row of kind missed; a wrong one is struck"
 )
@@ -156,17 +158,26 @@ def _step_problem(
 def _gap_problem(
     points: Sequence[Reading], values: Sequence[float | None], where: str
 ) -> Problem | None:
-    """Steps across missed points must keep the polarity of the steps between neighbours."""
-    expected: float | None = None
+    """Steps across missed points: the polarity of all others, and none that crosses the swing."""
     known = [(i, v) for i, v in enumerate(values) if v is not None]
-    for (i, a), (j, b) in pairwise(known):
-        if (j - i) % 2 == 0:
-            continue
-        rise = (b - a) * (1 if i % 2 == 0 else -1)
-        if expected is not None and rise * expected < 0.0:
+    steps = [(i, j, b - a) for (i, a), (j, b) in pairwise(known)]
+    across = [(i, j, step) for i, j, step in steps if (j - i) % 2 == 1]
+    width = max((abs(step) for _, _, step in across), default=math.inf)
+    for i, j, step in steps:
+        if (j - i) % 2 == 0 and abs(step) > _WIDE_STEP * width:
+            return Problem(
+                f"seq {points[i].seq} and {points[j].seq} lie on different sides, but the count"
+                " of missed points between them puts them on one",
+                _place(where, points[j]),
+                f"{points[i].text} then {points[j].text}",
+                "left and right in turn",
+                _MISSED_HINT,
+            )
+    expected = across[0][2] * (-1) ** across[0][0] if across else 0.0
+    for i, j, step in across:
+        if step * (-1) ** i * expected < 0.0:
             found = f"{points[i].text} then {points[j].text}"
             return _equal_sides(points[i], points[j], where, found)
-        expected = rise if expected is None else expected
     return None
 
 

@@ -1,0 +1,120 @@
+"""A new project: a commented project.toml that a surveyor fills in, and an empty observations/."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.files import shown
+from surveyapp.io.tomltext import atomic_write, toml_value
+from surveyapp_models.angles import AngleUnit
+
+_EXAMPLES: Final = {
+    AngleUnit.DMS: "246-52-09",
+    AngleUnit.GON: "274.2991",
+    AngleUnit.DEG: "246.8692",
+}
+
+_TEMPLATE: Final = """\
+# A survey project. Take the leading # off what you need; everything else may stay away.
+format = 1
+name = {name}
+{crs}
+angle_unit = {angle_unit}    # dms | gon | deg: how angles are written here and in the books
+# rule_book = "cn-coal-15"    # limits to check against: an installed one, or the path to your own
+# centring_mm = {{ instrument = 1.0, target = 1.0 }}    # 1 sigma, each horizontal component
+
+# One table for each gyro. `surveyapp models` lists the cards; every key of a card may be
+# overridden here, for example scale_value_arcsec = 600.0
+# [[instrument]]
+# id = "G1"
+# card = "wild-gak1"
+# serial = "3139"
+# constant = {{ arcsec = -9.7, sigma_arcsec = 3.0 }}    # if it is known beforehand
+# constant_choice = "pooled"    # pooled | interpolated | nearest | line:A-B | known
+
+# One table for each station, targets included. Position: e and n in metres of the grid, or y_west
+# and x_south, or lat and lon in degrees. Every position is optional.
+# [[station]]
+# name = "A"
+# e = 431630.663
+# n = 3811452.311
+# h = 812.4
+# fixed = true
+# deflection = {{ xi_arcsec = 0.0, eta_arcsec = 0.0, sigma_arcsec = 5.0 }}
+
+# [[station]]
+# name = "B"
+
+# One table for each occupation with the gyro: calibrations on lines of known azimuth first.
+# [[orientation]]
+# id = "calibration-1"
+# station = "A"
+# target = "B"
+# instrument = "G1"
+# method = "tracking"    # tracking | amplitude | transit | automatic
+# purpose = "calibration"    # calibration | survey
+# azimuth_known = {azimuth}    # grid azimuth; without it the coordinates decide
+# date = 2026-11-22
+# book = "observations/calibration-1.csv"
+
+# The first lines of a book:
+# seq,time,elapsed_s,kind,value,unit,face,side,target,temperature_c,note
+# 1,,,backsight,{azimuth_bare},,L,,,,
+"""
+
+
+def create_project(
+    folder: Path, *, name: str, crs: str | None = None, angle_unit: AngleUnit = AngleUnit.DMS
+) -> Path:
+    """Begin a project in a folder that does not exist or is empty.
+
+    Parameters
+    ----------
+    folder : Path
+        Its parents are made where they are missing.
+    name : str
+        Title of the project.
+    crs : str, optional
+        EPSG code, PROJ string or WKT.
+    angle_unit : AngleUnit
+
+    Returns
+    -------
+    Path
+        The new project.toml.
+
+    Raises
+    ------
+    SurveyError
+        If the folder holds anything, or cannot be made.
+    """
+    try:
+        if folder.exists() and (not folder.is_dir() or next(folder.iterdir(), None) is not None):
+            raise SurveyError(
+                Problem(
+                    "a new project needs a folder of its own",
+                    shown(str(folder)),
+                    "a folder that is not empty" if folder.is_dir() else "a file",
+                    "a folder that does not exist or is empty",
+                )
+            )
+        (folder / "observations").mkdir(parents=True, exist_ok=True)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise SurveyError(
+            Problem(f"the folder cannot be made ({reason})", shown(str(folder)))
+        ) from None
+    example = _EXAMPLES[angle_unit]
+    crs_line = f"crs = {toml_value(crs)}" if crs else '# crs = "EPSG:4546"    # the grid'
+    text = _TEMPLATE.format(
+        name=toml_value(name),
+        crs=crs_line,
+        angle_unit=toml_value(str(angle_unit)),
+        azimuth=toml_value(example),
+        azimuth_bare=example,
+    )
+    path = folder / "project.toml"
+    atomic_write(path, text.encode("utf-8"))
+    return path

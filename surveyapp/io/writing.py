@@ -1,0 +1,201 @@
+"""Changing a project file without losing a word of its owner.
+
+New tables go to the end as text, values are edited in place. Before anything replaces the file the
+new text is parsed: its data must be the intention exactly, and every comment must still be there.
+Writing is to a temporary file in the same folder, fsync, replace, fsync of the folder.
+"""
+
+from __future__ import annotations
+
+import copy
+import re
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Final
+
+from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.files import read_text, shown
+from surveyapp.io.tables import parse_toml
+from surveyapp.io.template import create_project
+from surveyapp.io.tomltext import atomic_write, comments, plain, present, toml_key, toml_value
+
+__all__ = [
+    "append_subtable",
+    "append_table",
+    "atomic_write",
+    "comments",
+    "create_project",
+    "set_value",
+    "toml_value",
+]
+
+Key = str | int
+_REFUSED_HINT: Final = "the file was left as it is; make this change with a text editor"
+
+
+def _table_text(header: str, mapping: Mapping[str, object]) -> str:
+    lines = [header]
+    lines += [f"{toml_key(key)} = {toml_value(item)}" for key, item in present(mapping).items()]
+    return "\n".join(lines) + "\n"
+
+
+def append_table(project_toml: Path, table_name: str, mapping: Mapping[str, object]) -> None:
+    """Append ``[[table_name]]`` as text at the end of project.toml.
+
+    Parameters
+    ----------
+    project_toml : Path
+    table_name : str
+        station, instrument, orientation, traverse, shaft, sensor_log ...
+    mapping : mapping
+        Its keys; None is left out.
+
+    Raises
+    ------
+    SurveyError
+        If the result would not parse to the intention; the file is untouched then.
+    """
+    text, data = _read(project_toml)
+    expected = copy.deepcopy(data)
+    tables = expected.setdefault(table_name, [])
+    if not isinstance(tables, list):
+        raise _refused(project_toml, f"{table_name} is no list of tables")
+    tables.append(plain(mapping))
+    added = _table_text(f"[[{toml_key(table_name)}]]", mapping)
+    gap = "" if not text else "\n" if text.endswith("\n") else "\n\n"
+    _write_checked(project_toml, text, text + gap + added, expected)
+
+
+def append_subtable(
+    project_toml: Path, parent: tuple[str, str], name: str, mapping: Mapping[str, object]
+) -> None:
+    """Append ``[[parent.name]]`` to one table of a list, as text behind that table.
+
+    Parameters
+    ----------
+    project_toml : Path
+    parent : tuple of str
+        Kind and id (or name) of the table, such as ``("orientation", "ramp3-r1")``.
+    name : str
+        ``effect``.
+    mapping : mapping
+        Its keys; None is left out.
+
+    Raises
+    ------
+    SurveyError
+        If there is no such table, or if the result would not parse to the intention.
+    """
+    kind, identity = parent
+    text, data = _read(project_toml)
+    expected = copy.deepcopy(data)
+    index, table = _element(project_toml, expected.get(kind), identity)
+    if not isinstance(table, dict) or not isinstance(table.setdefault(name, []), list):
+        raise _refused(project_toml, f"{name} of {identity} is no list of tables")
+    table[name].append(plain(mapping))
+    headers = list(
+        re.finditer(rf"^[ \t]*\[\[[ \t]*{re.escape(kind)}[ \t]*\]\]", text, re.MULTILINE)
+    )
+    if index >= len(headers):
+        raise _refused(project_toml, f"the header of {identity} was not found")
+    place = _end_of_table(text, headers[index].end(), kind)
+    added = _table_text(f"[[{toml_key(kind)}.{toml_key(name)}]]", mapping)
+    before = text[:place].rstrip("\n")
+    after = text[place:]
+    new = f"{before}\n\n{added}" + (f"\n{after}" if after else "")
+    _write_checked(project_toml, text, new, expected)
+
+
+def _end_of_table(text: str, start: int, kind: str) -> int:
+    """Where the next table begins that is not part of this one; its comment goes with it."""
+    header = re.compile(r"^[ \t]*\[\[?[ \t]*([^\]\n]+?)[ \t]*\]", re.MULTILINE)
+    for match in header.finditer(text, start):
+        if not match[1].startswith(f"{kind}."):
+            lines = text[: match.start()].split("\n")
+            while len(lines) > 1 and lines[-2].lstrip().startswith("#"):
+                del lines[-2]
+            return len("\n".join(lines))
+    return len(text)
+
+
+def set_value(project_toml: Path, path: Sequence[Key], value: object) -> None:
+    """Set one value in place; None removes it.
+
+    Parameters
+    ----------
+    project_toml : Path
+    path : sequence of str or int
+        Keys from the top; in a list of tables the id, the name or the index of one:
+        ``("orientation", "ramp3-r1", "target")``.
+    value : object
+        Text, number, date, list or mapping.
+
+    Raises
+    ------
+    SurveyError
+        If the place does not exist, or if data or comments would not survive; the file is
+        untouched then.
+    """
+    import tomlkit
+    from tomlkit.exceptions import TOMLKitError
+
+    text, data = _read(project_toml)
+    expected = copy.deepcopy(data)
+    try:
+        document = tomlkit.parse(text)
+        for root in (expected, document):
+            holder: object = root
+            for key in path[:-1]:
+                holder = _step(project_toml, holder, key)
+            _assign(project_toml, holder, path[-1], value)
+        new = tomlkit.dumps(document)
+    except (TOMLKitError, ValueError, TypeError) as error:
+        raise _refused(project_toml, shown(str(error))) from None
+    _write_checked(project_toml, text, new, expected)
+
+
+def _step(path: Path, holder: object, key: Key) -> object:
+    if isinstance(holder, list):
+        return _element(path, holder, key)[1]
+    if isinstance(holder, Mapping) and isinstance(key, str) and key in holder:
+        return holder[key]
+    raise _refused(path, f"there is no {key}")
+
+
+def _element(path: Path, tables: object, key: Key) -> tuple[int, object]:
+    for index, table in enumerate(tables if isinstance(tables, list) else ()):
+        if index == key or (
+            isinstance(table, Mapping) and key in (table.get("id"), table.get("name"))
+        ):
+            return index, table
+    raise _refused(path, f"there is no table {key}")
+
+
+def _assign(path: Path, holder: object, key: Key, value: object) -> None:
+    if not isinstance(holder, dict) or not isinstance(key, str):
+        raise _refused(path, f"{key} cannot be set here")
+    if value is None:
+        holder.pop(key, None)
+    else:
+        toml_value(value)
+        holder[key] = plain(value)
+
+
+def _read(path: Path) -> tuple[str, dict[str, object]]:
+    text = read_text(path, where=path.name)
+    return text, parse_toml(text, where=path.name)
+
+
+def _write_checked(path: Path, old: str, new: str, expected: Mapping[str, object]) -> None:
+    """Write the new text if it says what was meant and still says what its owner wrote."""
+    if parse_toml(new, where=path.name) != expected:
+        raise _refused(path, "the new text does not hold the intended data")
+    lost = Counter(comments(old)) - Counter(comments(new))
+    if lost:
+        raise _refused(path, f"a comment would be lost: {shown(next(iter(lost)))}")
+    atomic_write(path, new.encode("utf-8"))
+
+
+def _refused(path: Path, why: str) -> SurveyError:
+    return SurveyError(Problem("the change was refused", path.name, why, "", _REFUSED_HINT))
