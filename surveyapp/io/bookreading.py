@@ -184,7 +184,7 @@ def split_tail(data: bytes, *, where: str) -> tuple[str, bytes]:
     text = decode(whole + newline, where=where)
     if not text.strip("\ufeff\r\n") and tail:
         tail_text = decode(tail, where=where)
-        if "\r" in tail_text or len(tail) > _LONGEST_TAIL:
+        if "\r" in tail_text[:-1] or len(tail) > _LONGEST_TAIL:
             raise SurveyError(_no_lines(where, tail_text))
     elif len(tail) > _LONGEST_TAIL:
         raise SurveyError(_no_lines(where, tail[:80].decode("utf-8", errors="replace")))
