@@ -21,6 +21,7 @@ from surveyapp.io.sides import sides_of_swing
 from surveyapp.io.strikes import find_strikes, live_rows
 from surveyapp_models.angles import AngleUnit
 
+_MOST_PROBLEMS: Final = 100
 _LONGEST_TAIL: Final = 4096
 """A torn line is no longer than this [bytes]; no reading and no header is."""
 
@@ -81,7 +82,15 @@ def judge(text: str, *, angle_unit: AngleUnit, where: str) -> Judged:
     book = FieldBook(tuple(raw.rows), live_rows(raw.rows, strikes), tuple(sorted(void)))
     if not problems:
         book, problems = _with_sides(book, where)
-    return Judged(book, tuple(problems), raw.odd_columns)
+    return Judged(book, _at_most(problems, where), raw.odd_columns)
+
+
+def _at_most(problems: Sequence[Problem], where: str) -> tuple[Problem, ...]:
+    """The first problems of a book; of a file of another kind every line would be one."""
+    if len(problems) <= _MOST_PROBLEMS:
+        return tuple(problems)
+    further = Problem(f"{len(problems) - _MOST_PROBLEMS} further problems", where)
+    return (*problems[:_MOST_PROBLEMS], further)
 
 
 def interpret(text: str, *, angle_unit: AngleUnit, where: str) -> tuple[FieldBook, tuple[str, ...]]:

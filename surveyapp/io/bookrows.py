@@ -49,7 +49,7 @@ _LIMITS: Final = {
 }
 """Plausible values, far wider than any instrument: outside is a slip of the pen."""
 _LARGEST_SEQ: Final = 10**9
-_MOST_ROWS: Final = 20_000
+_MOST_ROWS: Final = 5_000
 """No set-up has more; a larger file is a sensor log."""
 _LARGEST_ELAPSED_S: Final = 1e8
 _NUMBER = re.compile(r"[+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?")

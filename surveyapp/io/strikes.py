@@ -6,6 +6,7 @@ observation; then everything else, whose successor must stand on the same side o
 
 from __future__ import annotations
 
+from bisect import bisect_right, insort
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final
@@ -15,6 +16,8 @@ from surveyapp.errors import Problem
 from surveyapp.io.sides import TURNING_KINDS, agreement
 
 _PLACED: Final = frozenset({ReadingKind.BACKSIGHT, ReadingKind.ZENITH, ReadingKind.TAPE_ZERO})
+_WINDOW: Final = 60
+"""Rows before the struck one and after the candidate that are looked at to see left and right."""
 _SWING_TURNS: Final = frozenset({ReadingKind.REVERSAL, ReadingKind.SCALE_REVERSAL})
 
 
@@ -78,12 +81,13 @@ def live_rows(rows: Sequence[Reading], strikes: Sequence[Struck]) -> tuple[Readi
 class _Book:
     """Who takes whose place."""
 
-    __slots__ = ("by_row", "extent", "heirs", "places", "rows")
+    __slots__ = ("by_row", "extent", "heirs", "places", "rows", "strikes")
 
     def __init__(self, rows: Sequence[Reading], strikes: Sequence[Struck]) -> None:
         self.rows = rows
         self.by_row = {s.row: s for s in strikes}
-        self.heirs: dict[int, int | None] = {}  # struck row -> successor
+        self.strikes = sorted(s.strike for s in strikes)
+        self.heirs: dict[int, int] = {}  # struck row -> successor
         self.places: dict[int, int] = {}  # successor -> place that it takes
         self.extent: tuple[int, int] | None = None
 
@@ -110,22 +114,38 @@ class _Book:
 
     def assign(self, strikes: Sequence[Struck]) -> None:
         """Find successors in the order of the candidates; of two struck rows the earlier first."""
+        begins = {s.strike: s for s in strikes}
+        waiting: dict[ReadingKind, list[Struck]] = {}
         for index, row in enumerate(self.rows):
-            if row.kind is ReadingKind.STRIKE or index in self.places:
+            if index in begins:
+                strike = begins[index]
+                kind = self.rows[strike.row].kind
+                insort(waiting.setdefault(kind, []), strike, key=lambda s: self.place(s.row))
+            elif row.kind in waiting and index not in self.places:
+                self._offer(index, waiting[row.kind])
+
+    def _offer(self, index: int, waiting: list[Struck]) -> None:
+        """Give a candidate to the first struck row that it suits."""
+        for strike in tuple(waiting):
+            if not self._suits(strike, index):
                 continue
-            waiting = sorted(
-                (s for s in strikes if s.strike < index and s.row not in self.heirs),
-                key=lambda s: self.place(s.row),
-            )
-            for strike in waiting:
-                if not self._suits(strike, index):
-                    continue
-                if row.kind in TURNING_KINDS and self._contradicts(strike, index):
-                    self.heirs[strike.row] = None
-                    continue
-                self.heirs[strike.row] = index
+            waiting.remove(strike)
+            if self.rows[index].kind in TURNING_KINDS and self._contradicts(strike, index):
+                continue  # it has no successor at all
+            self.heirs[strike.row] = index
+            if not self._begins_run(index):
                 self.places[index] = self.place(strike.row)
-                break
+            return
+
+    def _begins_run(self, index: int) -> bool:
+        """Whether no turning point above counts.
+
+        Then a row of a wrong kind was struck before the run; its place may lie before the sights.
+        """
+        return self.rows[index].kind in _SWING_TURNS and not any(
+            row.kind in _SWING_TURNS and i not in self.by_row
+            for i, row in enumerate(self.rows[:index])
+        )
 
     def _suits(self, strike: Struck, index: int) -> bool:
         struck, heir = self.rows[strike.row], self.rows[index]
@@ -154,11 +174,11 @@ class _Book:
         """The swing up to the next strike after the candidate, under one of two readings."""
         kind = self.rows[index].kind
         section = self.section(index) if kind is ReadingKind.TAPE_ZERO else 0
-        end = min(
-            (s.strike for s in self.by_row.values() if s.strike > index), default=len(self.rows)
-        )
+        begin = max(strike.row - _WINDOW, 0)
+        later = bisect_right(self.strikes, index)
+        end = min([index + _WINDOW, *self.strikes[later : later + 1]])
         taken: dict[int, Reading] = {}
-        for i, row in enumerate(self.rows[:end]):
+        for i, row in enumerate(self.rows[begin:end], start=begin):
             counted = row.kind is kind or (
                 row.kind is ReadingKind.MISSED and kind is not ReadingKind.TAPE_ZERO
             )
@@ -166,6 +186,8 @@ class _Book:
                 continue
             heir_here = i == index and takes_place
             place = self.place(strike.row) if heir_here else self.place(i)
+            if place < begin:
+                continue
             void = i in self.by_row and i != index
             if void and place in taken:
                 continue
@@ -180,7 +202,7 @@ class _Book:
                 continue
             if index not in self.by_row:
                 placed.append((self.place(index), row))
-            elif row.kind in TURNING_KINDS and self.heirs.get(index) is None:
+            elif row.kind in TURNING_KINDS and index not in self.heirs:
                 missed = replace(row, kind=ReadingKind.MISSED, value=None)
                 placed.append((self.place(index), missed))
         return tuple(row for _, row in sorted(placed, key=lambda item: item[0]))

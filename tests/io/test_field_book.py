@@ -226,6 +226,12 @@ def test_all_problems_of_a_book_come_together() -> None:
     ]
 
 
+def test_a_file_of_another_kind_does_not_flood_the_screen() -> None:
+    problems = refused("seq,kind,value\n" + "x\n" * 1000)
+    assert len(problems) == 101
+    assert problems[-1].what == "900 further problems"
+
+
 def test_a_tail_without_newline_does_not_count() -> None:
     book = read("seq,kind,value\n1,backsight,10-00-00\n2,backsight,190-0")
     assert [r.seq for r in book.rows] == [1]

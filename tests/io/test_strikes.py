@@ -96,6 +96,14 @@ def test_a_correction_after_the_run_returns_to_its_place() -> None:
     ]
 
 
+def test_a_sight_entered_as_turning_point_does_not_pull_the_run_before_the_sights() -> None:
+    rows = ["reversal,40,,,,", "strike,1,,,,wrong kind", "backsight,40,L,,,", "backsight,220,R,,,"]
+    found = book(*rows, "reversal,1,,,,", "reversal,9,,,,", "reversal,1.2,,,,")
+    assert order(found) == ["3", "4", "5", "6", "7"]
+    sights = found.of_kind(ReadingKind.BACKSIGHT)
+    assert [str(found.place_of(r)) for r in sights] == ["before", "before"]
+
+
 def test_a_sight_is_not_moved_from_after_to_before() -> None:
     rows = ["backsight,40,L,,,", "backsight,220,R,,,", "strike,1,,,,", "reversal,1,,,,"]
     rows += ["reversal,9,,,,", "backsight,40.1,L,,,"]
