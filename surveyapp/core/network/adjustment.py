@@ -1,0 +1,361 @@
+"""The adjustment of a network: from observations to points, sigmas, tests and warnings.
+
+Puts the parts together and says what went wrong in the trade's words; the numbers come from the
+modules that it calls.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from surveyapp.core.leastsquares.equations import Floats
+from surveyapp.core.network import quality as q
+from surveyapp.core.network.approximate import approximate
+from surveyapp.core.network.closures import network_closures
+from surveyapp.core.network.gaussnewton import Converged, NotConverged, iterate, refuse
+from surveyapp.core.network.model import Model, compile_network
+from surveyapp.core.network.undetermined import refuse_undetermined
+from surveyapp.domain.adjustment import (
+    AdjustedObservation,
+    AdjustedPoint,
+    AdjustmentResult,
+    Ellipse,
+    RelativeEllipse,
+    SharedValue,
+    Snooping,
+    Suspect,
+)
+from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.traverse import Network, Status
+
+FAMILY_LEVEL = 0.05
+"""Probability of accusing any observation of a network that has no gross error."""
+
+
+def adjust(
+    network: Network, *, family_level: float = FAMILY_LEVEL, relative: bool = True
+) -> AdjustmentResult:
+    """Adjust a network by least squares.
+
+    Parameters
+    ----------
+    network : Network
+    family_level : float
+        Level of data snooping for all observations together.
+    relative : bool
+        Whether relative ellipses of neighbouring points are wanted.
+
+    Returns
+    -------
+    AdjustmentResult
+        Sigmas are one sigma, a priori or scaled by the residuals as the network says.
+
+    Raises
+    ------
+    SurveyError
+        No datum, undetermined points (named), no approximate coordinates, no convergence.
+    """
+    model = compile_network(network)
+    state = solve_network(network, model)
+    warnings = list(network.warnings) + _skipped_warning(network, model)
+    outcome = _without_gross(network, model, state)
+    if outcome is not None:
+        model, state, dropped = outcome
+        warnings.append(dropped)
+    return _result(network, model, state, tuple(warnings), (family_level, relative))
+
+
+def solve_network(network: Network, model: Model) -> Converged:
+    """Iterate from the given, then if need be from freshly found approximate coordinates."""
+    names = tuple(point.name for point in network.points)
+    try:
+        state = iterate(model, approximate(network, model))
+    except NotConverged as failure:
+        try:
+            state = iterate(model, approximate(network, model, fresh=True))
+        except NotConverged:
+            raise refuse(names, failure) from None
+    if len(state.solved.undetermined):
+        raise refuse_undetermined(network, state)
+    return state
+
+
+def _skipped_warning(network: Network, model: Model) -> list[ResultWarning]:
+    if not model.skipped:
+        return []
+    first = ", ".join(network.observations[i].where for i in model.skipped[:5])
+    more = f" and {len(model.skipped) - 5} more" if len(model.skipped) > 5 else ""
+    text = (
+        f"{len(model.skipped)} observations touch a coordinate that is neither fixed nor adjusted "
+        f"and were not used: {first}{more}"
+    )
+    return [ResultWarning("observations_not_used", text)]
+
+
+def _gross_misfit(network: Network, model: Model, state: Converged) -> Floats:
+    """Misclosure of each observation across its sight [m]."""
+    misfit = np.abs(state.misclosure)
+    points = state.values[: 3 * len(network.points)].reshape(-1, 3)
+    for row in np.flatnonzero(model.angular):
+        slots = model.slots[row]
+        coordinates = slots[(slots >= 0) & (slots < model.coordinate_slots)]
+        if not len(coordinates):
+            misfit[row] = 0.0
+            continue
+        corners = points[np.unique(coordinates // 3), :2]
+        reach = np.linalg.norm(corners - points[coordinates[0] // 3, :2], axis=1)
+        misfit[row] *= float(np.nanmax(reach))
+    return misfit
+
+
+def _without_gross(
+    network: Network, model: Model, state: Converged
+) -> tuple[Model, Converged, ResultWarning] | None:
+    """Leave out what misses by more than the stated tolerance, one worst at a time."""
+    if network.tolerance_m is None:
+        return None
+    names: list[str] = []
+    reduced = network
+    while True:
+        if float(np.abs(state.misclosure).max()) == 0.0:
+            break
+        misfit = _gross_misfit(reduced, model, state)
+        candidates = np.flatnonzero((misfit > network.tolerance_m) & (model.used >= 0))
+        if not len(candidates):
+            break
+        weighted = np.abs(state.misclosure[candidates]) / model.sigma[candidates]
+        worst = int(candidates[np.argmax(weighted)])
+        names.append(model.observations[worst].where)
+        reduced = without(reduced, {int(model.used[worst])})
+        model = compile_network(reduced)
+        state = solve_network(reduced, model)
+    if not names:
+        return None
+    text = (
+        f"{len(names)} observations miss by more than {network.tolerance_m:g} m and were left "
+        f"out: {'; '.join(names)}"
+    )
+    place = {id(obs): i for i, obs in enumerate(network.observations)}
+    used = np.array([place.get(id(obs), -1) for obs in model.observations], dtype=np.int64)
+    return replace(model, used=used), state, ResultWarning("gross_errors_left_out", text)
+
+
+def without(network: Network, places: set[int]) -> Network:
+    """The network without some observations, blocks reduced accordingly."""
+    keep = [i for i in range(len(network.observations)) if i not in places]
+    moved = {old: new for new, old in enumerate(keep)}
+    blocks = []
+    for block in network.blocks:
+        left = [i for i, member in enumerate(block.members) if member in moved]
+        if left:
+            blocks.append(
+                replace(
+                    block,
+                    members=tuple(moved[block.members[i]] for i in left),
+                    covariance=tuple(tuple(block.covariance[i][j] for j in left) for i in left),
+                )
+            )
+    return replace(
+        network,
+        observations=tuple(network.observations[i] for i in keep),
+        blocks=tuple(blocks),
+    )
+
+
+def _result(
+    network: Network,
+    model: Model,
+    state: Converged,
+    warnings: tuple[ResultWarning, ...],
+    options: tuple[float, bool],
+) -> AdjustmentResult:
+    family_level, relative = options
+    solved = state.solved
+    dof = len(model.observations) - model.structure.count + solved.defect
+    test = q.global_test(
+        state.sum_of_squares,
+        dof,
+        sigma_apriori=network.sigma_apriori,
+        probability=network.confidence,
+    )
+    estimated = network.scaled_by_residuals and test.ratio is not None
+    scale = float(test.ratio or 1.0) if estimated else 1.0
+    coordinate = np.append(state.model.slot_of < model.coordinate_slots, 0.0).astype(np.float64)
+    checked = q.assess(state.groups, solved.cofactor, len(model.observations), coordinate)
+    return AdjustmentResult(
+        points=_points(network, model, state, scale),
+        observations=_observations(model, state, checked, scale),
+        sigma0=None if test.ratio is None else test.ratio * network.sigma_apriori,
+        dof=dof,
+        defect=solved.defect,
+        iterations=state.iterations,
+        global_test=test,
+        sigma_scale=scale,
+        confidence_scale=q.confidence_scale(network.confidence, dof if estimated else None),
+        closures=network_closures(network),
+        shared=_shared(model, state, scale),
+        relative=_relative(network, model, state, scale) if relative else (),
+        snooping=_snooping(model, checked, scale, (family_level, dof if estimated else None)),
+        warnings=warnings,
+    )
+
+
+def _point_cofactors(state: Converged, points: int) -> Floats:
+    """Covariances (points, 3, 3) with the a-priori sigmas; 0 where fixed or unused."""
+    unknowns = state.model.unknown_of[: 3 * points].reshape(-1, 3)
+    return state.solved.cofactor.blocks(unknowns)
+
+
+def _points(
+    network: Network, model: Model, state: Converged, scale: float
+) -> tuple[AdjustedPoint, ...]:
+    covariance = _point_cofactors(state, len(network.points)) * scale**2
+    sigma = np.sqrt(np.maximum(np.einsum("nii->ni", covariance), 0.0))
+    axes = np.stack(
+        q.ellipse_axes(covariance[:, 0, 0], covariance[:, 0, 1], covariance[:, 1, 1]), axis=1
+    )
+    known = state.values[: 3 * len(network.points)].reshape(-1, 3).tolist()
+    unknowns = model.unknown_of[: 3 * len(network.points)].reshape(-1, 3)
+    both: list[bool] = np.all(unknowns[:, :2] >= 0, axis=1).tolist()
+    rows = zip(
+        network.points, known, sigma.tolist(), axes.tolist(), both, covariance.tolist(), strict=True
+    )
+    result = []
+    for point, at, s, (a, b, azimuth), plane, matrix in rows:
+        used = (
+            point.status_e is not Status.UNUSED,
+            point.status_n is not Status.UNUSED,
+            point.status_h is not Status.UNUSED,
+        )
+        given = (point.e, point.n, point.h)
+        values = [
+            x if flag and not math.isnan(x) else g
+            for x, flag, g in zip(at, used, given, strict=True)
+        ]
+        sigmas = [x if flag else None for x, flag in zip(s, used, strict=True)]
+        result.append(
+            AdjustedPoint(
+                point.name,
+                values[0],
+                values[1],
+                values[2],
+                sigmas[0],
+                sigmas[1],
+                sigmas[2],
+                Ellipse(a, b, azimuth) if plane else None,
+                tuple((r[0], r[1], r[2]) for r in matrix),
+            )
+        )
+    return tuple(result)
+
+
+def _observations(
+    model: Model, state: Converged, checked: q.Quality, scale: float
+) -> tuple[AdjustedObservation, ...]:
+    residual = -state.misclosure
+    columns = zip(
+        model.observations,
+        model.used.tolist(),
+        residual.tolist(),
+        (checked.sigma_adjusted * scale).tolist(),
+        (checked.standardized / scale if scale > 0.0 else checked.standardized).tolist(),
+        np.clip(checked.redundancy, 0.0, 1.0).tolist(),
+        (checked.mdb * scale).tolist(),
+        (checked.effect * scale).tolist(),
+        strict=True,
+    )
+    return tuple(
+        AdjustedObservation(
+            place=place,
+            kind=obs.kind,
+            at=obs.at,
+            back=obs.back,
+            to=obs.to,
+            observed=obs.value,
+            adjusted=obs.value + v,
+            residual=v,
+            sigma=obs.sigma,
+            sigma_adjusted=s,
+            standardized=None if w != w else w,
+            redundancy=r,
+            mdb=None if mdb != mdb else mdb,
+            mdb_effect_m=None if effect != effect else effect,
+            group=obs.group,
+            line=obs.line,
+        )
+        for obs, place, v, s, w, r, mdb, effect in columns
+    )
+
+
+def _shared(model: Model, state: Converged, scale: float) -> tuple[SharedValue, ...]:
+    first = model.coordinate_slots
+    names = [("gyro_constant", name) for name in model.constants]
+    names += [("orientation", f"{at} {name}".strip()) for at, name in model.orientations]
+    if not names:
+        return ()
+    unknowns = state.model.unknown_of[first : first + len(names)]
+    sigma = np.sqrt(state.solved.cofactor.blocks(unknowns[:, None])[:, 0, 0]) * scale
+    return tuple(
+        SharedValue(kind, name, value, s)
+        for (kind, name), value, s in zip(
+            names, state.values[first : first + len(names)].tolist(), sigma.tolist(), strict=True
+        )
+    )
+
+
+def _relative(
+    network: Network, model: Model, state: Converged, scale: float
+) -> tuple[RelativeEllipse, ...]:
+    """Ellipses of neighbours, at least one of them unknown."""
+    number = {point.name: i for i, point in enumerate(network.points)}
+    found = {
+        (min(pair), max(pair))
+        for obs in model.observations
+        if obs.to
+        for pair in ((number[obs.at], number[obs.to]),)
+    }
+    pairs = np.array(sorted(found), dtype=np.int64).reshape(-1, 2)
+    slots = np.stack(
+        (3 * pairs[:, 0], 3 * pairs[:, 0] + 1, 3 * pairs[:, 1], 3 * pairs[:, 1] + 1), axis=1
+    )
+    unknowns = state.model.unknown_of[slots]
+    pairs, unknowns = pairs[(unknowns >= 0).any(axis=1)], unknowns[(unknowns >= 0).any(axis=1)]
+    blocks = state.solved.cofactor.blocks(unknowns) * scale**2
+    turn = np.array([[-1.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0, 1.0]])
+    covariance = np.einsum("ip,npq,jq->nij", turn, blocks, turn)
+    axes = q.ellipse_axes(covariance[:, 0, 0], covariance[:, 0, 1], covariance[:, 1, 1])
+    names = [point.name for point in network.points]
+    return tuple(
+        RelativeEllipse(names[i], names[j], Ellipse(a, b, azimuth))
+        for (i, j), a, b, azimuth in zip(
+            pairs.tolist(), *(axis.tolist() for axis in axes), strict=True
+        )
+    )
+
+
+def _snooping(
+    model: Model, checked: q.Quality, scale: float, options: tuple[float, int | None]
+) -> Snooping:
+    level, dof = options
+    tests = q.distinct_tests(checked.standardized)
+    critical = q.family_critical(tests, level, dof)
+    statistic = "normal" if dof is None else "tau"
+    if critical is None or scale <= 0.0:
+        return Snooping(statistic, level, tests, None)
+    size = np.nan_to_num(np.abs(checked.standardized) / scale)
+    beyond = np.flatnonzero(size > critical)
+    beyond = beyond[np.argsort(-size[beyond], kind="stable")]
+    suspects = tuple(
+        Suspect(
+            int(model.used[row]),
+            model.observations[row].where,
+            float(checked.standardized[row] / scale),
+            float(checked.error[row]),
+            bool(model.angular[row]),
+        )
+        for row in beyond.tolist()
+    )
+    return Snooping(statistic, level, tests, critical, suspects)

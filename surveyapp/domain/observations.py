@@ -1,0 +1,222 @@
+"""Observations of a network, each of which checks itself when it is built.
+
+What joins them (points, constants, datum) is ``surveyapp.domain.traverse``. Lengths in metres,
+angles clockwise and in radians. Nothing here computes an equation.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from surveyapp.errors import Problem, SurveyError
+
+
+class ObservationKind(StrEnum):
+    """What was observed."""
+
+    ANGLE = "angle"
+    DIRECTION = "direction"
+    DISTANCE = "distance"
+    SLOPE_DISTANCE = "slope_distance"
+    ZENITH = "zenith"
+    HEIGHT_DIFFERENCE = "height_difference"
+    AZIMUTH = "azimuth"
+    GYRO = "gyro"
+    GYRO_CONSTANT = "gyro_constant"
+    COORDINATE_E = "coordinate_e"
+    COORDINATE_N = "coordinate_n"
+    COORDINATE_H = "coordinate_h"
+    VECTOR_E = "vector_e"
+    VECTOR_N = "vector_n"
+    VECTOR_H = "vector_h"
+
+
+ANGULAR = frozenset(
+    {
+        ObservationKind.ANGLE,
+        ObservationKind.DIRECTION,
+        ObservationKind.ZENITH,
+        ObservationKind.AZIMUTH,
+        ObservationKind.GYRO,
+        ObservationKind.GYRO_CONSTANT,
+    }
+)
+"""Kinds whose value, sigma and residual are in radians; the others are in metres."""
+
+SINGLE_POINT = frozenset(
+    {
+        ObservationKind.GYRO_CONSTANT,
+        ObservationKind.COORDINATE_E,
+        ObservationKind.COORDINATE_N,
+        ObservationKind.COORDINATE_H,
+    }
+)
+"""Kinds without a target."""
+
+
+@dataclass(frozen=True, slots=True)
+class Observation:
+    """One observation.
+
+    Parameters
+    ----------
+    kind : ObservationKind
+    at : str
+        Occupied point; for ``gyro_constant`` the name of the constant.
+    to : str
+        Target (fore sight of an angle); empty for coordinates and constants.
+    value : float
+        [rad] or [m], see ``ANGULAR``. An angle is clockwise from ``back`` to ``to``.
+    sigma : float
+        Standard deviation [rad] or [m], positive.
+    back : str
+        Back sight of an angle.
+    set : str
+        Directions of one ``at`` and ``set`` share one orientation unknown.
+    hi, ht : float
+        Heights of instrument and target above their points [m].
+    constant : str
+        For ``gyro``: which instrument constant the observation contains.
+    convergence : float
+        For ``gyro``: what is subtracted from the true azimuth to get the grid azimuth [rad]
+        (convergence of its own station, deflection, arc-to-chord).
+    group : str
+        Variance component group; empty = the kind.
+    note, extern : str
+    line : int
+        Line of the file, 0 = unknown.
+
+    Raises
+    ------
+    SurveyError
+        With everything that is impossible about it.
+    """
+
+    kind: ObservationKind
+    at: str
+    to: str
+    value: float
+    sigma: float
+    back: str = ""
+    set: str = ""
+    hi: float = 0.0
+    ht: float = 0.0
+    constant: str = ""
+    convergence: float = 0.0
+    group: str = ""
+    note: str = ""
+    extern: str = ""
+    line: int = 0
+
+    def __post_init__(self) -> None:
+        if (
+            self.at
+            and self.at != self.to
+            and (self.to or self.kind in SINGLE_POINT)
+            and self.kind is not ObservationKind.ANGLE
+            and math.isfinite(self.value)
+            and 0.0 < self.sigma < math.inf
+            and (self.value > 0.0 or self.kind not in _POSITIVE)
+            and math.isfinite(self.hi + self.ht + self.convergence)
+        ):
+            return
+        problems = _observation_problems(self)
+        if problems:
+            raise SurveyError(problems)
+
+    @property
+    def where(self) -> str:
+        """Where the observation stands, for messages."""
+        place = f"line {self.line}, " if self.line else ""
+        sight = "-".join(name for name in (self.back, self.at, self.to) if name)
+        return f"{place}{self.kind} {sight}"
+
+
+_POSITIVE = frozenset({ObservationKind.DISTANCE, ObservationKind.SLOPE_DISTANCE})
+
+
+def _observation_problems(obs: Observation) -> list[Problem]:
+    problems = []
+
+    def add(what: str, found: str, expected: str, hint: str = "") -> None:
+        problems.append(Problem(what, obs.where, found, expected, hint))
+
+    if not obs.at:
+        add("The occupied point is not named", "''", "the name of a point")
+    if not obs.to and obs.kind not in SINGLE_POINT:
+        add("The target is not named", "''", "the name of a point")
+    if obs.to and obs.at == obs.to:
+        add("A point is observed from itself", obs.at, "two different points")
+    if obs.kind is ObservationKind.ANGLE:
+        if not obs.back:
+            add("The back sight of an angle is not named", "''", "the name of a point")
+        elif obs.back == obs.to:
+            add("Both targets of an angle are the same", obs.to, "two different targets")
+        elif obs.back == obs.at:
+            add("A point is observed from itself", obs.at, "two different points")
+    if not math.isfinite(obs.value):
+        add("The value is no number", str(obs.value), "a finite number")
+    elif obs.kind in _POSITIVE and obs.value <= 0.0:
+        add("A side has no length", f"{obs.value:g} m", "a length above 0 m")
+    if not (0.0 < obs.sigma < math.inf):
+        add("The standard deviation is not positive", str(obs.sigma), "a number above 0")
+    if not math.isfinite(obs.hi + obs.ht + obs.convergence):
+        add("A height or a convergence is no number", f"{obs.hi}, {obs.ht}", "finite numbers")
+    return problems
+
+
+@dataclass(frozen=True, slots=True)
+class CorrelatedBlock:
+    """Observations with a common covariance matrix.
+
+    Parameters
+    ----------
+    members : tuple of int
+        Places in ``Network.observations``, without repetition.
+    covariance : tuple of tuple of float
+        Shape (k, k), symmetric and positive definite, in the units of the observations squared.
+
+    Raises
+    ------
+    SurveyError
+        If shape, symmetry or definiteness is wrong.
+    """
+
+    members: tuple[int, ...]
+    covariance: tuple[tuple[float, ...], ...]
+
+    def __post_init__(self) -> None:
+        size = len(self.members)
+        where = f"covariance matrix of {size} observations"
+        if len(set(self.members)) != size or size == 0:
+            raise SurveyError(
+                Problem("An observation stands twice in a block", where, str(self.members), "once")
+            )
+        matrix = np.asarray(self.covariance, dtype=np.float64)
+        if matrix.shape != (size, size):
+            found = "x".join(str(item) for item in matrix.shape)
+            raise SurveyError(
+                Problem("The covariance matrix has a wrong size", where, found, f"{size}x{size}")
+            )
+        if not np.isfinite(matrix).all() or not np.allclose(matrix, matrix.T, rtol=1e-9, atol=0.0):
+            raise SurveyError(
+                Problem("The covariance matrix is not symmetric", where, "", "a symmetric matrix")
+            )
+        scale = np.sqrt(np.abs(np.diag(matrix)))
+        if (scale <= 0.0).any() or float(np.linalg.eigvalsh(matrix / np.outer(scale, scale))[0]) < (
+            1e-12
+        ):
+            hint = "Are the covariances in the same order and units as the observations?"
+            raise SurveyError(
+                Problem(
+                    "The covariance matrix is not positive definite",
+                    where,
+                    "",
+                    "a positive definite matrix",
+                    hint,
+                )
+            )

@@ -1,0 +1,112 @@
+"""GNU Gama's XML (.gkf) as a network.
+
+Reads the whole vocabulary of ``gama-local``: coordinate axes and angle direction, both angular
+units, default standard deviations, points, all observation kinds, heights of instrument and
+target, covariance matrices, control coordinates, vectors and the attribute ``extern``. Values
+become true east, north and clockwise radians here and nowhere else. External entities and document
+types are refused.
+
+Source: GNU Gama manual, ch. 2, XML input data format; schema gama-local.xsd 1.01.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from surveyapp.domain.traverse import Network
+from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.importers.gkf_document import GkfDocument
+from surveyapp.io.importers.gkf_network import network_from
+
+if TYPE_CHECKING:
+    from xml.sax.handler import ContentHandler
+
+
+def _handler(document: GkfDocument) -> ContentHandler:
+    """Hands elements and their line to the document.
+
+    SAX offers no other interface than a subclass, and importing it costs: hence made here.
+    """
+    from xml.sax.handler import ContentHandler
+    from xml.sax.xmlreader import AttributesImpl, Locator
+
+    class Handler(ContentHandler):
+        locator: Locator | None = None
+
+        def setDocumentLocator(self, locator: Locator) -> None:
+            self.locator = locator
+
+        def startElement(self, name: str, attrs: AttributesImpl) -> None:
+            line = self.locator.getLineNumber() if self.locator is not None else 0
+            document.start(name, dict(attrs), line or 0)
+
+        def endElement(self, name: str) -> None:
+            document.end(name)
+
+        def characters(self, content: str) -> None:
+            document.text(content)
+
+    return Handler()
+
+
+def read_gkf(path: Path | str) -> Network:
+    """Read a .gkf file.
+
+    Parameters
+    ----------
+    path : Path or str
+
+    Returns
+    -------
+    Network
+        ``axes`` and ``left_handed`` remember how the file was written.
+
+    Raises
+    ------
+    SurveyError
+        All problems of the file together, with their lines.
+    """
+    path = Path(path)
+    document = GkfDocument(str(path.name))
+    _parse(path, document)
+    return network_from(document)
+
+
+def _parse(path: Path, document: GkfDocument) -> None:
+    from xml.sax import SAXParseException
+    from xml.sax.handler import feature_external_ges
+
+    from defusedxml.common import DefusedXmlException
+    from defusedxml.sax import make_parser
+
+    parser = make_parser()
+    parser.setFeature(feature_external_ges, False)
+    parser.setContentHandler(_handler(document))
+    try:
+        with path.open("rb") as stream:
+            parser.parse(stream)
+    except OSError as failure:
+        found = failure.strerror or str(failure)
+        raise SurveyError(
+            Problem("The file cannot be read", str(path), found, "a readable file")
+        ) from None
+    except DefusedXmlException:
+        raise SurveyError(
+            Problem(
+                "The file defines entities or a document type",
+                str(path),
+                "a DTD or an entity",
+                "plain gama-local XML",
+                "Such definitions can read other files; remove them.",
+            )
+        ) from None
+    except SAXParseException as failure:
+        raise SurveyError(
+            Problem(
+                "The file is no well-formed XML",
+                f"{path.name}, line {failure.getLineNumber()}",
+                failure.getMessage(),
+                "gama-local XML",
+            )
+        ) from None

@@ -1,0 +1,77 @@
+"""Points of a .gkf file: statuses, axes, and coordinates that nothing observes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from surveyapp.domain.observations import Observation, ObservationKind
+from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.traverse import NetworkPoint, Status
+from surveyapp.errors import SurveyError
+from surveyapp.io.importers.gkf_document import GkfDocument, PointEntry
+
+
+def _status(entry: PointEntry, letters: str) -> Status:
+    if any(letter in entry.fix.lower() for letter in letters):
+        return Status.FIXED
+    if any(letter.upper() in entry.adj for letter in letters):
+        return Status.CONSTRAINED
+    return Status.FREE if any(letter in entry.adj for letter in letters) else Status.UNUSED
+
+
+def network_point(document: GkfDocument, entry: PointEntry) -> NetworkPoint | None:
+    """Point of the network; what it refuses becomes problems of the document."""
+    plane: dict[str, float | None] = {"e": None, "n": None}
+    for axis, value in enumerate((entry.x, entry.y)):
+        component, sign = document.axes.component(axis)
+        plane[component] = None if value is None else sign * value
+    status = _status(entry, "xy")
+    try:
+        return NetworkPoint(
+            entry.name, plane["e"], plane["n"], entry.z, status, status, _status(entry, "z")
+        )
+    except SurveyError as refused:
+        for item in refused.problems:
+            document.problem(
+                item.what, entry.line, f"{item.where}: {item.found}", item.expected, item.hint
+            )
+        return None
+
+
+def _touched(observations: list[Observation]) -> dict[str, set[str]]:
+    """Components of each point that any observation touches."""
+    height = {
+        ObservationKind.HEIGHT_DIFFERENCE,
+        ObservationKind.COORDINATE_H,
+        ObservationKind.VECTOR_H,
+    }
+    both = {ObservationKind.SLOPE_DISTANCE, ObservationKind.ZENITH}
+    touched: dict[str, set[str]] = {}
+    for obs in observations:
+        parts = {"h"} if obs.kind in height else {"p", "h"} if obs.kind in both else {"p"}
+        for name in (obs.at, obs.back, obs.to):
+            if name:
+                touched.setdefault(name, set()).update(parts)
+    return touched
+
+
+def without_idle(
+    points: list[NetworkPoint], observations: list[Observation]
+) -> tuple[list[NetworkPoint], list[ResultWarning]]:
+    """Take coordinates that nothing observes out of the network, as the format's own program."""
+    touched = _touched(observations)
+    adjusted = (Status.FREE, Status.CONSTRAINED)
+    result, idle = [], []
+    for point in points:
+        parts = touched.get(point.name, set())
+        if point.status_e in adjusted and "p" not in parts:
+            point = replace(point, status_e=Status.UNUSED, status_n=Status.UNUSED)
+            idle.append(f"{point.name} (xy)")
+        if point.status_h in adjusted and "h" not in parts:
+            point = replace(point, status_h=Status.UNUSED)
+            idle.append(f"{point.name} (z)")
+        result.append(point)
+    if not idle:
+        return result, []
+    text = "To be adjusted but not observed, left out: " + ", ".join(idle)
+    return result, [ResultWarning("points_not_observed", text)]
