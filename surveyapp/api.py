@@ -19,6 +19,8 @@ from surveyapp.errors import Problem, SurveyError, nearest_names
 if TYPE_CHECKING:
     import numpy as np
 
+    from surveyapp.core.comparison import DemonstratedSample
+
 Folder = str | os.PathLike[str]
 
 SOFTWARE = f"surveyapp {__version__}"
@@ -135,3 +137,51 @@ def model(identity: str) -> InstrumentCard:
     from surveyapp.io.cards import read_card
 
     return read_card(identity, base=Path(), override={})
+
+
+def demo() -> tuple[DemonstratedSample, ...]:
+    """Orient the measured samples and compare with what their sources printed."""
+    from surveyapp.core.comparison import DemonstratedSample, compare_with_print
+    from surveyapp.io.locations import read_expected, sample_names, samples_folder
+
+    samples = []
+    for name in sample_names():
+        folder = samples_folder() / name
+        project = open_project(folder)
+        expected = read_expected(folder)
+        estimators = {str(entry.get("estimator")) for entry in expected.get("sessions", [])}
+        default = orient(project)
+        result = orient(project, estimator=estimators.pop()) if estimators else default
+        samples.append(
+            DemonstratedSample(
+                name=name,
+                folder=str(folder),
+                source=str(expected.get("source", "")),
+                result=result,
+                default=default,
+                comparisons=compare_with_print(expected, result),
+            )
+        )
+    return tuple(samples)
+
+
+def new_project(
+    folder: Folder, *, name: str | None = None, crs: str | None = None, angle_unit: str = "dms"
+) -> Path:
+    """Make a new project folder with a commented project.toml.
+
+    Raises
+    ------
+    SurveyError
+        If the folder holds anything already, or if the crs is no projected grid.
+    """
+    from surveyapp.core.geodesy import open_grid
+    from surveyapp.io.template import create_project
+    from surveyapp_models.angles import AngleUnit
+
+    path = Path(folder)
+    if crs is not None:
+        open_grid(crs)
+    title = name if name is not None else path.resolve().name
+    create_project(path, name=title, crs=crs, angle_unit=AngleUnit(angle_unit))
+    return path

@@ -24,6 +24,9 @@ from surveyapp.domain.project import Centring, Station, grid_bearing, grid_dista
 from surveyapp.domain.results import AngleResult, BudgetLine, LineResult, Reference
 from surveyapp_models.angles import wrap_pi, wrap_two_pi
 
+NOTHING = 1e-18
+"""Share of a variance that is rounding of the arithmetic and no source of error."""
+
 
 @dataclass(frozen=True, slots=True)
 class LineGeometry:
@@ -250,4 +253,8 @@ def budget(item: Uncertain, calibration_sessions: frozenset[str]) -> tuple[Budge
     if not 0.0 < total < math.inf:
         return ()
     ordered = sorted(by_source.items(), key=lambda entry: -entry[1])
-    return tuple(BudgetLine(name, math.sqrt(value), value / total) for name, value in ordered)
+    return tuple(
+        BudgetLine(name, math.sqrt(value), value / total)
+        for name, value in ordered
+        if value > NOTHING * total
+    )

@@ -31,6 +31,7 @@ from surveyapp.core.lines import (
     line_geometry,
 )
 from surveyapp.core.scatter import RunScatter, run_scatter
+from surveyapp.core.sequence import phase_of, session_moments
 from surveyapp.core.session import (
     ReducedSession,
     SightSigma,
@@ -102,7 +103,8 @@ def orient_project(
     warnings = list(project.warnings)
     reduced, sigmas = _reduce_all(project, rng, positions, stations, estimator)
     scatters = {
-        instrument.id: _scatter_of(reduced, instrument.id) for instrument in project.instruments
+        instrument.id: _scatter_of(project, reduced, instrument.id)
+        for instrument in project.instruments
     }
     geometry = _geometries(reduced, stations, grid, positions)
     constants = []
@@ -245,14 +247,23 @@ def _latitude_warnings(
     return []
 
 
-def _scatter_of(reduced: Sequence[ReducedSession], instrument: str) -> RunScatter:
+def _scatter_of(project: Project, reduced: Sequence[ReducedSession], instrument: str) -> RunScatter:
+    """Scatter between the runs of one line and epoch: a drift between epochs is not scatter."""
+    keys = session_moments(project, instrument)
+    surveys = [
+        keys[session.id]
+        for session in project.sessions
+        if session.instrument == instrument and session.purpose == "survey"
+    ]
     groups: dict[tuple[str, str, str], list[Uncertain]] = {}
     for item in reduced:
         if item.session.instrument != instrument:
             continue
         for target in item.targets:
             if target.gyro_azimuth is not None:
-                phase = item.session.purpose
+                phase: str = item.session.purpose
+                if phase == "calibration":
+                    phase = phase_of(keys[item.session.id], surveys)
                 key = (item.session.station, target.target, phase)
                 groups.setdefault(key, []).append(target.gyro_azimuth)
     aligned = []

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from surveyapp.core.automatic import reduce_automatic
+from surveyapp.core.nontracking import reduce_nontracking
 from surveyapp.core.reduction import Reduction
 from surveyapp.core.resolution import reading_resolution, rounding_sigma
 from surveyapp.core.sights import SightSet, eccentric_correction, reduce_sights
@@ -108,7 +109,8 @@ def reduce_swing(
     chosen = estimator_for(session, estimator)
     if session.method == "automatic":
         return reduce_automatic(session, card)
-    return reduce_tracking(session, card, rng, latitude=latitude, estimator=chosen)
+    reduce = reduce_tracking if session.method == "tracking" else reduce_nontracking
+    return reduce(session, card, rng, latitude=latitude, estimator=chosen)
 
 
 def sight_targets(session: OrientationSession) -> tuple[str, ...]:

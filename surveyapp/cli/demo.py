@@ -1,0 +1,47 @@
+"""``surveyapp demo``: orient the measured samples and lay print and computation side by side."""
+
+from __future__ import annotations
+
+import argparse
+
+from surveyapp.cli.output import heading, number, print_json, table
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Orient every sample; the exit code is 0 whatever the checks say."""
+    from surveyapp import api
+
+    samples = api.demo()
+    if options.json:
+        rows = [sample.to_dict() for sample in samples]
+        print_json({"schema": "surveyapp.demo/1", "samples": rows})
+        return 0
+    for sample in samples:
+        print(heading(f"{sample.name}: {sample.result.project}"))
+        print(f"source: {sample.source}\n")
+        rows = [
+            [
+                row.quantity,
+                row.printed,
+                row.computed,
+                number(row.difference, 2, sign=True),
+                row.unit,
+            ]
+            for row in sample.comparisons
+        ]
+        if rows:
+            print(table(["quantity", "printed", "computed", "difference", "unit"], rows))
+        for check in sample.default.checks:
+            if check.passed is False and check.text:
+                print(f"  not met: {check.where}: {check.text}")
+        print()
+    print("Look closer: surveyapp orient DIR, or the screens: surveyapp open DIR")
+    print("with DIR one of:")
+    for sample in samples:
+        print(f"  {sample.folder}")
+    return 0

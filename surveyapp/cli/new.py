@@ -1,0 +1,32 @@
+"""``surveyapp new DIR``: make a new project folder."""
+
+from __future__ import annotations
+
+import argparse
+
+from surveyapp.cli.output import print_json
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    parser.add_argument("folder", metavar="DIR", help="folder to make; must not hold anything")
+    parser.add_argument("--name", help="name of the project (default: the folder's)")
+    parser.add_argument("--crs", help="projected grid: EPSG code, PROJ string or WKT")
+    parser.add_argument("--angle-unit", choices=("dms", "gon", "deg"), default="dms")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Make the folder and say what comes next."""
+    from surveyapp import api
+
+    path = api.new_project(
+        options.folder, name=options.name, crs=options.crs, angle_unit=options.angle_unit
+    )
+    if options.json:
+        print_json({"schema": "surveyapp.new/1", "path": str(path)})
+        return 0
+    print(f"made {path / 'project.toml'}")
+    print("Fill in stations, instrument and sessions there (it says how), then:")
+    print(f"  surveyapp orient {path}")
+    return 0
