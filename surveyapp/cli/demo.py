@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 
 from surveyapp.cli.output import heading, number, print_json, table
+from surveyapp.domain.results import to_arcsec
+from surveyapp_models.angles import AngleUnit, format_angle
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -18,8 +20,8 @@ def run(options: argparse.Namespace) -> int:
 
     samples = api.demo()
     if options.json:
-        rows = [sample.to_dict() for sample in samples]
-        print_json({"schema": "surveyapp.demo/1", "samples": rows})
+        documents = [sample.to_dict() for sample in samples]
+        print_json({"schema": "surveyapp.demo/1", "samples": documents})
         return 0
     for sample in samples:
         print(heading(f"{sample.name}: {sample.result.project}"))
@@ -36,8 +38,13 @@ def run(options: argparse.Namespace) -> int:
         ]
         if rows:
             print(table(["quantity", "printed", "computed", "difference", "unit"], rows))
+        for session in sample.default.sessions:
+            if session.gyro_north is not None:
+                north = format_angle(session.gyro_north.value, AngleUnit.DMS)
+                sigma = number(to_arcsec(session.gyro_north.sigma))
+                print(f'  {session.id}: gyro north by {session.estimator} {north} +-{sigma}"')
         for check in sample.default.checks:
-            if check.passed is False and check.text:
+            if check.passed is False and not check.rule.startswith("fit."):
                 print(f"  not met: {check.where}: {check.text}")
         print()
     print("Look closer: surveyapp orient DIR, or the screens: surveyapp open DIR")

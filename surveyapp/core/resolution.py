@@ -1,55 +1,67 @@
-"""The resolution with which a surveyor reads: the coarsest step that divides every reading."""
+"""The resolution with which a surveyor read, taken from the readings themselves.
+
+The coarsest usual step that divides every reading of one kind (design.md section 3). It never
+looks at more than one kind: the caller passes turning points by themselves.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-
-import numpy as np
+from typing import Final
 
 from surveyapp.domain.readings import Reading
-from surveyapp_models.angles import ARCSEC, TWO_PI
+from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, TWO_PI
 
-ARCSEC_STEPS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 6.0, 10.0, 20.0, 30.0, 60.0)
-UNIT_SIZE = {"gon": TWO_PI / 400.0, "deg": TWO_PI / 360.0, "div": 1.0}
-_TOLERANCE = 1e-4
-"""Of a step: far above rounding of a parsed decimal, far below half a step."""
-
-
-def _divides(values: Sequence[float], step: float) -> bool:
-    ratios = np.asarray(values) / step
-    return bool(np.all(np.abs(ratios - np.round(ratios)) < _TOLERANCE))
+ARCSEC_STEPS: Final = (60.0, 30.0, 20.0, 10.0, 6.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1)
+_DECADES: Final = range(1, -8, -1)
+_TOLERANCE: Final = 1e-3
+"""Share of a step within which a reading counts as a multiple: far above the rounding of a float
+(2e-9 of 0.1" at 360 degrees), far below half a step."""
 
 
-def reading_resolution(readings: Sequence[Reading]) -> float:
-    """Resolution of the readings of one kind in one session.
+def infer_resolution(readings: Sequence[float], unit: str) -> float:
+    """Coarsest usual step that divides every reading.
 
     Parameters
     ----------
-    readings : sequence of Reading
-        Of one kind; their unit token decides which steps are tried.
+    readings : sequence of float
+        Readings of one kind: angles [rad], or [div] for scale kinds.
+    unit : str
+        Unit token in which they were written: dms, gon, deg, or div (or any other unit of a
+        plain number).
 
     Returns
     -------
     float
-        [rad] for angles, [div] for scale readings; 0.0 where nothing can be told (no reading, or
-        finer than every step).
-
-    Source: design.md section 3: 0.1 to 60" for degrees-minutes-seconds, else 1, 2, 5 x 10^k of
-    the unit.
+        The step [rad], for plain numbers in their unit. Without a usual step, or without
+        readings, the finest one.
     """
-    values = [row.value for row in readings if row.value is not None]
+    if unit == "dms":
+        return _coarsest([value * RHO_ARCSEC for value in readings], ARCSEC_STEPS) * ARCSEC
+    factor = {"gon": 400.0 / TWO_PI, "deg": 360.0 / TWO_PI}.get(unit, 1.0)
+    steps = tuple(m * 10.0**k for k in _DECADES for m in (5.0, 2.0, 1.0))
+    return _coarsest([value * factor for value in readings], steps) / factor
+
+
+def _coarsest(values: Sequence[float], steps: Sequence[float]) -> float:
     if not values:
-        return 0.0
-    unit = readings[0].unit
-    if unit in UNIT_SIZE:
-        size = UNIT_SIZE[unit]
-        steps = [m * 10.0**k * size for k in range(-7, 3) for m in (1.0, 2.0, 5.0)]
-    else:
-        steps = [step * ARCSEC for step in ARCSEC_STEPS]
-    return max((step for step in steps if _divides(values, step)), default=0.0)
+        return steps[-1]
+    return next((step for step in steps if all(_divides(step, v) for v in values)), steps[-1])
+
+
+def _divides(step: float, value: float) -> bool:
+    quotient = value / step
+    floor = 1e-12 * abs(value) / step
+    return abs(quotient - round(quotient)) <= max(_TOLERANCE, floor)
+
+
+def reading_resolution(readings: Sequence[Reading]) -> float:
+    """Resolution of rows of one kind [rad] or [div]; 0 where there is no row."""
+    values = [row.value for row in readings if row.value is not None]
+    return infer_resolution(values, readings[0].unit) if values else 0.0
 
 
 def rounding_sigma(resolution: float) -> float:
-    """Standard deviation of rounding to a resolution."""
+    """Standard deviation of rounding to a resolution, resolution / sqrt(12)."""
     return resolution / math.sqrt(12.0)

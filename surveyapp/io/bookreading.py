@@ -12,11 +12,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
+from surveyapp.core.resolution import infer_resolution
 from surveyapp.domain.readings import SWING_KINDS, FieldBook, Place, Reading, ReadingKind
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.bookrows import RawBook, parse_rows
 from surveyapp.io.files import decode, read_bytes, shown
-from surveyapp.io.resolution import infer_resolution
 from surveyapp.io.sides import sides_of_swing
 from surveyapp.io.strikes import find_strikes, live_rows
 from surveyapp_models.angles import AngleUnit

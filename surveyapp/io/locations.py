@@ -5,8 +5,10 @@ It names folders and makes none of them.
 
 from __future__ import annotations
 
+import json
 import shutil
 from pathlib import Path
+from typing import Any
 
 import surveyapp
 from surveyapp.errors import Problem, SurveyError, nearest_names
@@ -61,3 +63,12 @@ def user_config_folder() -> Path:
     import platformdirs
 
     return Path(platformdirs.user_config_path("surveyapp", appauthor=False))
+
+
+def read_expected(folder: Path) -> dict[str, Any]:
+    """What the source of a sample printed (its ``expected.json``); empty where there is none."""
+    path = folder / "expected.json"
+    if not path.is_file():
+        return {}
+    value = json.loads(path.read_text(encoding="utf-8"))
+    return dict(value)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from surveyapp.io.resolution import ARCSEC_STEPS, infer_resolution
+from surveyapp.core.resolution import ARCSEC_STEPS, infer_resolution
 from surveyapp_models.angles import ARCSEC, AngleUnit, parse_angle
 
 
