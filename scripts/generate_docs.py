@@ -13,7 +13,12 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "models")]
 
-PAGE_MODULES: tuple[str, ...] = ("pages_effects", "pages_estimators", "pages_latitude")
+PAGE_MODULES: tuple[str, ...] = (
+    "pages_effects",
+    "pages_estimators",
+    "pages_latitude",
+    "pages_simulator",
+)
 
 
 def all_pages() -> dict[str, str]:

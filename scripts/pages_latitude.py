@@ -111,6 +111,11 @@ METHODS = ("tracking", "amplitude", "transit, C a dt", "transit, arcsine")
 
 def pages() -> dict[str, str]:
     """Text of the page by its path below docs/."""
+    return {"reference/latitude.md": "\n".join(_coefficients() + _costs()) + "\n"}
+
+
+def _coefficients() -> list[str]:
+    """Section of the values against latitude."""
     lines = [
         "# Periods and coefficients against latitude",
         "",
@@ -136,12 +141,19 @@ def pages() -> dict[str, str]:
             f"| {card.ratio.value:.4f} ({card.ratio.sigma:.4f}) "
             f"| {c.value:.3f} ({c.sigma:.3f}) |"
         )
-    lines += [
+    return [
+        *lines,
         "",
         "One standard deviation in brackets, propagated from the two periods. C falls with",
         "latitude while lambda is below 1/2, stands still there and rises above: neither the",
         "cosine nor the secant of the latitude carries it.",
         "",
+    ]
+
+
+def _costs() -> list[str]:
+    """Section of the errors with and without latitude."""
+    lines = [
         "## What a card costs that ignores latitude",
         "",
         "Error of gyro north of one undisturbed session (no reading errors, clamp 8' from north,",
@@ -160,10 +172,10 @@ def pages() -> dict[str, str]:
             ]
             text = " | ".join(f"{round(error, 1) + 0.0:+.1f}" for error in errors)
             lines.append(f"| {method} | {degrees:+.0f} | {text} |")
-    lines += [
+    return [
+        *lines,
         "",
         "Tracking sees lambda in the tape zero only; the other methods see it in the whole",
         "distance between the clamp and north as well. What the linear form C a dt leaves is its",
         "own linearisation, (pi dt/2 T2)^2/6 of that distance.",
     ]
-    return {"reference/latitude.md": "\n".join(lines) + "\n"}

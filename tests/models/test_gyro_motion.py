@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
 import pytest
 
-from surveyapp_models.gyro.coefficients import transit_coefficient_from_periods
+from surveyapp_models.gyro.coefficients import (
+    north_error_of_spin_change,
+    torsion_ratio_from_clampings,
+    transit_coefficient_from_clampings,
+    transit_coefficient_from_periods,
+)
 from surveyapp_models.gyro.estimates import Estimate
 from surveyapp_models.gyro.integration import (
     Disturbance,
@@ -316,6 +322,59 @@ def test_tape_zero_check_numbers():
     turns = turning_points(tracked, 4).azimuth[0]
     mean = (turns[0] + 3 * turns[1] + 3 * turns[2] + turns[3]) / 8
     assert mean / ARCSEC == pytest.approx(48.01, abs=0.01)
+
+
+def clamped_centre(gyro: SuspendedGyro, latitude: float, clamp: float, zero: float) -> tuple:
+    """Centre of swing [div] and a dt [div s] of a clamping, from its motion; zero in rad."""
+    period, mu = clamped_period_s(gyro, latitude), 600 * ARCSEC
+    motion = integrate(
+        gyro,
+        latitude,
+        Start(np.array([clamp + 7 * mu]), np.zeros(1)),
+        duration_s=3 * period,
+        step_s=period / 192,
+        tape=TapeTop("clamped", clamp=clamp, zero=lambda t: zero),
+    )
+    x = (turning_points(motion, 4).azimuth[0] - clamp) / mu
+    crossed = passages(motion, clamp, 3)
+    first, second = np.diff(crossed.time_s[0])
+    difference = first - second if crossed.rising[0, 0] else second - first
+    return float((x[0] + 3 * x[1] + 3 * x[2] + x[3]) / 8), float(np.ptp(x[1:3]) / 2 * difference)
+
+
+def test_two_clampings_of_the_integrated_motion_give_lambda_and_c():
+    """12' east and 12' west with a tape zero: lambda of the tape, C of the periods."""
+    gyro, latitude, mu = table_gyro(), rad(-60), 600 * ARCSEC
+    clamps = (720 * ARCSEC, -720 * ARCSEC)
+    (b1, p1), (b2, p2) = (clamped_centre(gyro, latitude, c, 0.3 * mu) for c in clamps)
+    exact = [Estimate(c, 0.0) for c in clamps]
+    found = torsion_ratio_from_clampings(
+        (exact[0], exact[1]), (Estimate(b1, 0.0), Estimate(b2, 0.0)), scale_value=mu
+    )
+    true = gyro.torsion / directive_moment(gyro, latitude)
+    # the sine softens M by A^2/8 at 70' of amplitude: 5e-5 of 1 + lambda
+    assert found.value == pytest.approx(true, abs=6e-5)
+    c = transit_coefficient_from_clampings(
+        (exact[0], exact[1]), (Estimate(p1, 0.0), Estimate(p2, 0.0))
+    )
+    t1, t2 = tracking_period_s(gyro, latitude), clamped_period_s(gyro, latitude)
+    expected = transit_coefficient_from_periods(Estimate(t1, 0), Estimate(t2, 0), scale_value=mu)
+    # the linear form is (pi dt/2 T2)^2/6 off at 12'
+    assert c.value == pytest.approx(expected.value, rel=4e-3)
+
+
+def test_change_of_spin_moves_north_by_the_share_of_the_torsion():
+    """One percent more spin, lambda as before: from the integrated motion and by formula."""
+    mu, zero, clamp, latitude = 600 * ARCSEC, 0.4 * 600 * ARCSEC, 480 * ARCSEC, rad(47)
+    base = table_gyro()
+    faster = dataclasses.replace(base, angular_momentum=1.01 * base.angular_momentum)
+    centre, _ = clamped_centre(faster, latitude, clamp, zero)
+    north = clamp + 1.2 * mu * centre - 0.2 * zero
+    expected = north_error_of_spin_change(
+        0.2, spin_change=0.01, scale_value=mu, centre_div=centre, zero_div=0.4
+    )
+    assert north / ARCSEC == pytest.approx(expected / ARCSEC, abs=0.02)
+    assert abs(expected) > 1.0 * ARCSEC
 
 
 def test_amplitude_method_reaches_the_same_north_south_of_the_equator():

@@ -214,6 +214,31 @@ def transit_coefficient_latitude_slope(ratio: float, latitude: float) -> float:
     return -math.tan(latitude) * (1.0 - 2.0 * ratio) / (2.0 * (1.0 + ratio))
 
 
+def north_error_of_spin_change(
+    ratio: float, *, spin_change: float, scale_value: float, centre_div: float, zero_div: float
+) -> float:
+    """Return the error of north when the spin has changed and lambda is used as it was [rad].
+
+    Parameters
+    ----------
+    ratio : float
+        lambda at the spin of the calibration [-]; it goes with 1/H.
+    spin_change : float
+        Relative change of the spin since, 0.01 for one percent more.
+    scale_value : float
+        mu [rad/div].
+    centre_div, zero_div : float
+        Centre of swing B (0 for a tracked swing, whose scale is held on 0) and tape zero d [div].
+
+    Returns
+    -------
+    float
+        Computed minus true north, (lambda - lambda_now) mu (B - d).
+    """
+    now = ratio / (1.0 + spin_change)
+    return (ratio - now) * scale_value * (centre_div - zero_div)
+
+
 def check_torsion_ratio(ratio: float, *, tracking_s: float, clamped_s: float) -> None:
     """Hold a card's lambda against T1^2/T2^2 - 1 of the same latitude.
 

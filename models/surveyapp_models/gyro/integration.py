@@ -188,6 +188,35 @@ def _propagator(system: FloatArray, width: float, column: int, gain: float) -> _
     )
 
 
+def _stiffness(gyro: SuspendedGyro, latitude: float, tape: TapeTop) -> float:
+    """M, and D with it where the clamp is fixed [N m/rad]."""
+    torsion = gyro.torsion if tape.mode == "clamped" else 0.0
+    return directive_moment(gyro, latitude) + torsion
+
+
+def _system(gyro: SuspendedGyro, latitude: float, stiffness: float) -> FloatArray:
+    """The linear part for azimuth, its rate, elevation above the rest tilt, its rate."""
+    spin, inertia, elevation = gyro.angular_momentum, gyro.vertical_inertia, gyro.elevation_inertia
+    pendulum = gyro.pendulosity + directive_moment(gyro, latitude)
+    return np.array(
+        [
+            [0.0, 1.0, 0.0, 0.0],
+            [-stiffness / inertia, 0.0, 0.0, spin / inertia],
+            [0.0, 0.0, 0.0, 1.0],
+            [0.0, -spin / elevation, -pendulum / elevation, 0.0],
+        ]
+    )
+
+
+def _at_start(start: Start) -> tuple[FloatArray, FloatArray]:
+    """Azimuth and velocity of every run, both (runs,)."""
+    azimuth, velocity = np.broadcast_arrays(
+        np.atleast_1d(np.asarray(start.azimuth, dtype=np.float64)),
+        np.asarray(start.velocity, dtype=np.float64),
+    )
+    return azimuth, velocity
+
+
 def integrate(
     gyro: SuspendedGyro,
     latitude: float,
@@ -221,27 +250,12 @@ def integrate(
     """
     tape = TapeTop() if tape is None else tape
     force = _forcing(gyro, latitude, tape, disturbance or Disturbance())
-    moment = directive_moment(gyro, latitude)
-    stiffness = moment + (gyro.torsion if tape.mode == "clamped" else 0.0)
-    elevation_stiffness = gyro.pendulosity + moment
-    spin, inertia, elevation = gyro.angular_momentum, gyro.vertical_inertia, gyro.elevation_inertia
-    # state: azimuth, its rate, elevation above the rest tilt, its rate
-    system = np.array(
-        [
-            [0.0, 1.0, 0.0, 0.0],
-            [-stiffness / inertia, 0.0, 0.0, spin / inertia],
-            [0.0, 0.0, 0.0, 1.0],
-            [0.0, -spin / elevation, -elevation_stiffness / elevation, 0.0],
-        ]
-    )
-    step = _propagator(system, step_s, 1, 1.0 / inertia)
+    stiffness = _stiffness(gyro, latitude, tape)
+    step = _propagator(_system(gyro, latitude, stiffness), step_s, 1, 1.0 / gyro.vertical_inertia)
     slow = effective_inertia(gyro, latitude)
-    to_rate = -elevation_stiffness / spin
+    to_rate = -(gyro.pendulosity + directive_moment(gyro, latitude)) / gyro.angular_momentum
 
-    azimuth, velocity = np.broadcast_arrays(
-        np.atleast_1d(np.asarray(start.azimuth, dtype=np.float64)),
-        np.asarray(start.velocity, dtype=np.float64),
-    )
+    azimuth, velocity = _at_start(start)
     first = force(start.time_s, azimuth, velocity, np.sign(velocity))
     acceleration = (first - stiffness * azimuth) / slow
     state = np.array([azimuth, velocity, velocity / to_rate, acceleration / to_rate])
@@ -289,13 +303,9 @@ def integrate_precession(
     """
     tape = TapeTop() if tape is None else tape
     force = _forcing(gyro, latitude, tape, disturbance or Disturbance())
-    moment = directive_moment(gyro, latitude)
-    stiffness = moment + (gyro.torsion if tape.mode == "clamped" else 0.0)
+    stiffness = _stiffness(gyro, latitude, tape)
     inertia = effective_inertia(gyro, latitude)
-    azimuth, velocity = np.broadcast_arrays(
-        np.atleast_1d(np.asarray(start.azimuth, dtype=np.float64)),
-        np.asarray(start.velocity, dtype=np.float64),
-    )
+    azimuth, velocity = _at_start(start)
 
     def slope(t: float, x: FloatArray, v: FloatArray) -> FloatArray:
         return np.asarray((force(t, x, v, np.sign(v)) - stiffness * x) / inertia)

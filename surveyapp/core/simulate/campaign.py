@@ -60,6 +60,9 @@ CAMPAIGN_EFFECTS: Final = (
 )
 """Effects of a campaign."""
 
+RESOLUTION: Final = 0.1 * ARCSEC
+"""Of the circle readings [rad]."""
+
 
 @dataclass(frozen=True, slots=True)
 class CampaignSpec:
@@ -195,47 +198,87 @@ class _Layout:
     observed: int
 
 
-def _layout(spec: CampaignSpec, rng: np.random.Generator) -> _Layout:
-    """Days of work with two to ``per_day`` determinations each, one line a day."""
+def _plan(spec: CampaignSpec, rng: np.random.Generator) -> tuple[IntArray, IntArray]:
+    """Block and line of each determination: two to ``per_day`` a day, one line a day."""
     block: list[int] = []
     line: list[int] = []
-    day_index = 0
+    day = 0
     while len(block) < spec.determinations:
         count = min(int(rng.integers(2, spec.per_day + 1)), spec.determinations - len(block))
-        block += [day_index] * count
+        block += [day] * count
         line += [int(rng.integers(len(spec.latitudes)))] * count
-        day_index += 1
-    for survey in range(spec.surveys):
-        block.append(day_index + survey // 2)
-        line.append(len(spec.latitudes))
-    blocks = np.array(block, dtype=np.int64)
-    lines = np.array(line, dtype=np.int64)
-    first_survey = spec.days * (1.0 + 0.5 / max(day_index, 1))
-    dates = np.concatenate(
-        [
-            np.round(np.sort(rng.uniform(0.0, spec.days, day_index))),
-            np.round(first_survey + 7.0 * np.arange(1 + spec.surveys // 2)),
-        ]
-    )
-    dates += np.arange(len(dates))  # no two spin-ups on one day
-    place = np.array([i - block.index(b) for i, b in enumerate(block)], dtype=np.float64)
-    running = 300.0 + 1500.0 * place + rng.uniform(0.0, 600.0, len(block))
+        day += 1
+    block += [day + survey // 2 for survey in range(spec.surveys)]
+    line += [len(spec.latitudes)] * spec.surveys
+    return np.array(block, dtype=np.int64), np.array(line, dtype=np.int64)
+
+
+def _layout(spec: CampaignSpec, rng: np.random.Generator) -> _Layout:
+    """Days of work in season and weather, each with one spin-up."""
+    block, line = _plan(spec, rng)
+    days = int(block[-1]) + 1
+    worked = int(block[spec.determinations - 1]) + 1
+    later = spec.days * (1.0 + 0.5 / worked) + 7.0 * np.arange(days - worked)
+    dates = np.round(np.concatenate([np.sort(rng.uniform(0.0, spec.days, worked)), later]))
+    dates += np.arange(days)  # no two spin-ups on one day
+    first = np.searchsorted(block, block)
+    place = np.arange(block.size) - first
+    running = 300.0 + 1500.0 * place + rng.uniform(0.0, 600.0, block.size)
     season = spec.temperature_season_c * np.cos(TWO_PI * dates / 365.25)
-    daily = spec.temperature_c + season + spec.temperature_daily_c * rng.normal(size=len(dates))
-    temperature = daily[blocks] + 0.5 * rng.normal(size=len(block))
+    daily = spec.temperature_c + season + spec.temperature_daily_c * rng.normal(size=days)
+    temperature = daily[block] + 0.5 * rng.normal(size=block.size)
     places = (*spec.latitudes, spec.latitudes[0])
     azimuths = rng.uniform(0.0, TWO_PI, len(places))
-    days = dates[blocks] + running / 86400.0
+    moments = dates[block] + running / 86400.0
     return _Layout(
-        days=days - days[0],
+        days=moments - moments[0],
         temperature=np.round(temperature, 1),
-        line=lines,
-        block=blocks,
+        line=line,
+        block=block,
         running=running,
-        latitude=np.array(places)[lines],
-        azimuth=azimuths[lines],
+        latitude=np.array(places)[line],
+        azimuth=azimuths[line],
         observed=spec.determinations,
     )
+
+
+@dataclass(frozen=True, slots=True)
+class _Acting:
+    """What the effects add, and where."""
+
+    constant: FloatArray
+    line_offset: FloatArray
+    gross: FloatArray
+    sine: float
+    cosine: float
+    drawn: dict[str, float]
+
+    def read(self, true_reading: FloatArray) -> FloatArray:
+        """A reading of the eccentric circle [rad]."""
+        error = self.sine * np.sin(true_reading) + self.cosine * np.cos(true_reading)
+        return np.asarray(true_reading + error)
+
+
+def _act(spec: CampaignSpec, layout: _Layout, rng: np.random.Generator) -> _Acting:
+    """Realise the effects of a campaign."""
+    count = layout.days.size
+    drawn: dict[str, float] = {}
+    constant, offset, gross = np.full(count, spec.constant), np.zeros(count), np.zeros(count)
+    sine = cosine = 0.0
+    for effect in spec.effects:
+        if effect.id == "circle_eccentricity":
+            phase = math.radians(_drawn(effect, "phase", drawn, rng.uniform(0.0, 360.0)))
+            sine += effect.size * math.cos(phase)
+            cosine += effect.size * math.sin(phase)
+        elif effect.id == "line_offset":
+            number = _drawn(effect, "line", drawn, float(rng.integers(len(spec.latitudes))))
+            offset += effect.size * (layout.line == int(number))
+        elif effect.id == "gross_error":
+            chosen = rng.permutation(layout.observed)[: int(effect.option("count") or 1)]
+            gross[chosen] += effect.size * rng.choice([-1.0, 1.0], size=len(chosen))
+        else:
+            constant += _instrument_shift(effect, spec, layout, (rng, drawn))
+    return _Acting(constant, offset, gross, sine, cosine, drawn)
 
 
 def simulate_campaign(spec: CampaignSpec, rng: np.random.Generator) -> SimulatedCampaign:
@@ -251,42 +294,18 @@ def simulate_campaign(spec: CampaignSpec, rng: np.random.Generator) -> Simulated
     SimulatedCampaign
     """
     layout = _layout(spec, rng)
+    acting = _act(spec, layout, rng)
     count = layout.days.size
-    drawn: dict[str, float] = {}
-    constant = np.full(count, spec.constant)
-    sine = cosine = 0.0
-    offset = np.zeros(count)
-    gross = np.zeros(count)
-    for effect in spec.effects:
-        if effect.id == "circle_eccentricity":
-            phase = math.radians(_drawn(effect, "phase", drawn, rng.uniform(0.0, 360.0)))
-            sine += effect.size * math.cos(phase)
-            cosine += effect.size * math.sin(phase)
-        elif effect.id == "line_offset":
-            number = _drawn(effect, "line", drawn, float(rng.integers(len(spec.latitudes))))
-            offset += effect.size * (layout.line == int(number))
-        elif effect.id == "gross_error":
-            chosen = rng.permutation(layout.observed)[: int(effect.option("count") or 1)]
-            gross[chosen] += effect.size * rng.choice([-1.0, 1.0], size=len(chosen))
-        else:
-            constant += _instrument_shift(effect, spec, layout, rng, drawn)
     circle = rng.uniform(0.0, TWO_PI, count)  # circle reading of true north
-    line, north = circle + layout.azimuth, circle + constant
-
-    def with_circle_error(reading: FloatArray) -> FloatArray:
-        return np.asarray(reading + sine * np.sin(reading) + cosine * np.cos(reading))
-
     rounds = rng.integers(1, 4, count)
     faces = np.array([0.0, math.pi])
-    sights = with_circle_error(line)[:, None, None] + faces
-    sights = sights + spec.sigma_sight * rng.normal(size=(count, 2, 2))
-    readings = (with_circle_error(north) + gross)[:, None]
-    readings = readings + spec.sigma_round * rng.normal(size=(count, 3))
-    sights = np.round(sights / (0.1 * ARCSEC)) * (0.1 * ARCSEC)
-    readings = np.round(readings / (0.1 * ARCSEC)) * (0.1 * ARCSEC)
-    read = np.arange(3) < rounds[:, None]
-    mean_north = np.sum(readings * read, axis=1) / rounds
+    sights = acting.read(circle + layout.azimuth)[:, None, None] + faces
+    sights = _rounded(sights + spec.sigma_sight * rng.normal(size=(count, 2, 2)))
+    north = (acting.read(circle + acting.constant) + acting.gross)[:, None]
+    north = _rounded(north + spec.sigma_round * rng.normal(size=(count, 3)))
+    mean_north = np.sum(north * (np.arange(3) < rounds[:, None]), axis=1) / rounds
     mean_line = np.mean(sights - faces, axis=(1, 2))
+    known = layout.azimuth + acting.line_offset
     return SimulatedCampaign(
         spec=spec,
         elapsed_days=layout.days,
@@ -296,15 +315,19 @@ def simulate_campaign(spec: CampaignSpec, rng: np.random.Generator) -> Simulated
         block=layout.block,
         running_s=layout.running,
         azimuth=layout.azimuth,
-        azimuth_known=layout.azimuth + offset,
+        azimuth_known=known,
         rounds=np.asarray(rounds, dtype=np.int64),
         line_reading=sights,
-        north_reading=readings,
-        constant=layout.azimuth + offset - (mean_line - mean_north),
+        north_reading=north,
+        constant=known - (mean_line - mean_north),
         sigma=np.sqrt(spec.sigma_round**2 / rounds + spec.sigma_sight**2 / 4.0),
-        true_constant=constant,
-        drawn=drawn,
+        true_constant=acting.constant,
+        drawn=acting.drawn,
     )
+
+
+def _rounded(reading: FloatArray) -> FloatArray:
+    return np.asarray(np.round(reading / RESOLUTION) * RESOLUTION)
 
 
 def _drawn(effect: Effect, name: str, drawn: dict[str, float], value: float) -> float:
@@ -319,10 +342,10 @@ def _instrument_shift(
     effect: Effect,
     spec: CampaignSpec,
     layout: _Layout,
-    rng: np.random.Generator,
-    drawn: dict[str, float],
+    draw: tuple[np.random.Generator, dict[str, float]],
 ) -> FloatArray:
     """What an effect adds to the instrument's own constant, (n,) [rad]."""
+    rng, drawn = draw
     size, count = effect.size, layout.days.size
     if effect.id == "temperature":
         return np.asarray(size * (layout.temperature - spec.reference_temperature_c))

@@ -27,6 +27,8 @@ OfTime = Callable[[FloatArray], FloatArray]
 
 PATH_STEPS = 16
 """Steps of a random path per half swing."""
+PATH_LEAD = 2
+"""Half swings by which a random path is longer than the run at either end."""
 STEP_DURATION = 0.01
 """Duration of a sudden change in half swings: a touch of the tripod lasts seconds, not zero."""
 
@@ -84,6 +86,17 @@ class Disturbed:
     drawn: dict[str, FloatArray]
 
 
+@dataclass(frozen=True, slots=True)
+class _Draw:
+    """What the realisation of an effect needs; ``drawn`` collects the truth."""
+
+    spec: SessionSpec
+    design: RunDesign
+    rng: np.random.Generator
+    temperature: OfTime
+    drawn: dict[str, FloatArray]
+
+
 def damped_gyro(spec: SessionSpec) -> SuspendedGyro:
     """Return the session's gyro with the viscous damping that gives ``spec.ratio`` tracked."""
     decrement = -math.log(spec.ratio) / math.pi
@@ -107,17 +120,10 @@ def disturb(spec: SessionSpec, design: RunDesign, rng: np.random.Generator) -> D
     -------
     Disturbed
     """
+    draw = _Draw(spec, design, rng, _temperature(spec, design, rng), {})
     gyro = damped_gyro(spec)
     moment = directive_moment(gyro, spec.latitude)
-    stiffness = moment + (gyro.torsion if spec.clamped else 0.0)
-    inertia = effective_inertia(gyro, spec.latitude)
-    drawn: dict[str, FloatArray] = {}
-    temperature = _temperature(spec, design, rng)
-    shifts = [
-        shift
-        for effect in spec.effects
-        if (shift := _shift(effect, spec, design, rng, drawn, temperature)) is not None
-    ]
+    shifts = [SHIFTS[effect.id](effect, draw) for effect in spec.effects if effect.id in SHIFTS]
 
     def north_shift(t: FloatArray) -> FloatArray:
         total = np.zeros(np.broadcast_shapes(np.shape(t), (design.runs, 1)))
@@ -125,24 +131,25 @@ def disturb(spec: SessionSpec, design: RunDesign, rng: np.random.Generator) -> D
             total = total + shift(t)
         return total
 
-    size = dict.fromkeys(
-        ("quadratic_drag", "dry_friction", "amplitude_asymmetry", "one_sided_lag"), 0.0
-    )
-    for effect in spec.effects:
-        if effect.id in size:
-            size[effect.id] += effect.size
     first = spec.first_amplitude
-    asymmetry = size["amplitude_asymmetry"] / first**2
+    stiffness = moment + (gyro.torsion if spec.clamped else 0.0)
+    asymmetry = _total(spec, "amplitude_asymmetry") / first**2
+    inertia = effective_inertia(gyro, spec.latitude)
     disturbance = Disturbance(
         torque=(lambda t: moment * north_shift(np.asarray(t))[:, 0]) if shifts else None,
-        damping=_damping(spec, design, gyro, (rng, drawn)),
-        quadratic_drag=0.75 * size["quadratic_drag"] * inertia / first,
-        dry_friction=0.5 * size["dry_friction"] * stiffness,
+        damping=_damping(gyro, draw),
+        quadratic_drag=0.75 * _total(spec, "quadratic_drag") * inertia / first,
+        dry_friction=0.5 * _total(spec, "dry_friction") * stiffness,
         asymmetry=-3.0 * asymmetry * stiffness,
     )
-    ratio = gyro.torsion / moment
-    lag = size["one_sided_lag"] / ratio if ratio > 0.0 else 0.0
-    return Disturbed(gyro, disturbance, lag, north_shift, temperature, asymmetry, drawn)
+    follows = not spec.clamped and gyro.torsion > 0.0
+    lag = _total(spec, "one_sided_lag") * moment / gyro.torsion if follows else 0.0
+    return Disturbed(gyro, disturbance, lag, north_shift, draw.temperature, asymmetry, draw.drawn)
+
+
+def _total(spec: SessionSpec, identity: str) -> float:
+    """Sum of the sizes of the effects of one kind."""
+    return sum(effect.size for effect in spec.effects if effect.id == identity)
 
 
 def tape_top(spec: SessionSpec, disturbed: Disturbed, zero_div: OfTime) -> TapeTop:
@@ -159,16 +166,14 @@ def tape_top(spec: SessionSpec, disturbed: Disturbed, zero_div: OfTime) -> TapeT
     )
 
 
-def _drawn_option(
-    effect: Effect, name: str, drawn: dict[str, FloatArray], values: FloatArray
-) -> FloatArray:
+def _drawn_option(effect: Effect, name: str, draw: _Draw, values: FloatArray) -> FloatArray:
     """The option as given or by its default, else as drawn; kept for the truth; (runs, 1)."""
     given = effect.option(name)
     if given is None:
         kind = next(kind for kind in RUN_EFFECTS if kind.id == effect.id)
         given = dict(kind.options)[name]
     result = values if given is None else np.full_like(values, given)
-    drawn[f"{effect.id}.{name}"] = result
+    draw.drawn[f"{effect.id}.{name}"] = result
     return result[:, None]
 
 
@@ -177,97 +182,107 @@ def _ramp(t: FloatArray, at: FloatArray, duration: float) -> FloatArray:
     return np.asarray(np.clip((t - at) / duration + 0.5, 0.0, 1.0))
 
 
-def _place(effect: Effect, design: RunDesign, rng: np.random.Generator) -> FloatArray:
-    """Where in the run, as a share of it: not near its ends, where nothing could be told."""
-    margin = min(0.3, 3.0 / design.points)
-    return rng.uniform(margin, 1.0 - margin, design.runs)
+def _moment(effect: Effect, draw: _Draw) -> FloatArray:
+    """When a sudden change comes [s], not near the ends, where nothing could be told."""
+    margin = min(0.3, 3.0 / draw.design.points)
+    share = draw.rng.uniform(margin, 1.0 - margin, draw.design.runs)
+    return _drawn_option(effect, "at", draw, share) * draw.design.length_s
 
 
-def _damping(
-    spec: SessionSpec,
-    design: RunDesign,
-    gyro: SuspendedGyro,
-    draw: tuple[np.random.Generator, dict[str, FloatArray]],
-) -> Callable[[float], FloatArray] | None:
-    rng, drawn = draw
-    breaks = [effect for effect in spec.effects if effect.id == "damping_break"]
-    if not breaks:
-        return None
+def _damping(gyro: SuspendedGyro, draw: _Draw) -> Callable[[float], FloatArray] | None:
+    """The viscous coefficient as a function of time, None where it does not change."""
+    spec, design = draw.spec, draw.design
     changes = []
-    for effect in breaks:
-        at = _drawn_option(effect, "at", drawn, _place(effect, design, rng)) * design.length_s
-        changed = dataclasses.replace(spec, ratio=spec.ratio - effect.size, effects=())
-        changes.append((at[:, 0], damped_gyro(changed).damping - gyro.damping))
+    for effect in spec.effects:
+        if effect.id == "damping_break":
+            changed = dataclasses.replace(spec, ratio=spec.ratio - effect.size, effects=())
+            change = damped_gyro(changed).damping - gyro.damping
+            changes.append((_moment(effect, draw)[:, 0], change))
 
     def damping(t: float) -> FloatArray:
         total = np.full(design.runs, gyro.damping)
         for at, change in changes:
-            duration = STEP_DURATION * design.half_swing_s
-            total = total + change * _ramp(np.asarray(t), at, duration)
+            total = total + change * _ramp(np.asarray(t), at, STEP_DURATION * design.half_swing_s)
         return total
 
-    return damping
+    return damping if changes else None
 
 
-def _shift(
-    effect: Effect,
-    spec: SessionSpec,
-    design: RunDesign,
-    rng: np.random.Generator,
-    drawn: dict[str, FloatArray],
-    temperature: OfTime,
-) -> OfTime | None:
-    """The shift of north by one effect as a function of time, None where it shifts nothing."""
-    size, half = effect.size, design.half_swing_s
-    if effect.id == "midpoint_drift":
-        return lambda t: np.asarray(size * t / half)
-    if effect.id == "midpoint_step":
-        at = _drawn_option(effect, "at", drawn, _place(effect, design, rng)) * design.length_s
-        return lambda t: size * _ramp(t, at, STEP_DURATION * half)
-    if effect.id == "warm_up":
-        tau = _drawn_option(effect, "tau", drawn, np.zeros(design.runs)) * half
-        return lambda t: np.asarray(size * np.exp(-t / tau))
-    if effect.id == "secondary_oscillation":
-        longest = max(design.points / 1.6, 4.5)
-        periods = rng.uniform(max(4.0, 0.5 * longest), longest, design.runs)
-        rate = 2.0 * math.pi / (_drawn_option(effect, "period", drawn, periods) * half)
-        phases = rng.uniform(0.0, 2.0 * math.pi, design.runs)
-        phase = _drawn_option(effect, "phase", drawn, phases)
-        return lambda t: np.asarray(size * np.cos(rate * t + phase))
-    if effect.id == "temperature":
-        return lambda t: size * (temperature(t) - spec.temperature_c)
-    if effect.id == "random_walk":
-        steps = rng.normal(size=_path_shape(design)) * size / math.sqrt(PATH_STEPS)
-        return _path(np.cumsum(steps, axis=0), design)
-    if effect.id == "autoregressive":
-        rho = float(_drawn_option(effect, "rho", drawn, np.zeros(design.runs))[0, 0])
-        return _path(size * _ornstein(rho ** (1.0 / PATH_STEPS), design, rng), design)
-    return None
+def _midpoint_drift(effect: Effect, draw: _Draw) -> OfTime:
+    return lambda t: np.asarray(effect.size * t / draw.design.half_swing_s)
 
 
-def _path_shape(design: RunDesign) -> tuple[int, int]:
-    return (design.points + 4) * PATH_STEPS, design.runs
+def _midpoint_step(effect: Effect, draw: _Draw) -> OfTime:
+    at = _moment(effect, draw)
+    duration = STEP_DURATION * draw.design.half_swing_s
+    return lambda t: effect.size * _ramp(t, at, duration)
 
 
-def _ornstein(rho: float, design: RunDesign, rng: np.random.Generator) -> FloatArray:
-    """A stationary first-order Markov path of unit variance."""
-    noise = rng.normal(size=_path_shape(design))
+def _warm_up(effect: Effect, draw: _Draw) -> OfTime:
+    tau = _drawn_option(effect, "tau", draw, np.zeros(draw.design.runs))
+    tau_s = tau * draw.design.half_swing_s
+    return lambda t: np.asarray(effect.size * np.exp(-t / tau_s))
+
+
+def _secondary_oscillation(effect: Effect, draw: _Draw) -> OfTime:
+    """Period from four half swings to the length of the run over 1.6, unless given."""
+    design, rng = draw.design, draw.rng
+    longest = max(design.points / 1.6, 4.5)
+    periods = rng.uniform(max(4.0, 0.5 * longest), longest, design.runs)
+    period_s = _drawn_option(effect, "period", draw, periods) * design.half_swing_s
+    phases = rng.uniform(0.0, 2.0 * math.pi, design.runs)
+    phase = _drawn_option(effect, "phase", draw, phases)
+    return lambda t: np.asarray(effect.size * np.cos(2.0 * math.pi * t / period_s + phase))
+
+
+def _by_temperature(effect: Effect, draw: _Draw) -> OfTime:
+    return lambda t: effect.size * (draw.temperature(t) - draw.spec.temperature_c)
+
+
+def _random_walk(effect: Effect, draw: _Draw) -> OfTime:
+    """A walk that begins at zero at the first turning point."""
+    steps = draw.rng.normal(size=_path_shape(draw.design)) / math.sqrt(PATH_STEPS)
+    path = np.cumsum(steps, axis=0)
+    return _path(effect.size * (path - path[PATH_LEAD * PATH_STEPS]), draw.design)
+
+
+def _autoregressive(effect: Effect, draw: _Draw) -> OfTime:
+    """A stationary first-order Markov path."""
+    option = _drawn_option(effect, "rho", draw, np.zeros(draw.design.runs))
+    rho = float(option[0, 0]) ** (1.0 / PATH_STEPS)
+    noise = draw.rng.normal(size=_path_shape(draw.design))
     path = np.empty_like(noise)
     path[0] = noise[0]
     gain = math.sqrt(1.0 - rho**2)
     for index in range(1, len(noise)):
         path[index] = rho * path[index - 1] + gain * noise[index]
-    return path
+    return _path(effect.size * path, draw.design)
+
+
+SHIFTS: dict[str, Callable[[Effect, _Draw], OfTime]] = {
+    "midpoint_drift": _midpoint_drift,
+    "midpoint_step": _midpoint_step,
+    "warm_up": _warm_up,
+    "secondary_oscillation": _secondary_oscillation,
+    "temperature": _by_temperature,
+    "random_walk": _random_walk,
+    "autoregressive": _autoregressive,
+}
+"""Effects that shift gyro north in time; the others act on the swing or on a reading."""
+
+
+def _path_shape(design: RunDesign) -> tuple[int, int]:
+    return (design.points + 2 * PATH_LEAD) * PATH_STEPS, design.runs
 
 
 def _path(path: FloatArray, design: RunDesign) -> OfTime:
-    """Interpolate a path of shape (steps, runs) that begins two half swings before t = 0."""
+    """Interpolate a path of shape (steps, runs) that begins ``PATH_LEAD`` half swings early."""
     width = design.half_swing_s / PATH_STEPS
     runs = np.arange(design.runs)[:, None]
 
     def at(t: FloatArray) -> FloatArray:
         place = np.broadcast_to(t / width, np.broadcast_shapes(np.shape(t), (design.runs, 1)))
-        place = np.clip(place + 2.0 * PATH_STEPS, 0.0, len(path) - 1.001)
+        place = np.clip(place + PATH_LEAD * PATH_STEPS, 0.0, len(path) - 1.001)
         low = place.astype(np.intp)
         share = place - low
         return np.asarray((1.0 - share) * path[low, runs] + share * path[low + 1, runs])

@@ -7,8 +7,10 @@ tests, never into an estimator.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +19,7 @@ from surveyapp.core.simulate.disturbing import Disturbed, RunDesign, damped_gyro
 from surveyapp.core.simulate.specification import SessionSpec
 from surveyapp_models.gyro.integration import Start, integrate
 from surveyapp_models.gyro.moments import directive_moment
-from surveyapp_models.gyro.motion import Events, passages, turning_points
+from surveyapp_models.gyro.motion import Events, Motion, passages, turning_points
 from surveyapp_models.gyro.periods import clamped_period_s, tracking_period_s, unspun_period_s
 
 FloatArray = NDArray[np.float64]
@@ -26,6 +28,8 @@ STEPS_PER_HALF_SWING = 48
 """Integration steps; 0.001 arc-second at 2 degrees of amplitude."""
 LEAD = 0.25
 """The motion starts this many half swings before the first turning point."""
+CHUNK = 500
+"""Runs that are integrated together: more would only cost memory."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,19 +129,30 @@ def simulate_turning_points(
     -------
     SimulatedPoints
     """
-    table = timetable(spec)
-    design = RunDesign(runs, table.half_swing_s, spec.turns)
+    parts = []
+    for first in range(0, runs, CHUNK):
+        design = RunDesign(min(CHUNK, runs - first), timetable(spec).half_swing_s, spec.turns)
+        parts.append(_simulate(spec, design, rng))
+    return parts[0] if len(parts) == 1 else _joined(parts)
+
+
+def _joined(parts: list[SimulatedPoints]) -> SimulatedPoints:
+    """One ensemble of several."""
+
+    def stack(name: str) -> NDArray[Any]:
+        return np.concatenate([getattr(part, name) for part in parts])
+
+    names = [field.name for field in dataclasses.fields(SimulatedPoints) if field.name != "drawn"]
+    drawn = {key: np.concatenate([part.drawn[key] for part in parts]) for key in parts[0].drawn}
+    return SimulatedPoints(**{name: stack(name) for name in names}, drawn=drawn)
+
+
+def _simulate(spec: SessionSpec, design: RunDesign, rng: np.random.Generator) -> SimulatedPoints:
     disturbed = disturb(spec, design, rng)
     turns, lines = _integrate(spec, disturbed, design)
-    moment = directive_moment(disturbed.gyro, spec.latitude)
-    ratio = disturbed.gyro.torsion / moment
+    ratio = disturbed.gyro.torsion / directive_moment(disturbed.gyro, spec.latitude)
     shift = disturbed.north_shift(turns.time_s)
-    zero = spec.scale_value * tape_zero_div(spec, turns.time_s)
-    north = spec.circle_of_north + spec.constant + shift
-    if spec.clamped:
-        equilibrium = (ratio * (spec.clamp_offset + zero) + shift) / (1.0 + ratio)
-    else:
-        equilibrium = shift + ratio * zero
+    equilibrium = _equilibrium(spec, ratio, shift, turns.time_s)
     origin = spec.circle_of_north + spec.constant
     swing = np.abs(turns.azimuth - equilibrium)
     centre = disturbed.asymmetry * swing**2 - 0.5 * ratio * disturbed.eastward_lag
@@ -146,42 +161,46 @@ def simulate_turning_points(
     else:
         motion = origin + turns.azimuth
     temperature = disturbed.temperature_c(turns.time_s)
-    noise = spec.noise
-    sigma = noise.scale_div if spec.clamped else noise.reading
-    step = noise.scale_resolution_div if spec.clamped else noise.reading_resolution
-    gross = _gross(spec, motion.shape, rng)
+    noise, shape = spec.noise, motion.shape
+    read = motion + _gross(spec, shape, rng) + _reading_sigma(spec) * rng.normal(size=shape)
+    warmth = temperature + noise.temperature_c * rng.normal(size=shape)
+    passed = lines.time_s + noise.time_s * rng.normal(size=lines.time_s.shape)
     return SimulatedPoints(
-        readings=_rounded(motion + gross + sigma * rng.normal(size=motion.shape), step),
+        readings=_rounded(
+            read, noise.scale_resolution_div if spec.clamped else noise.reading_resolution
+        ),
         motion=motion,
         time_s=turns.time_s,
         midpoint=origin + equilibrium,
         swing_centre=origin + equilibrium + centre,
-        gyro_north=north,
-        temperature_c=_rounded(
-            temperature + noise.temperature_c * rng.normal(size=motion.shape),
-            noise.temperature_resolution_c,
-        ),
-        passage_time_s=_rounded(
-            lines.time_s + noise.time_s * rng.normal(size=lines.time_s.shape),
-            noise.time_resolution_s,
-        ),
+        gyro_north=origin + shift,
+        temperature_c=_rounded(warmth, noise.temperature_resolution_c),
+        passage_time_s=_rounded(passed, noise.time_resolution_s),
         passage_eastward=lines.rising if spec.scale_value > 0.0 else ~lines.rising,
         drawn=disturbed.drawn,
     )
 
 
+def _reading_sigma(spec: SessionSpec) -> float:
+    return spec.noise.scale_div if spec.clamped else spec.noise.reading
+
+
+def _equilibrium(
+    spec: SessionSpec, ratio: float, shift: FloatArray, time_s: FloatArray
+) -> FloatArray:
+    """Azimuth at which the gyro would rest, from its own undisturbed north [rad]."""
+    zero = spec.scale_value * tape_zero_div(spec, time_s)
+    if spec.clamped:
+        return np.asarray((ratio * (spec.clamp_offset + zero) + shift) / (1.0 + ratio))
+    return np.asarray(shift + ratio * zero)
+
+
 def _integrate(spec: SessionSpec, disturbed: Disturbed, design: RunDesign) -> tuple[Events, Events]:
     """Turning points (runs, n) and passages (runs, lines, p) of the ensemble."""
     gyro, half = disturbed.gyro, design.half_swing_s
-    moment = directive_moment(gyro, spec.latitude)
-    ratio = gyro.torsion / moment
     lead = np.asarray(-LEAD * half)
-    offset = spec.scale_value * float(tape_zero_div(spec, lead))
-    shift = disturbed.north_shift(lead)[:, 0]
-    if spec.clamped:
-        centre = (ratio * (spec.clamp_offset + offset) + shift) / (1.0 + ratio)
-    else:
-        centre = shift + ratio * offset
+    ratio = gyro.torsion / directive_moment(gyro, spec.latitude)
+    centre = _equilibrium(spec, ratio, disturbed.north_shift(lead)[:, 0], lead)
     phase = LEAD * math.pi
     start = Start(
         azimuth=centre + spec.first_amplitude * math.cos(phase),
@@ -198,22 +217,23 @@ def _integrate(spec: SessionSpec, disturbed: Disturbed, design: RunDesign) -> tu
         disturbance=disturbed.disturbance,
     )
     turns = turning_points(motion, design.points)
+    return turns, _passages(spec, motion, design)
+
+
+def _passages(spec: SessionSpec, motion: Motion, design: RunDesign) -> Events:
+    """Passages of the timed lines after the first turning point."""
     if not spec.timed:
         empty = np.empty((design.runs, 0, 0))
-        return turns, Events(empty, empty, np.empty((design.runs, 0, 0), dtype=np.bool_))
-    # what passed before the first turning point is not observed
-    observed = motion.time_s >= 0.05 * half
-    seen = type(motion)(
-        motion.time_s[observed],
-        motion.azimuth[observed],
-        motion.velocity[observed],
-        motion.acceleration[observed],
+        return Events(empty, empty, np.empty((design.runs, 0, 0), dtype=np.bool_))
+    seen = motion.time_s >= 0.05 * design.half_swing_s
+    after = Motion(
+        motion.time_s[seen], motion.azimuth[seen], motion.velocity[seen], motion.acceleration[seen]
     )
     found = [
-        passages(seen, spec.clamp_offset + line * spec.scale_value, spec.points)
+        passages(after, spec.clamp_offset + line * spec.scale_value, spec.points)
         for line in spec.lines_div
     ]
-    return turns, Events(
+    return Events(
         np.stack([events.time_s for events in found], axis=1),
         np.stack([events.azimuth for events in found], axis=1),
         np.stack([events.rising for events in found], axis=1),
