@@ -1,16 +1,16 @@
 """Mutated projects give a Project or a SurveyError, never anything else."""
 
 import json
-import random
+from collections.abc import Sized
 from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from hypothesis import given, seed, settings
+from hypothesis import strategies as st
 
 from surveyapp.domain.project import Project
 from surveyapp.errors import SurveyError
 from surveyapp.io.project import read_project
-
-PROJECTS = Path(__file__).parents[2] / "projects"
-SEED = 20261122
-COUNT = 700
 
 TOKENS = (
     b"nan", b"inf", b"-inf", b"1e999", b"9" * 400, b"-0", b"true", b"[]", b"{}", b'""', b"''",
@@ -99,40 +99,53 @@ temperature_c = [-20.0, 50.0]
 """
 
 
-def mutate(data: bytes, rng: random.Random) -> bytes:
-    """One to three small accidents."""
-    text = bytearray(data)
-    for _ in range(rng.randint(1, 3)):
-        at = rng.randrange(len(text) + 1)
-        match rng.randrange(8):
-            case 0 if at < len(text):
-                text[at] ^= 1 << rng.randrange(8)
-            case 1:
-                del text[at : at + rng.randint(1, 40)]
-            case 2:
-                text[at:at] = text[at : at + rng.randint(1, 200)]
-            case 3:
-                text[at:at] = rng.choice(TOKENS)
-            case 4:
-                separator = rng.choice((b"\n", b",", b" = "))
-                parts = bytes(text).split(separator)
-                i, j = rng.randrange(len(parts)), rng.randrange(len(parts))
-                parts[i], parts[j] = parts[j], parts[i]
-                text = bytearray(separator.join(parts))
-            case 5:
-                lines = bytes(text).split(b"\n")
-                lines.insert(rng.randrange(len(lines) + 1), rng.choice(lines))
-                text = bytearray(b"\n".join(lines))
-            case 6:
-                cells = bytes(text).split(b",")
-                cells[rng.randrange(len(cells))] = rng.choice(TOKENS)
-                text = bytearray(b",".join(cells))
-            case _:
-                lines = bytes(text).split(b"\n")
-                k = rng.randrange(len(lines))
-                key, equals, _ = lines[k].partition(b" = ")
-                lines[k] = key + equals + rng.choice(TOKENS) if equals else lines[k]
-                text = bytearray(b"\n".join(lines))
+Accident = tuple[int, float, float, bytes]
+ACCIDENTS = st.lists(
+    st.tuples(st.integers(0, 7), st.floats(0, 1), st.floats(0, 1), st.sampled_from(TOKENS)),
+    min_size=1,
+    max_size=3,
+)
+
+
+def at(sequence: Sized, share: float) -> int:
+    """Index of a share of a sequence that is not empty."""
+    return min(int(share * len(sequence)), len(sequence) - 1)
+
+
+def mutate(data: bytes, accident: Accident) -> bytes:
+    """One small accident: bits, deletions, doublings, exchanged fields, wild values."""
+    kind, here, there, token = accident
+    text = bytearray(data or b"\n")
+    i = at(text, here)
+    match kind:
+        case 0:
+            text[i] ^= 1 << at(range(8), there)
+        case 1:
+            del text[i : i + 1 + at(range(40), there)]
+        case 2:
+            text[i:i] = text[i : i + 1 + at(range(200), there)]
+        case 3:
+            text[i:i] = token
+        case 4:
+            separator = (b"\n", b",", b" = ")[len(token) % 3]
+            parts = bytes(text).split(separator)
+            j, k = at(parts, here), at(parts, there)
+            parts[j], parts[k] = parts[k], parts[j]
+            return separator.join(parts)
+        case 5:
+            lines = bytes(text).split(b"\n")
+            lines.insert(at(lines, here), lines[at(lines, there)])
+            return b"\n".join(lines)
+        case 6:
+            cells = bytes(text).split(b",")
+            cells[at(cells, here)] = token
+            return b",".join(cells)
+        case _:
+            lines = bytes(text).split(b"\n")
+            j = at(lines, here)
+            key, equals, _ = lines[j].partition(b" = ")
+            lines[j] = key + equals + token if equals else lines[j]
+            return b"\n".join(lines)
     return bytes(text)
 
 
@@ -158,20 +171,29 @@ def outcome(folder: Path) -> str:
     return "read"
 
 
-def test_seeded_mutants_are_read_or_refused(tmp_path: Path) -> None:
-    rng = random.Random(SEED)
-    valid = {"project.toml": TOML, "r.csv": BOOK, "own.toml": CARD}
-    counts = {"read": 0, "refused": 0}
-    for name, text in valid.items():
+VALID = {"project.toml": TOML, "r.csv": BOOK, "own.toml": CARD}
+TARGETS = st.sampled_from([*["project.toml"] * 4, *["r.csv"] * 4, "own.toml"])
+COUNTS = {"read": 0, "refused": 0}
+
+
+@given(name=TARGETS, accidents=ACCIDENTS)
+@seed(20261122)
+@settings(max_examples=700, deadline=None, database=None)
+def check_one_mutant(name: str, accidents: list[Accident]) -> None:
+    data = VALID[name].encode()
+    for accident in accidents:
+        data = mutate(data, accident)
+    with TemporaryDirectory() as folder:
+        for other, text in VALID.items():
+            Path(folder, other).write_bytes(data if other == name else text.encode())
+        COUNTS[outcome(Path(folder))] += 1
+
+
+def test_seven_hundred_seeded_mutants_are_read_or_refused(tmp_path: Path) -> None:
+    for name, text in VALID.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     assert outcome(tmp_path) == "read"
-    for index in range(COUNT):
-        name = rng.choices(tuple(valid), weights=(4, 4, 1))[0]
-        (tmp_path / name).write_bytes(mutate(valid[name].encode(), rng))
-        counts[outcome(tmp_path)] += 1
-        for left in tmp_path.glob("*.torn"):
-            left.unlink()
-        (tmp_path / name).write_text(valid[name], encoding="utf-8")
-        assert index < COUNT
-    assert counts["refused"] > COUNT // 4
-    assert counts["read"] > COUNT // 20
+    check_one_mutant()
+    assert sum(COUNTS.values()) >= 500
+    assert COUNTS["refused"] > 100
+    assert COUNTS["read"] > 50
