@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from surveyapp.errors import SurveyError
+from surveyapp.io.bookreading import move_tail_aside
 from surveyapp.io.fieldbook import append_row, read_field_book
 from surveyapp.io.lock import ProjectLock
 from surveyapp.io.project import read_project
@@ -71,6 +72,13 @@ def test_a_tail_that_cannot_be_moved_is_left_out_in_memory(
     monkeypatch.setattr(os, "fsync", refuse)
     assert read(path) == [1, 2, 3, 4]
     assert path.read_bytes() == BOOK + b"5,rev"
+
+
+def test_a_book_that_has_grown_since_it_was_read_is_left_alone(tmp_path: Path) -> None:
+    path = tmp_path / "b.csv"
+    path.write_bytes(BOOK + b"5,rev" + b"ersal,179-02-00,\n")
+    assert move_tail_aside(path, size=len(BOOK) + 5, tail=b"5,rev") is False
+    assert read(path) == [1, 2, 3, 4, 5]
 
 
 def project(folder: Path) -> Path:
@@ -157,6 +165,15 @@ def test_a_book_with_an_old_problem_can_be_mended_by_a_strike(tmp_path: Path) ->
     path.write_bytes(BOOK + b"5,reversal,365-00-00,\n")
     assert append_row(path, {"kind": "strike", "value": "5"}) == 6
     assert read(path) == [1, 2, 3, 4, 5, 6]
+
+
+def test_an_old_problem_does_not_stop_the_next_reading(tmp_path: Path) -> None:
+    path = tmp_path / "b.csv"
+    path.write_bytes(BOOK + b"5,reversal,365-00-00,\n")
+    assert append_row(path, {"kind": "reversal", "value": "179-02-00"}) == 6
+    with pytest.raises(SurveyError, match="366") as caught:
+        append_row(path, {"kind": "reversal", "value": "366-00-00"})
+    assert len(caught.value.problems) == 1
 
 
 def test_a_short_write_leaves_the_earlier_rows(

@@ -157,6 +157,20 @@ def test_what_cannot_be_is_refused_with_the_file_untouched(
     assert toml.read_text(encoding="utf-8") == TEXT
 
 
+def test_a_writer_that_errs_is_caught_before_the_file_changes(
+    toml: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for wrong in (TEXT, TEXT.replace("1.50", "17.26"), TEXT.replace("1.50", "17.25") + "z = 1\n"):
+        monkeypatch.setattr("tomlkit.dumps", lambda document, text=wrong: text)
+        with pytest.raises(SurveyError, match="intended data"):
+            set_value(toml, ("station", "A", "e"), 17.25)
+    lost = TEXT.replace("1.50", "17.25").replace("# metres", "")
+    monkeypatch.setattr("tomlkit.dumps", lambda document: lost)
+    with pytest.raises(SurveyError, match="# metres"):
+        set_value(toml, ("station", "A", "e"), 17.25)
+    assert toml.read_text(encoding="utf-8") == TEXT
+
+
 def test_a_table_that_is_no_list_is_not_appended_to(toml: Path) -> None:
     with pytest.raises(SurveyError, match="no list of tables"):
         append_table(toml, "name", {"x": 1})
