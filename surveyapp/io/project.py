@@ -10,12 +10,12 @@ from __future__ import annotations
 import hashlib
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final
 
-from surveyapp.domain.project import Centring, Project, ResultWarning
+from surveyapp.domain.project import Centring, OrientationSession, Project, ResultWarning
 from surveyapp.domain.readings import FieldBook
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.bookreading import interpret, move_tail_aside, split_tail
@@ -177,14 +177,7 @@ def _read_tables(
         known_constants=frozenset(str(t.get("id")) for t in cards if "constant" in t),
         unit=unit,
     )
-    sessions = []
-    for table in top.tables("orientation", lines.get("orientation", ())):
-        session = read_session(table, names)
-        book = _session_book(table, session.book_path, files, (unit, repair))
-        names.check_targets(table, book, session.book_path)
-        sessions.append(replace(session, book=book))
-    unique([s.id for s in sessions], "orientation", findings)
-    _warn_shared_books([s.book_path for s in sessions], findings)
+    sessions = _read_sessions(top, files, names, (lines.get("orientation", ()), repair))
     for instrument, table in zip(instruments, cards, strict=True):
         names.check_choice(table, instrument.constant_choice, instrument.id)
         if instrument.card.id and is_path(str(table.get("card"))):
@@ -210,6 +203,22 @@ def _read_tables(
     tables.update({key: top.data[key] for key in top.unread()})
     top.warn_unknown(*RAW_TABLES)
     return project
+
+
+def _read_sessions(
+    top: Table, files: _Folder, names: Names, options: tuple[Sequence[int], bool | None]
+) -> list[OrientationSession]:
+    """Sessions with their books."""
+    lines, repair = options
+    sessions = []
+    for table in top.tables("orientation", lines):
+        session = read_session(table, names)
+        book = _session_book(table, session.book_path, files, (names.unit, repair))
+        names.check_targets(table, book, session.book_path)
+        sessions.append(replace(session, book=book))
+    unique([s.id for s in sessions], "orientation", files.findings)
+    _warn_shared_books([s.book_path for s in sessions], files.findings)
+    return sessions
 
 
 def _session_book(

@@ -232,16 +232,8 @@ def read_session(table: Table, names: Names) -> OrientationSession:
     station = table.text("station", required=True) or ""
     target = table.text("target")
     instrument = table.text("instrument", required=True) or ""
-    names.check_station(table, station, "the session stands on no station")
-    names.check_station(table, target, "a sight whose target is no station")
-    if target and target == station:
-        table.problem("the target is the station itself", target, "another station")
-    if instrument and instrument not in names.instruments:
-        hint = nearest_names(instrument, names.instruments)
-        table.problem("there is no such instrument", instrument, "an id of [[instrument]]", hint)
     choice = table.text("constant_choice")
-    if choice is not None:
-        names.check_choice(table, choice, instrument)
+    _check_names(table, names, (station, target, instrument), choice)
     method = table.choice("method", METHODS, required=True)
     purpose = table.choice("purpose", PURPOSES)
     azimuth = table.angle("azimuth_known", names.unit)
@@ -271,6 +263,22 @@ def read_session(table: Table, names: Names) -> OrientationSession:
     )
     table.warn_unknown("rounds", "sigma_arcsec")
     return session
+
+
+def _check_names(
+    table: Table, names: Names, used: tuple[str, str | None, str], choice: str | None
+) -> None:
+    """Everything that a session refers to is declared."""
+    station, target, instrument = used
+    names.check_station(table, station, "the session stands on no station")
+    names.check_station(table, target, "a sight whose target is no station")
+    if target and target == station:
+        table.problem("the target is the station itself", target, "another station")
+    if instrument and instrument not in names.instruments:
+        hint = nearest_names(instrument, names.instruments)
+        table.problem("there is no such instrument", instrument, "an id of [[instrument]]", hint)
+    if choice is not None:
+        names.check_choice(table, choice, instrument)
 
 
 def _session_override(table: Table) -> tuple[tuple[str, object], ...]:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.io.files import shown
+from surveyapp.io.files import has_control, shown
 from surveyapp.io.tomltext import atomic_write, toml_value
 from surveyapp_models.angles import AngleUnit
 
@@ -90,6 +90,10 @@ def create_project(
     SurveyError
         If the folder holds anything, or cannot be made.
     """
+    if not name.strip() or has_control(name) or "\n" in name or len(name) > 200:
+        raise SurveyError(
+            Problem("this is no name for a project", "name", shown(name), "one line of text")
+        )
     try:
         if folder.exists() and (not folder.is_dir() or next(folder.iterdir(), None) is not None):
             raise SurveyError(

@@ -225,6 +225,13 @@ def test_a_new_project_needs_a_folder_of_its_own(tmp_path: Path) -> None:
     assert sorted(p.name for p in tmp_path.iterdir()) == ["x"]
 
 
+@pytest.mark.parametrize("name", ["", "  ", "two\nlines", "\x1b[31m", "x" * 300])
+def test_a_name_that_could_not_be_read_again_is_refused(tmp_path: Path, name: str) -> None:
+    with pytest.raises(SurveyError, match="no name"):
+        create_project(tmp_path / "p", name=name)
+    assert not (tmp_path / "p").exists()
+
+
 def test_samples_are_found_and_copied(tmp_path: Path) -> None:
     assert {"gi-b1-1966", "johannesburg-1966", "tongjin-2015"} <= set(locations.sample_names())
     copy = locations.copy_sample("tongjin-2015", tmp_path)
