@@ -76,13 +76,15 @@ def orient(
 
     from surveyapp.core.orientation import orient_project
     from surveyapp.core.outcome import outcome
+    from surveyapp.io.project_checks import project_checks
 
     if not isinstance(project, Project):
         project = open_project(project)
     if session is not None:
         _require(session, [item.id for item in project.sessions], "session")
     computed = orient_project(project, generator_of(project), estimator=estimator, only=session)
-    result = outcome(computed, software=SOFTWARE, only=session)
+    checks = project_checks(project, computed)
+    result = outcome(computed, software=SOFTWARE, only=session, more_checks=checks)
     if line is not None:
         names = {f"{item.station}-{item.target}": item for item in result.lines}
         _require(line, names, "line")

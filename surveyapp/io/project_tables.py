@@ -261,7 +261,7 @@ def read_session(table: Table, names: Names) -> OrientationSession:
         effects=tuple(read_effect(t) for t in table.tables("effect")),
         override=_session_override(table),
     )
-    table.warn_unknown("rounds", "sigma_arcsec")
+    table.warn_unknown("rounds", "sigma_arcsec", "level_division_arcsec")
     return session
 
 

@@ -1,0 +1,164 @@
+"""Independent orientations of one side: what they are, how far apart, how good their mean.
+
+Two orientations of a side are independent where another instrument, another date or the other end
+of the side was used; rounds of one occupation are not. The unknown deflection of the vertical is
+left out of the mean square error: the regulations mean the measurement.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import date
+from itertools import combinations
+
+from surveyapp.core.lines import OrientedLine
+from surveyapp.core.orientation import Orientation
+from surveyapp.core.scatter import weighted_mean
+from surveyapp.core.tolerance.evaluate import Measured
+from surveyapp.core.tolerance.quantities import quantity
+from surveyapp.core.uncertain import Uncertain, combine
+from surveyapp.domain.project import OrientationSession
+from surveyapp_models.angles import RHO_ARCSEC, wrap_pi
+
+
+@dataclass(frozen=True, slots=True)
+class SideOrientation:
+    """One independent orientation of a side.
+
+    Parameters
+    ----------
+    station, target, instrument : str
+    day : date or None
+    azimuth : Uncertain
+        Grid azimuth, else astronomic, else gyro, of the side seen from ``station`` [rad].
+    kind : str
+        grid | true | gyro.
+    """
+
+    station: str
+    target: str
+    instrument: str
+    day: date | None
+    azimuth: Uncertain
+    kind: str
+
+
+def side_orientations(orientation: Orientation) -> dict[frozenset[str], list[SideOrientation]]:
+    """Independent orientations of every surveyed side, by its two ends."""
+    lines = {
+        (line.result.station, line.result.target, line.result.instrument): line
+        for line in orientation.lines
+    }
+    groups: dict[tuple[str, str, str, date | None], list[Uncertain]] = {}
+    for item in orientation.sessions:
+        session = item.session
+        if session.purpose != "survey":
+            continue
+        for target in item.targets:
+            if target.gyro_azimuth is not None:
+                key = (session.station, target.target, session.instrument, _day(session))
+                groups.setdefault(key, []).append(target.gyro_azimuth)
+    sides: dict[frozenset[str], list[SideOrientation]] = {}
+    for (station, target_name, instrument, day), values in groups.items():
+        line = lines.get((station, target_name, instrument))
+        if line is None:
+            continue
+        azimuth, kind = _carried(_mean(values), line)
+        sides.setdefault(frozenset((station, target_name)), []).append(
+            SideOrientation(station, target_name, instrument, day, azimuth, kind)
+        )
+    return sides
+
+
+def _day(session: OrientationSession) -> date | None:
+    if session.date is not None:
+        return session.date
+    times = [row.time for row in session.book.live if row.time is not None]
+    return times[0].date() if times else None
+
+
+def _mean(values: Sequence[Uncertain]) -> Uncertain:
+    first = values[0].value
+    return weighted_mean(
+        [item.shifted(first + wrap_pi(item.value - first) - item.value) for item in values]
+    )
+
+
+def _carried(gyro: Uncertain, line: OrientedLine) -> tuple[Uncertain, str]:
+    """Carry the mean of one occupation to where the whole line was carried."""
+    for kind, whole in (("grid", line.grid), ("true", line.true)):
+        if whole is not None:
+            return gyro + (whole - line.gyro), kind
+    return gyro, "gyro"
+
+
+def _comparable(first: SideOrientation, second: SideOrientation) -> bool:
+    same_end = first.station == second.station
+    if same_end and first.instrument == second.instrument:
+        return first.kind == second.kind
+    if same_end:
+        return first.kind == second.kind != "gyro"
+    return first.kind == second.kind == "grid"
+
+
+def _pairs(
+    orientation: Orientation,
+) -> Mapping[str, list[tuple[SideOrientation, SideOrientation]]]:
+    """Comparable pairs by the name of the side; an empty list where there is none."""
+    result = {}
+    for members in side_orientations(orientation).values():
+        name = f"{members[0].station}-{members[0].target}"
+        result[name] = [pair for pair in combinations(members, 2) if _comparable(*pair)]
+    return result
+
+
+def _turned(item: SideOrientation, first: SideOrientation) -> Uncertain:
+    """The azimuth seen from the first one's end, near the first one's value."""
+    turned = item.azimuth if item.station == first.station else item.azimuth.shifted(math.pi)
+    base = first.azimuth.value
+    return turned.shifted(base + wrap_pi(turned.value - base) - turned.value)
+
+
+def independent_difference(orientation: Orientation) -> list[Measured]:
+    """Largest difference of two independent orientations of one side."""
+    name = "independent_difference"
+    found = []
+    for side, pairs in _pairs(orientation).items():
+        if not pairs:
+            found.append(_nothing(name, side))
+            continue
+        value, text = max(
+            (abs(_turned(b, a).value - a.azimuth.value), f"{_label(a)} and {_label(b)}")
+            for a, b in pairs
+        )
+        found.append(Measured(name, value * RHO_ARCSEC, side, text))
+    return found
+
+
+def independent_mean_sigma(orientation: Orientation) -> list[Measured]:
+    """Mean square error of the mean of two independent orientations, from their budgets."""
+    name = "independent_mean_sigma"
+    found = []
+    for side, pairs in _pairs(orientation).items():
+        sigmas = [
+            combine([(0.5, a.azimuth), (0.5, _turned(b, a))]).without("deflection").sigma
+            for a, b in pairs
+        ]
+        finite = [sigma for sigma in sigmas if math.isfinite(sigma)]
+        if not finite:
+            found.append(_nothing(name, side))
+        else:
+            text = "from the error budgets, without the deflection of the vertical"
+            found.append(Measured(name, max(finite) * RHO_ARCSEC, side, text))
+    return found
+
+
+def _nothing(name: str, side: str) -> Measured:
+    return Measured(name, None, side, f"missing: {quantity(name).needs}")
+
+
+def _label(item: SideOrientation) -> str:
+    day = f" {item.day.isoformat()}" if item.day is not None else ""
+    return f"{item.station} {item.instrument}{day}"
