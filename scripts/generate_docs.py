@@ -14,9 +14,11 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "models")]
 
 PAGE_MODULES: tuple[str, ...] = (
+    "pages_cards",
     "pages_effects",
     "pages_estimators",
     "pages_latitude",
+    "pages_rulebooks",
     "pages_simulator",
 )
 
