@@ -1,7 +1,11 @@
 """Crashes in the middle: torn books, full disks, kills between write and replace."""
 
 import os
+import signal
+import subprocess
+import sys
 import tempfile
+import time
 from pathlib import Path
 
 import pytest
@@ -11,9 +15,11 @@ from surveyapp.io.bookreading import move_tail_aside
 from surveyapp.io.fieldbook import append_row, read_field_book
 from surveyapp.io.lock import ProjectLock
 from surveyapp.io.project import read_project
-from surveyapp.io.writing import append_table, atomic_write, set_value
+from surveyapp.io.writing import atomic_write
 from surveyapp_models.angles import AngleUnit
 
+ROOT = Path(__file__).parents[2]
+ENVIRONMENT = {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{ROOT / 'models'}"}
 BOOK = (
     "seq,kind,value,note\r\n1,reversal,179-00-00,\r\n2,reversal,181-00-00,Stra\u00dfe\r\n"
     "3,reversal,179-01-00,\n4,reversal,180-59-00,\n"
@@ -209,6 +215,30 @@ def test_a_failing_fsync_reports_and_leaves_the_earlier_rows(
     assert path.read_bytes() == BOOK
 
 
+APPENDER = """
+import sys
+from pathlib import Path
+from surveyapp.io.fieldbook import append_row
+while True:
+    print(append_row(Path(sys.argv[1]), {"kind": "note", "note": "x" * 200}), flush=True)
+"""
+
+
+@pytest.mark.parametrize("pause_s", [0.005, 0.013, 0.05])
+def test_every_reported_reading_survives_a_kill(tmp_path: Path, pause_s: float) -> None:
+    path = tmp_path / "b.csv"
+    command = [sys.executable, "-c", APPENDER, str(path)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, env=ENVIRONMENT, text=True) as child:
+        assert child.stdout is not None
+        assert child.stdout.readline() == "1\n"
+        time.sleep(pause_s)
+        child.kill()
+        reported = 1 + child.stdout.read().count("\n")
+    rows = read(path)
+    assert rows == list(range(1, len(rows) + 1))
+    assert reported <= len(rows) <= reported + 1
+
+
 @pytest.mark.parametrize("step", ["fsync", "replace", "mkstemp"])
 def test_an_error_at_any_step_leaves_the_old_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: str
@@ -226,19 +256,24 @@ def test_an_error_at_any_step_leaves_the_old_file(
     assert sorted(p.name for p in tmp_path.iterdir()) == ["project.toml"]
 
 
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+KILLED = """
+import os, sys
+from pathlib import Path
+from surveyapp.io.writing import append_table, set_value
+Path.replace = lambda self, target: os.kill(os.getpid(), 9)
+path = Path(sys.argv[1])
+if sys.argv[2] == "append":
+    append_table(path, "station", {"name": "B"})
+else:
+    set_value(path, ("orientation", "r", "target"), "A")
+"""
+
+
 @pytest.mark.parametrize("change", ["append", "set"])
 def test_a_kill_before_the_replace_leaves_the_old_file(tmp_path: Path, change: str) -> None:
     path = project(tmp_path) / "project.toml"
     old = path.read_bytes()
-    child = os.fork()
-    if child == 0:  # pragma: no cover - the child is killed
-        Path.replace = lambda self, target: os.kill(os.getpid(), 9)  # type: ignore[method-assign,assignment,return-value]
-        if change == "append":
-            append_table(path, "station", {"name": "B"})
-        else:
-            set_value(path, ("orientation", "r", "target"), "A")
-        os._exit(0)
-    assert os.WTERMSIG(os.waitpid(child, 0)[1]) == 9
+    command = [sys.executable, "-c", KILLED, str(path), change]
+    assert subprocess.run(command, env=ENVIRONMENT, check=False).returncode == -signal.SIGKILL
     assert path.read_bytes() == old
     assert read_project(tmp_path, repair=False).stations[0].name == "A"

@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -55,4 +56,7 @@ def test_reading_a_project_imports_nothing_slow() -> None:
         "slow = {'tomlkit', 'filelock', 'platformdirs', 'scipy', 'pyproj'} & set(sys.modules);"
         "sys.exit(str(slow) if slow else 0)"
     )
-    subprocess.run([sys.executable, "-c", code], check=True)
+    root = PROJECTS.parent
+    path = f"{root}{os.pathsep}{root / 'models'}"
+    environment = {**os.environ, "PYTHONPATH": path}
+    subprocess.run([sys.executable, "-c", code], check=True, env=environment)
