@@ -94,12 +94,5 @@ def known_azimuth_sigma(session: OrientationSession) -> float:
 
 def centring_of(project: Project, session: OrientationSession) -> Centring:
     """Centring of a session: its own where it states one, else the project's."""
-    own = dict(session.override).get("centring_mm")
-    if isinstance(own, Mapping):
-        base = project.centring
-        return Centring(
-            instrument_m=float(own.get("instrument", base.instrument_m * 1e3)) * 1e-3,
-            target_m=float(own.get("target", base.target_m * 1e3)) * 1e-3,
-            known=True,
-        )
-    return project.centring
+    own = dict(session.override).get("centring")
+    return own if isinstance(own, Centring) else project.centring

@@ -96,7 +96,11 @@ def design(index: Floats, sides: Floats, *, amplitude: float, log_decrement: flo
     ndarray, shape (n, 3)
     """
     decay = sides * np.exp(-log_decrement * index)
-    return np.column_stack([np.ones_like(index), decay, -amplitude * index * decay])
+    columns = np.empty((index.size, 3))
+    columns[:, 0] = 1.0
+    columns[:, 1] = decay
+    columns[:, 2] = -amplitude * index * decay
+    return columns
 
 
 def fit_swing(values: Floats, index: Floats, sides: Floats) -> SwingFit:
@@ -125,39 +129,87 @@ def fit_swing(values: Floats, index: Floats, sides: Floats) -> SwingFit:
     if values.size < 3 or not (np.any(sides > 0) and np.any(sides < 0)):
         raise ValueError("a damped swing needs three turning points, on both sides")
     start = index - index[0]
-    decrement = 0.0
+    mean = float(values.mean())
+    centred = values - mean
+    decrement = _first_decrement(centred, start)
     converged = False
-    linear = np.zeros(2)
+    rows = np.empty((3, values.size))
+    rows[0] = 1.0
+    step = _reduced(centred, start, sides, decrement, rows)
     for _ in range(MAX_ITERATIONS):
-        decay = sides * np.exp(-decrement * start)
-        basis = np.column_stack([np.ones_like(start), decay])
-        linear = np.linalg.lstsq(basis, values, rcond=None)[0]
-        jacobian = design(start, sides, amplitude=float(linear[1]), log_decrement=decrement)
-        residuals = values - basis @ linear
-        step = float(np.linalg.lstsq(jacobian, residuals, rcond=None)[0][2])
-        step = min(max(step, -0.5), 0.5)
-        decrement += step
+        change = min(max(step.change, -0.5), 0.5)
+        decrement += change
         if abs(decrement) > LOG_DECREMENT_BOUND:
+            decrement = math.copysign(LOG_DECREMENT_BOUND, decrement)
+            step = _reduced(centred, start, sides, decrement, rows)
             break
-        if abs(step) < 1e-13 + 1e-10 * abs(decrement):
+        step = _reduced(centred, start, sides, decrement, rows)
+        if abs(change) < 1e-13 + 1e-9 * abs(decrement):
             converged = True
             break
-    decrement = min(max(decrement, -LOG_DECREMENT_BOUND), LOG_DECREMENT_BOUND)
-    decay = sides * np.exp(-decrement * start)
-    basis = np.column_stack([np.ones_like(start), decay])
-    linear = np.linalg.lstsq(basis, values, rcond=None)[0]
-    jacobian = design(start, sides, amplitude=float(linear[1]), log_decrement=decrement)
-    r = np.linalg.qr(jacobian, mode="r")
-    inverse_r = np.linalg.pinv(r)
     return SwingFit(
-        north=float(linear[0]),
-        amplitude=float(linear[1]),
+        north=mean + step.north,
+        amplitude=step.amplitude,
         log_decrement=decrement,
-        residuals=values - basis @ linear,
-        cofactor=inverse_r @ inverse_r.T,
+        residuals=centred - step.north - step.amplitude * rows[1],
+        cofactor=_cofactor(step.gram, step.amplitude),
         dof=values.size - 3,
-        converged=converged and float(linear[1]) > 0.0,
+        converged=converged and step.amplitude > 0.0,
     )
+
+
+@dataclass(frozen=True, slots=True)
+class _Step:
+    """N and A at one damping, the Gauss-Newton change of the damping, and the Gram matrix."""
+
+    north: float
+    amplitude: float
+    change: float
+    gram: Floats
+
+
+def _first_decrement(values: Floats, index: Floats) -> float:
+    """Damping from the first and the last difference of neighbours."""
+    first, last = abs(float(values[0] - values[1])), abs(float(values[-2] - values[-1]))
+    span = float(index[-2] - index[0])
+    if first <= 0.0 or last <= 0.0 or span <= 0.0:
+        return 0.0
+    return min(max(math.log(first / last) / span, -0.5), 0.5)
+
+
+def _reduced(values: Floats, index: Floats, sides: Floats, decrement: float, rows: Floats) -> _Step:
+    """Eliminate N and A at one damping (variable projection); fills ``rows`` with 1, d, k d.
+
+    Source: Golub & Pereyra (1973), SIAM J. Numer. Anal. 10, 413-432; Kaufman (1975), BIT 15.
+    The columns 1 and d = s q^k are nearly orthogonal: their 2 x 2 system is well conditioned.
+    """
+    np.multiply(sides, np.exp(-decrement * index), out=rows[1])
+    np.multiply(index, rows[1], out=rows[2])
+    gram = rows @ rows.T
+    (one, one_d, one_k), (_, d_d, d_k), (_, _, k_k) = gram.tolist()
+    sum_v, d_v, k_v = (rows @ values).tolist()
+    determinant = one * d_d - one_d * one_d
+    north = (d_d * sum_v - one_d * d_v) / determinant
+    amplitude = (one * d_v - one_d * sum_v) / determinant
+    # slope = -A k d, of which only what 1 and d do not explain can change the damping
+    explained = (d_d * one_k**2 - 2.0 * one_d * one_k * d_k + one * d_k**2) / determinant
+    free = amplitude**2 * (k_k - explained)
+    misfit = -amplitude * (k_v - north * one_k - amplitude * d_k)
+    return _Step(north, amplitude, misfit / free if free > 0.0 else 0.0, gram)
+
+
+def _cofactor(gram: Floats, amplitude: float) -> Floats:
+    """Inverse of J'J, J = (1, d, -A k d), with columns scaled to one: well conditioned.
+
+    A swing without amplitude does not determine its damping: the pseudo-inverse says so by zeros.
+    """
+    factors = np.array([1.0, 1.0, -amplitude])
+    scaled = gram * (factors[:, None] * factors)
+    scale = np.sqrt(np.diagonal(scaled))
+    if not np.all(scale > 0.0):
+        return np.asarray(np.linalg.pinv(scaled), dtype=np.float64)
+    outer = scale[:, None] * scale
+    return np.asarray(np.linalg.inv(scaled / outer) / outer, dtype=np.float64)
 
 
 def schuler_means(values: Floats, index: Floats) -> tuple[Floats, Floats]:

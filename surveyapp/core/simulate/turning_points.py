@@ -105,9 +105,14 @@ def timetable(spec: SessionSpec) -> Timetable:
     return Timetable(half, unspun, last, -600.0 - reach, last + 600.0 + reach)
 
 
-def tape_zero_div(spec: SessionSpec, time_s: FloatArray) -> FloatArray:
-    """Return the true tape zero [div] at times from the first turning point [s]."""
-    table = timetable(spec)
+def tape_zero_div(
+    spec: SessionSpec, time_s: FloatArray, table: Timetable | None = None
+) -> FloatArray:
+    """Return the true tape zero [div] at times from the first turning point [s].
+
+    Whoever asks at every step of an integration hands over the ``table`` of the session.
+    """
+    table = timetable(spec) if table is None else table
     share = (time_s - table.zero_before_s) / (table.zero_after_s - table.zero_before_s)
     before, after = spec.tape_zero_div
     return np.asarray(before + (after - before) * share)
@@ -198,6 +203,7 @@ def _equilibrium(
 def _integrate(spec: SessionSpec, disturbed: Disturbed, design: RunDesign) -> tuple[Events, Events]:
     """Turning points (runs, n) and passages (runs, lines, p) of the ensemble."""
     gyro, half = disturbed.gyro, design.half_swing_s
+    table = timetable(spec)
     lead = np.asarray(-LEAD * half)
     ratio = gyro.torsion / directive_moment(gyro, spec.latitude)
     centre = _equilibrium(spec, ratio, disturbed.north_shift(lead)[:, 0], lead)
@@ -213,7 +219,7 @@ def _integrate(spec: SessionSpec, disturbed: Disturbed, design: RunDesign) -> tu
         start,
         duration_s=(design.points + LEAD) * half,
         step_s=half / STEPS_PER_HALF_SWING,
-        tape=tape_top(spec, disturbed, lambda t: tape_zero_div(spec, t)),
+        tape=tape_top(spec, disturbed, lambda t: tape_zero_div(spec, t, table)),
         disturbance=disturbed.disturbance,
     )
     turns = turning_points(motion, design.points)

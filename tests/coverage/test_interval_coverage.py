@@ -1,0 +1,37 @@
+"""interval95_arcsec holds the truth: the integrated equation, a field book, the public command.
+
+Bounds: with 400 runs and a true coverage of 95 % the share lies between 91.4 and 97.8 % with
+probability 0.999 (binomial); the campaign of ``make bench`` has 2000 runs a method.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.special import bdtrik
+
+from bench.coverage import campaign
+
+RUNS = 400
+LOW, HIGH = (float(bdtrik(p, RUNS, 0.95)) / RUNS for p in (0.0005, 0.9995))
+
+
+def test_bounds_are_those_of_the_binomial_distribution() -> None:
+    assert pytest.approx(0.95 - 3.29 * math.sqrt(0.95 * 0.05 / RUNS), abs=6e-3) == LOW
+    assert HIGH < 0.985
+
+
+@pytest.mark.statistical
+@pytest.mark.parametrize(
+    ("method", "seed", "sigma_about"),
+    [("tracking", 11, 3.0), ("amplitude", 12, 6.0), ("transit", 13, 4.5), ("full_fit", 14, 4.5)],
+)
+def test_interval_holds_the_truth(method: str, seed: int, sigma_about: float) -> None:
+    for item in campaign(method, RUNS, seed):
+        assert LOW <= item.share <= HIGH
+        assert abs(item.bias_in_sigma) < 0.3
+        # the sigma is the scatter: chi-square bounds of a variance from 400 runs, 99.9 %, widened
+        # by the scatter of the sigmas themselves (few degrees of freedom)
+        ratio = float(np.std(item.errors) / np.sqrt(np.mean(item.sigmas**2)))
+        assert 0.85 < ratio < 1.15
+        assert float(np.mean(item.sigmas)) < sigma_about
