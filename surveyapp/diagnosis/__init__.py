@@ -1,1 +1,23 @@
-"""Find the residual, name the effect, prove it."""
+"""Find the residual, name the effect, prove it: one engine for every subject.
+
+``reversal_run`` and ``campaign`` make a ``Problem`` of observations, ``diagnose`` returns a
+``Diagnosis``, ``plain_words`` tells it to a surveyor.
+"""
+
+from __future__ import annotations
+
+from surveyapp.diagnosis.campaign import Determination, campaign
+from surveyapp.diagnosis.engine import diagnose
+from surveyapp.diagnosis.problem import Problem
+from surveyapp.diagnosis.result import Diagnosis
+from surveyapp.diagnosis.reversal_run import TurningPoints, reversal_run
+
+__all__ = [
+    "Determination",
+    "Diagnosis",
+    "Problem",
+    "TurningPoints",
+    "campaign",
+    "diagnose",
+    "reversal_run",
+]

@@ -170,6 +170,9 @@ class Effect:
         Whether the coefficient can only be positive (a loss).
     at_datum : callable or None
         Rows of the basis at the states of ``value_at_datum``; None = the effect has no datum.
+    midpoint : callable or None
+        The part of the basis that moves the result, where that is not all of it (a step inside a
+        half swing changes the amplitude too); None = all of a midpoint effect.
     """
 
     id: str
@@ -190,6 +193,7 @@ class Effect:
     acts_on: Literal["midpoint", "amplitude", "observation"] = "midpoint"
     one_sided: bool = False
     at_datum: DatumRows | None = None
+    midpoint: Basis | None = None
 
     def __post_init__(self) -> None:
         if self.law is not None and len(self.coefficients) != 1:

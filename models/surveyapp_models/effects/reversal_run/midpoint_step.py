@@ -37,6 +37,11 @@ def basis(columns: Columns, /, **grid: float) -> Array:
     return np.asarray(after * (1.0 - kick * damped))[:, None]
 
 
+def midpoint(columns: Columns, /, **grid: float) -> Array:
+    """H(t - t0): what north itself does."""
+    return (columns["half_swing"] > grid["after_point"] + 1e-9).astype(np.float64)[:, None]
+
+
 def positions(columns: Columns) -> Array:
     """Last turning point before the step; at least two points on either side."""
     return np.unique(columns["half_swing"])[1:-2]
@@ -82,4 +87,5 @@ EFFECT = Effect(
     separate_by="a second run; sights and tape zero before and after tell which plateau is right",
     confusable_with=("midpoint_drift", "warm_up", "secondary_oscillation", "gross_error"),
     at_datum=at_datum,
+    midpoint=midpoint,
 )

@@ -1,0 +1,284 @@
+"""What may be missing: named effects, generic shapes and gross errors as columns on their grids.
+
+A generic shape can only end as "unattributed: shape"; a named effect may be adopted. This module
+makes columns; it does not know the observations.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surveyapp.diagnosis.problem import Array, Problem
+from surveyapp_models.effects.effect import Effect
+
+Kind = Literal["named", "shape"]
+
+MOST_PAIRS = 1500
+"""Grid points up to which several gross errors are searched exhaustively."""
+NOT_SEPARABLE = 0.02
+"""Share of its norm that a candidate must keep beside the model (diagnosis.md step 3)."""
+NOT_SEPARABLE_LAW = 0.004
+"""The same for amplitude laws, whose tangent lies close to exponential damping."""
+
+
+AMPLITUDE_SHAPES = frozenset({"amplitude_step", "amplitude_smooth"})
+"""Generic shapes of the amplitude of a swing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """One effect or shape with all its grid points.
+
+    Parameters
+    ----------
+    id : str
+    kind : str
+        named | shape.
+    points : tuple of mapping
+        Grid points.
+    columns : ndarray, shape (g, n, q)
+        Weighted columns; of an amplitude law the tangent at coefficient 0.
+    charge : ndarray, shape (g,)
+        Parameters that are paid for: coefficients and searched positions.
+    effect : Effect or None
+    count : int
+        Number of gross errors in one candidate, else 1.
+    missing : str
+        Why it is not applicable, or empty.
+    """
+
+    id: str
+    kind: Kind
+    points: tuple[Mapping[str, float], ...]
+    columns: Array
+    charge: Array
+    effect: Effect | None = None
+    count: int = 1
+    missing: str = ""
+
+    @property
+    def is_law(self) -> bool:
+        """Whether it changes the amplitude law."""
+        return self.effect is not None and self.effect.law is not None
+
+    @property
+    def describes_amplitude(self) -> bool:
+        """Whether it is a description of the amplitude, named or generic; a model has one."""
+        return self.is_law or self.id in AMPLITUDE_SHAPES
+
+    @property
+    def one_sided(self) -> bool:
+        """Whether only a positive coefficient is possible."""
+        return self.effect is not None and self.effect.one_sided
+
+    @property
+    def size(self) -> int:
+        """Coefficients."""
+        return int(self.columns.shape[2])
+
+    @property
+    def separable_share(self) -> float:
+        """Share of the norm below which it is not separable from the model."""
+        return NOT_SEPARABLE_LAW if self.is_law else NOT_SEPARABLE
+
+
+def swing_columns(problem: Problem, theta: Array | None) -> dict[str, Array]:
+    """Columns of a problem with those of its swing as it is fitted now."""
+    columns = dict(problem.columns)
+    if problem.side is not None and problem.half_swing is not None and theta is not None:
+        n = problem.size
+        columns["half_swing"] = problem.half_swing
+        columns["side"] = problem.side
+        columns["first_amplitude"] = np.full(n, theta[0])
+        columns["decay"] = np.full(n, theta[1])
+        columns["relative_amplitude"] = np.exp(-theta[1] * problem.half_swing)
+    return columns
+
+
+def missing_columns(effect: Effect, columns: Mapping[str, Array]) -> str:
+    """Say what an effect lacks, or an empty text."""
+    lacking = []
+    for need in effect.needs:
+        values = columns.get(need.name)
+        if values is None:
+            lacking.append(f"no {need.name} [{need.unit}]")
+        elif not np.isfinite(values).all():
+            gone = int((~np.isfinite(values)).sum())
+            lacking.append(f"{need.name} missing at {gone} of {values.size} observations")
+        elif values.size > 1 and np.ptp(values) == 0.0 and need.name not in CONSTANT_COLUMNS:
+            lacking.append(f"{need.name} has one value only")
+    return "; ".join(lacking)
+
+
+CONSTANT_COLUMNS = frozenset({"first_amplitude", "decay", "side", "relative_amplitude"})
+"""Columns of the swing that may be constant."""
+
+
+def all_candidates(problem: Problem, theta: Array | None) -> tuple[Candidate, ...]:
+    """Every candidate of a problem at the present amplitude and damping of its swing."""
+    columns = swing_columns(problem, theta)
+    root = problem.root_weights
+    found: list[Candidate] = []
+    for effect in problem.effects:
+        found += _named(effect, columns, root)
+    found += _shapes(problem, columns, root)
+    return tuple(found)
+
+
+def _named(effect: Effect, columns: Mapping[str, Array], root: Array) -> list[Candidate]:
+    empty = np.zeros((0, root.size, len(effect.coefficients)))
+    missing = missing_columns(effect, columns)
+    if missing:
+        return [Candidate(effect.id, "named", (), empty, np.zeros(0), effect, missing=missing)]
+    points = effect.grid_points(columns)
+    if not points:
+        text = "the record is too short for it or does not vary"
+        return [Candidate(effect.id, "named", (), empty, np.zeros(0), effect, missing=text)]
+    stacked = np.stack([effect.basis(columns, **point) for point in points]) * root[None, :, None]
+    searched = [effect.searched(p) if len(points) > 1 else 0 for p in points]
+    charge = stacked.shape[2] + np.array(searched, dtype=np.float64)
+    single = Candidate(effect.id, "named", points, stacked, charge, effect)
+    if effect.acts_on == "observation":
+        return [single, *_several(single)]
+    return [single]
+
+
+def _several(single: Candidate) -> list[Candidate]:
+    """Two and three gross errors at once, where an exhaustive search is affordable."""
+    count, n = len(single.points), single.columns.shape[1]
+    result = []
+    for several in (2, 3):
+        combinations = list(itertools.combinations(range(count), several))
+        if n < 4 + 3 * several or len(combinations) > MOST_PAIRS:
+            continue
+        index = np.array(combinations)
+        columns = np.concatenate([single.columns[index[:, i]] for i in range(several)], axis=2)
+        names = tuple(single.points[0])
+        points = tuple(
+            {f"{k}_{i + 1}": single.points[j][k] for i, j in enumerate(c) for k in names}
+            for c in combinations
+        )
+        charge = np.full(len(points), 2.0 * several)
+        result.append(
+            Candidate(single.id, "named", points, columns, charge, single.effect, count=several)
+        )
+    return result
+
+
+def _shape(name: str, columns: list[Array], charge: int, root: Array) -> Candidate:
+    stacked = np.stack(columns) * root[None, :, None]
+    points = tuple({"index": float(i)} for i in range(len(columns)))
+    return Candidate(name, "shape", points, stacked, np.full(len(columns), float(charge)))
+
+
+def _shapes(problem: Problem, columns: Mapping[str, Array], root: Array) -> list[Candidate]:
+    """Generic shapes over the position; of a swing in its amplitude too."""
+    position = problem.position
+    if np.unique(position).size < 5:
+        return []
+    span = float(np.ptp(position))
+    x = 2.0 * (position - position.min()) / span - 1.0
+    shapes = [
+        _shape("quadratic", [np.column_stack([x, x**2])], 2, root),
+        _shape("smooth", [np.column_stack([x, x**2, x**3])], 3, root),
+    ]
+    taken = {effect.id for effect in problem.effects}
+    if problem.has_swing:
+        amplitude = columns["side"] * columns["relative_amplitude"]
+        inner = np.unique(position)[1:-2]
+        kicks = [((position > p) * amplitude)[:, None] for p in inner]
+        shapes.append(_shape("amplitude_step", kicks, 2, root))
+        bend = np.column_stack([amplitude * x**2, amplitude * x**3])
+        shapes.append(_shape("amplitude_smooth", [bend], 2, root))
+        shapes.append(_periodic("long_oscillation", x, (0.8, 1.45), root, n=problem.size))
+    else:
+        if "transport_step" not in taken:
+            inner = np.unique(position)[1:-2]
+            steps = [(position > p).astype(np.float64)[:, None] for p in inner]
+            shapes.append(_shape("step", steps, 2, root))
+        shapes.append(_periodic("periodic", x, (1.5, 0.25 * problem.size), root, n=problem.size))
+    if "gross_error" not in taken:
+        single = [np.eye(problem.size)[:, i : i + 1] for i in range(problem.size)]
+        shapes.append(_shape("outlier", single, 2, root))
+    return shapes
+
+
+def _periodic(
+    name: str, x: Array, cycles: tuple[float, float], root: Array, *, n: int
+) -> Candidate:
+    """Sine and cosine with a scanned number of cycles over the record."""
+    low, high = cycles
+    count = max(2, min(int(4 * (high - low)), 2 * n) + 1)
+    columns = [
+        np.column_stack([np.cos(np.pi * c * x), np.sin(np.pi * c * x)])
+        for c in np.linspace(low, max(high, low + 0.1), count)
+    ]
+    return _shape(name, columns, 3, root)
+
+
+def orthonormal(columns: Array, share: float) -> tuple[Array, Array]:
+    """Orthonormalise the columns of each grid point.
+
+    Parameters
+    ----------
+    columns : ndarray, shape (g, n, q)
+        Already projected on what the model leaves.
+    share : float
+        Norms below this (absolute, per grid point and column) count as nothing.
+
+    Returns
+    -------
+    ndarray, shape (g, n, q)
+    ndarray of bool, shape (g,)
+        Where all q columns are independent.
+    """
+    result = columns.copy()
+    good = np.ones(columns.shape[0], dtype=bool)
+    for j in range(columns.shape[2]):
+        for i in range(j):
+            along = np.einsum("gn,gn->g", result[:, :, i], result[:, :, j])
+            result[:, :, j] -= along[:, None] * result[:, :, i]
+        norms = np.sqrt(np.einsum("gn,gn->g", result[:, :, j], result[:, :, j]))
+        good &= norms > share
+        result[:, :, j] /= np.where(norms > 0.0, norms, 1.0)[:, None]
+    return result, good
+
+
+@dataclass(frozen=True, slots=True)
+class Projected:
+    """A candidate beside a model: orthonormal columns of its separable grid points.
+
+    Parameters
+    ----------
+    candidate : Candidate
+    columns : ndarray, shape (g, n, q)
+    index : ndarray of int, shape (g,)
+        Grid points of the candidate that are separable.
+    left : float
+        Largest share of its norm that is left beside the model.
+    """
+
+    candidate: Candidate
+    columns: Array
+    index: NDArray[np.intp]
+    left: float
+
+
+def project(candidate: Candidate, q: Array) -> Projected:
+    """Project a candidate on what an orthonormal basis ``q`` of the model leaves."""
+    raw = candidate.columns
+    if raw.shape[0] == 0:
+        return Projected(candidate, raw, np.zeros(0, dtype=np.intp), 0.0)
+    norms = np.sqrt(np.einsum("gnq,gnq->gq", raw, raw))
+    unit = raw / np.where(norms > 0.0, norms, 1.0)[:, None, :]
+    left = unit - q @ (q.T @ unit)
+    share = np.sqrt(np.einsum("gnq,gnq->gq", left, left)).min(axis=1)
+    columns, good = orthonormal(left, candidate.separable_share)
+    index = np.flatnonzero(good & (norms.min(axis=1) > 0.0))
+    return Projected(candidate, columns[index], index, float(share.max()))

@@ -1,0 +1,258 @@
+"""Which sets of effects explain the record about equally well.
+
+Sets of one depth are compared by BIC, never a deeper set with a shallower one: letting BIC decide
+the depth overfits badly. All gross errors together count as one effect. The stochastic rivals
+compete at every depth.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from surveyapp.diagnosis.candidates import Candidate, Projected, project
+from surveyapp.diagnosis.fits import Fit, Member, bic_of, fit_members, scan_law, with_noise
+from surveyapp.diagnosis.nulls import reductions
+from surveyapp.diagnosis.problem import Array, Problem
+
+MARGIN = 4.0
+"""BIC by which every rival must be worse (diagnosis.md step 4)."""
+ANCHORS = 8
+"""Best sets of one depth from which those of the next are built."""
+REFINED = 12.0
+"""Sets whose approximate BIC lies within this of the best are fitted exactly."""
+GROSS_SHARE = 6
+"""At most one observation in so many is taken for a gross error."""
+SPANNED = 0.05
+"""Share of a fitted effect that may be left beside a rival that spans it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Level:
+    """All sets of one depth.
+
+    Parameters
+    ----------
+    depth : int
+    fits : tuple of Fit
+        The best exact fit of each set, best first; deterministic ones only.
+    noises : tuple of Fit
+        Those with a stochastic rival that compete at this depth, best first.
+    """
+
+    depth: int
+    fits: tuple[Fit, ...]
+    noises: tuple[Fit, ...]
+
+    @property
+    def every(self) -> tuple[Fit, ...]:
+        """Deterministic and stochastic sets, best first."""
+        return tuple(sorted((*self.fits, *self.noises), key=lambda fit: fit.bic))
+
+    @property
+    def preferred(self) -> Fit | None:
+        """The best deterministic set, or a simpler one within the margin that it merely spans."""
+        if not self.fits:
+            return None
+        best = self.fits[0]
+        simpler = [f for f in self.fits[1:] if f.bic < best.bic + MARGIN and spans(best, f)]
+        return min(simpler, key=lambda fit: (fit.parameters, fit.bic)) if simpler else best
+
+
+def base_level(problem: Problem) -> Level:
+    """The model that stands, alone."""
+    fit = fit_members(problem, ())
+    return Level(0, (fit,), with_noise(problem, fit))
+
+
+def orthonormal_design(fit: Fit) -> Array:
+    """Orthonormal basis of the columns of a fit, dependent ones dropped."""
+    norms = np.sqrt((fit.design**2).sum(axis=0))
+    unit = fit.design / np.where(norms > 0.0, norms, 1.0)
+    u, s, _ = np.linalg.svd(unit, full_matrices=False)
+    return np.asarray(u[:, s > 1e-9 * s[0]])
+
+
+def most_parameters(size: int) -> float:
+    """Parameters beyond which a set is not considered: half the observations, five at least."""
+    return max(5.0, 0.5 * size)
+
+
+def may_join(candidate: Candidate, fit: Fit) -> bool:
+    """Whether a candidate can be added: one description of the amplitude, every effect once."""
+    if candidate.columns.shape[0] == 0:
+        return False
+    least = fit.parameters + float(candidate.charge.min())
+    if least > most_parameters(fit.residual.size):
+        return False
+    if candidate.describes_amplitude and any(m.candidate.describes_amplitude for m in fit.members):
+        return False
+    if candidate.effect is not None and candidate.effect.acts_on == "observation":
+        return may_join_gross(candidate, fit)
+    return candidate.id not in fit.key
+
+
+def may_join_gross(candidate: Candidate, fit: Fit) -> bool:
+    """All gross errors together are one effect: single ones may follow while they stay few."""
+    known = sum(m.candidate.count for m in fit.members if m.candidate.id == candidate.id)
+    few = known + candidate.count <= max(1, fit.residual.size // GROSS_SHARE)
+    return few and (known == 0 or candidate.count == 1)
+
+
+def next_level(problem: Problem, level: Level, candidates: Iterable[Candidate]) -> Level:
+    """Best fit of every set that has one candidate more than the best sets of a level."""
+    pool = tuple(candidates)
+    drafts: dict[frozenset[str], tuple[float, tuple[Member, ...], Fit]] = {}
+    for anchor in level.fits[:ANCHORS]:
+        q = orthonormal_design(anchor)
+        for candidate in pool:
+            if not may_join(candidate, anchor):
+                continue
+            draft = _best_addition(problem, anchor, candidate, q)
+            if draft is None:
+                continue
+            bic, members = draft
+            key = anchor.key | {candidate.id}
+            if key not in drafts or bic < drafts[key][0]:
+                drafts[key] = (bic, members, anchor)
+    if not drafts:
+        return Level(level.depth + 1, (), ())
+    best = min(bic for bic, _, _ in drafts.values())
+    fits = []
+    for bic, members, anchor in drafts.values():
+        if level.depth == 0 or bic <= best + REFINED:
+            fits.append(_refined(problem, members, anchor, every=level.depth > 0))
+    fits.sort(key=lambda fit: fit.bic)
+    noises = [*level.noises]
+    for fit in level.fits[:ANCHORS]:
+        noises += with_noise(problem, fit)
+    unique = {fit.key: fit for fit in sorted(noises, key=lambda f: -f.bic)}
+    ordered = sorted(unique.values(), key=lambda fit: fit.bic)
+    return Level(level.depth + 1, tuple(fits), tuple(ordered))
+
+
+def _best_addition(
+    problem: Problem, anchor: Fit, candidate: Candidate, q: Array
+) -> tuple[float, tuple[Member, ...]] | None:
+    """Best grid point of a candidate beside an anchor and the approximate BIC there."""
+    item = project(candidate, q)
+    if item.index.size == 0:
+        return None
+    if candidate.is_law and anchor.theta is not None and not anchor.members:
+        rss = scan_law(problem, candidate, anchor.members, anchor.theta)[item.index]
+    else:
+        rss = anchor.sum_of_squares - reductions(item, anchor.residual)
+    total = anchor.parameters + candidate.charge[item.index]
+    bics = bic_of(problem, rss, total)
+    g = int(np.argmin(bics))
+    return float(bics[g]), (*anchor.members, Member(candidate, int(item.index[g])))
+
+
+def _refined(problem: Problem, members: tuple[Member, ...], anchor: Fit, *, every: bool) -> Fit:
+    """Exact fit; the grid of every member is searched again beside the others."""
+    start = anchor.theta
+    fit = fit_members(problem, members, start)
+    if not every:
+        return fit
+    for position, member in enumerate(members):
+        others = tuple(m for i, m in enumerate(members) if i != position)
+        if len(member.candidate.points) < 2:
+            continue
+        if member.candidate.is_law and fit.theta is not None:
+            rss = scan_law(problem, member.candidate, others, fit.theta)
+            bics = bic_of(problem, rss, fit.parameters)
+            g = int(np.argmin(bics))
+        else:
+            without = fit_members(problem, others, fit.theta)
+            draft = _best_addition(problem, without, member.candidate, orthonormal_design(without))
+            if draft is None:
+                continue
+            g = draft[1][-1].g
+        if g == member.g:
+            continue
+        changed = tuple(
+            Member(m.candidate, g) if i == position else m for i, m in enumerate(members)
+        )
+        trial = fit_members(problem, changed, fit.theta)
+        if trial.bic < fit.bic:
+            fit, members = trial, changed
+    return fit
+
+
+def within_margin(level: Level) -> tuple[Fit, ...]:
+    """The best set and every rival that is not worse by the margin, nested supersets dropped."""
+    best = level.preferred
+    if best is None:
+        return level.every[:1]
+    near = [f for f in level.every if f.bic < best.bic + MARGIN and f.key != best.key]
+    rivals = [fit for fit in near if not spans(fit, best)]
+    return tuple(sorted((best, *rivals), key=lambda fit: (fit.bic, fit is not best)))
+
+
+def spans(rival: Fit, fit: Fit) -> bool:
+    """Whether a rival is a superset: it spans what the fit adds to the base and pays more.
+
+    Only a generic shape, or the same effects with more gross errors, can be one: another named
+    effect is another explanation, however flexible it is.
+    """
+    if rival.noise is not None or fit.noise is not None:
+        return False
+    generic = any(m.candidate.kind == "shape" for m in rival.members)
+    if rival.parameters <= fit.parameters or not (generic or rival.key == fit.key):
+        return False
+    q = orthonormal_design(rival)
+    signal = added_signal(fit)
+    left = signal - q @ (q.T @ signal)
+    norms = np.sqrt((signal**2).sum(axis=0))
+    allowed = SPANNED * norms
+    if generic:
+        # A generic shape that imitates the effect to within the noise is no other explanation.
+        dof = max(fit.residual.size - fit.parameters, 1.0)
+        allowed = np.maximum(allowed, np.sqrt(fit.sum_of_squares / dof))
+    return bool(np.all(np.sqrt((left**2).sum(axis=0)) <= allowed))
+
+
+def added_signal(fit: Fit) -> Array:
+    """Fitted contribution of each member, beside the base (weighted), shape (n, members)."""
+    laws = 1 if fit.law is not None else 0
+    swing = 0 if fit.theta is None else 2 + laws
+    additive = sum(m.candidate.size for m in fit.members if not m.candidate.is_law)
+    first = fit.design.shape[1] - swing - additive
+    base = [*range(first), *range(first + additive, fit.design.shape[1] - laws)]
+    q, _ = np.linalg.qr(fit.design[:, base])
+    signals, at = [], first
+    for member in fit.members:
+        if member.candidate.is_law and fit.theta is not None:
+            part = fit.design[:, -1] * fit.theta[2]
+        else:
+            size = member.candidate.size
+            part = fit.design[:, at : at + size] @ fit.linear[at : at + size]
+            at += size
+        signals.append(part - q @ (q.T @ part))
+    return np.column_stack(signals) if signals else np.zeros((fit.design.shape[0], 0))
+
+
+def common_names(sets: Iterable[Fit]) -> frozenset[str]:
+    """Ids that are in every set."""
+    keys = [fit.key for fit in sets]
+    return frozenset.intersection(*keys) if keys else frozenset()
+
+
+def best_without(level: Level, identity: str) -> Fit | None:
+    """Best set of a level that does not contain an effect."""
+    return next((fit for fit in level.every if identity not in fit.key), None)
+
+
+def best_with(level: Level, identity: str) -> Fit | None:
+    """Best set of a level that contains an effect."""
+    return next((fit for fit in level.every if identity in fit.key), None)
+
+
+def by_id(items: Iterable[Projected]) -> Mapping[str, list[int]]:
+    """Positions of the candidates of each id (gross errors have several)."""
+    found: dict[str, list[int]] = {}
+    for i, item in enumerate(items):
+        found.setdefault(item.candidate.id, []).append(i)
+    return found

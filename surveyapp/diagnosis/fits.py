@@ -1,0 +1,225 @@
+"""Models as values: a base model with a set of candidates in it, fitted by least squares.
+
+A fit knows its design (with the derivatives of the non-linear part), its residuals, what was paid
+for and the likelihood. It does not choose anything.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from surveyapp.diagnosis.candidates import Candidate
+from surveyapp.diagnosis.problem import Array, Problem
+from surveyapp.diagnosis.stochastic import EXTRA_PARAMETERS, NoiseFit, best_noises
+from surveyapp.diagnosis.swing import fit_swing, starting_values, tangent
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A candidate at one of its grid points."""
+
+    candidate: Candidate
+    g: int
+
+    @property
+    def point(self) -> dict[str, float]:
+        """Grid point."""
+        return dict(self.candidate.points[self.g])
+
+    @property
+    def columns(self) -> Array:
+        """Weighted columns (n, q)."""
+        return np.asarray(self.candidate.columns[self.g])
+
+    @property
+    def charge(self) -> float:
+        """Parameters paid for."""
+        return float(self.candidate.charge[self.g])
+
+
+@dataclass(frozen=True, slots=True)
+class Fit:
+    """A fitted model.
+
+    Parameters
+    ----------
+    members : tuple of Member
+        Linear ones first, an amplitude law last.
+    linear : ndarray
+        Coefficients of the base and then of the linear members [SI].
+    theta : ndarray, shape (3,), or None
+        First amplitude, damping, coefficient of the law.
+    design : ndarray, shape (n, p)
+        Weighted: base, linear members, A, k, coefficient of the law.
+    residual : ndarray, shape (n,)
+        Weighted [SI].
+    parameters : float
+        Everything paid for.
+    bic : float
+        In units of the problem.
+    noise : NoiseFit or None
+        A stochastic rival beside the members.
+    """
+
+    members: tuple[Member, ...]
+    linear: Array
+    theta: Array | None
+    design: Array
+    residual: Array
+    parameters: float
+    bic: float
+    noise: NoiseFit | None = None
+
+    @property
+    def key(self) -> frozenset[str]:
+        """Ids in the model, the noise's among them."""
+        ids = {member.candidate.id for member in self.members}
+        return frozenset(ids | ({self.noise.kind} if self.noise is not None else set()))
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """Ids in the order in which they are told."""
+        ids = [member.candidate.id for member in self.members]
+        unique = list(dict.fromkeys(ids))
+        return (*unique, *((self.noise.kind,) if self.noise is not None else ()))
+
+    @property
+    def sum_of_squares(self) -> float:
+        """V'Pv [SI^2], the weights having mean square 1."""
+        return float(self.residual @ self.residual)
+
+    @property
+    def law(self) -> Member | None:
+        """The member that changes the amplitude law."""
+        return next((m for m in self.members if m.candidate.is_law), None)
+
+
+def information(problem: Problem, residual: Array, parameters: float) -> float:
+    """BIC = n log(v'Pv / n) + p log n, not below what rounding leaves; with known sigmas chi^2."""
+    return float(bic_of(problem, np.array(residual @ residual), parameters))
+
+
+def unit_variance(problem: Problem) -> float | None:
+    """Variance of an observation of mean weight where stated sigmas serve, else None [SI^2]."""
+    if not problem.sigma_known or problem.sigma is None:
+        return None
+    if problem.weighted:
+        return float(1.0 / np.mean(1.0 / problem.sigma**2))
+    return float(np.mean(problem.sigma**2))
+
+
+def bic_of(problem: Problem, rss: Array, parameters: float | Array) -> Array:
+    """BIC of sums of squares [SI^2]."""
+    n = problem.size
+    known = unit_variance(problem)
+    if known is not None:
+        return np.asarray(rss / known + parameters * np.log(n))
+    floor = max(problem.noise_floor**2, (1e-6 * problem.scale) ** 2)
+    mean = np.maximum(rss / n, floor)
+    return np.asarray(n * np.log(mean / problem.scale**2) + parameters * np.log(n))
+
+
+def fit_members(problem: Problem, members: Iterable[Member], start: Array | None = None) -> Fit:
+    """Least squares of the base model with the given members at their grid points.
+
+    Parameters
+    ----------
+    problem : Problem
+    members : iterable of Member
+        At most one amplitude law.
+    start : ndarray, shape (3,), optional
+        First amplitude, damping, coefficient.
+
+    Returns
+    -------
+    Fit
+    """
+    every = tuple(sorted(members, key=lambda m: m.candidate.is_law))
+    additive = [m for m in every if not m.candidate.is_law]
+    law = next((m for m in every if m.candidate.is_law), None)
+    root = problem.root_weights
+    y = problem.observations * root
+    X = np.hstack([problem.base * root[:, None], *[m.columns for m in additive]])
+    parameters = problem.base_parameters + sum(m.charge for m in every)
+    if problem.side is None or problem.half_swing is None:
+        q, r = np.linalg.qr(X)
+        linear = np.linalg.solve(r, q.T @ y) if X.shape[0] >= X.shape[1] else np.zeros(X.shape[1])
+        residual = y - X @ linear
+        bic = information(problem, residual, parameters)
+        return Fit(every, linear, None, X, residual, parameters, bic)
+    effect = None if law is None else law.candidate.effect
+    point = {} if law is None else law.point
+    if start is None:
+        start = starting_values(problem.observations, problem.side, problem.half_swing)
+    grid = {name: np.array([[value]]) for name, value in point.items()}
+    side, half_swing = problem.side, problem.half_swing
+    found = fit_swing(y, X, side=side, half_swing=half_swing, start=start, effect=effect, grid=grid)
+    theta, linear = found.theta[0], found.linear[0]
+    D = tangent(side=side, half_swing=half_swing, theta=theta, effect=effect, grid=point)
+    amplitude = _amplitude(problem, theta, law)
+    residual = y - X @ linear - problem.side * amplitude
+    bic = information(problem, residual, parameters)
+    return Fit(every, linear, theta, np.hstack([X, D]), residual, parameters, bic)
+
+
+def _amplitude(problem: Problem, theta: Array, law: Member | None) -> Array:
+    if problem.half_swing is None:
+        return np.zeros(problem.size)
+    if law is None or law.candidate.effect is None or law.candidate.effect.law is None:
+        return np.asarray(theta[0] * np.exp(-theta[1] * problem.half_swing))
+    first, decay, c = (theta[i : i + 1] for i in range(3))
+    return law.candidate.effect.law(problem.half_swing, first, decay, c, **law.point)
+
+
+def scan_law(
+    problem: Problem, candidate: Candidate, others: tuple[Member, ...], start: Array
+) -> Array:
+    """Sum of squares at each grid point of an amplitude law beside other members, shape (g,)."""
+    if problem.side is None or problem.half_swing is None or candidate.effect is None:
+        return np.zeros(0)
+    root = problem.root_weights
+    X = np.hstack([problem.base * root[:, None], *[m.columns for m in others]])
+    names = tuple(candidate.points[0])
+    grid = {k: np.array([[p[k]] for p in candidate.points]) for k in names}
+    return fit_swing(
+        problem.observations * root,
+        X,
+        side=problem.side,
+        half_swing=problem.half_swing,
+        start=start,
+        effect=candidate.effect,
+        grid=grid,
+    ).sum_of_squares
+
+
+def with_noise(problem: Problem, fit: Fit) -> tuple[Fit, ...]:
+    """The same model with each stochastic rival beside its members."""
+    if problem.sigma_known or problem.size <= fit.design.shape[1] + 2:
+        return ()
+    found = best_noises(
+        problem,
+        fit.design,
+        fit.residual,
+        scale=problem.scale,
+        floor=problem.noise_floor**2,
+    )
+    result = []
+    for noise in found:
+        parameters = fit.parameters + EXTRA_PARAMETERS[noise.kind]
+        bic = noise.minus_two_log + parameters * float(np.log(problem.size))
+        result.append(
+            Fit(
+                fit.members,
+                fit.linear,
+                fit.theta,
+                fit.design,
+                fit.residual,
+                parameters,
+                bic,
+                noise,
+            )
+        )
+    return tuple(result)

@@ -1,0 +1,171 @@
+"""The gate: whether anything is left in the residuals that pure noise would rarely show."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from surveyapp.diagnosis.candidates import Candidate, Projected, project
+from surveyapp.diagnosis.compare import may_join, orthonormal_design
+from surveyapp.diagnosis.fits import Fit, scan_law, unit_variance, with_noise
+from surveyapp.diagnosis.nulls import Noise, null_of, ratio, reductions
+from surveyapp.diagnosis.problem import Array, Problem
+
+GATE = 0.05
+"""Family p at which the search goes on (diagnosis.md step 3)."""
+NOTABLE = 1.0
+"""Gain of -2 log likelihood below which correlated noise is white noise."""
+FINE = 0.3
+"""Rounding below this share of the noise's standard deviation changes nothing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tested:
+    """The test of one effect beside a model.
+
+    Parameters
+    ----------
+    id : str
+    p, p_family : float or None
+        None where it is not separable from the model.
+    left : float
+        Share of its columns that the model leaves.
+    """
+
+    id: str
+    p: float | None
+    p_family: float | None
+    left: float
+
+
+@dataclass(frozen=True, slots=True)
+class Gate:
+    """All tests beside one model.
+
+    Parameters
+    ----------
+    effects : tuple of str
+        What the model contains already.
+    tests : tuple of Tested
+    p_family : float
+        Smallest of the family.
+    """
+
+    effects: tuple[str, ...]
+    tests: tuple[Tested, ...]
+    p_family: float
+
+    @property
+    def fired(self) -> bool:
+        """Whether the search goes on."""
+        return self.p_family <= GATE
+
+
+def rounding_of(problem: Problem, fit: Fit) -> float:
+    """Reading resolution in units of the noise, in coarse steps so that nulls are kept."""
+    if problem.resolution <= 0.0:
+        return 0.0
+    known = unit_variance(problem)
+    dof = max(problem.size - fit.design.shape[1], 1)
+    variance = fit.sum_of_squares / dof if known is None else known
+    white = max(variance - problem.noise_floor**2, (0.1 * problem.resolution) ** 2)
+    share = problem.resolution / float(np.sqrt(white))
+    return 0.0 if share < FINE else float(2.0 ** (np.round(2.0 * np.log2(share)) / 2.0))
+
+
+def statistic(problem: Problem, fit: Fit, item: Projected, q: Array) -> float:
+    """Largest reduction of the sum of squares over the grid, relative to what is left."""
+    reduction = float(reductions(item, fit.residual).max(initial=0.0))
+    candidate = item.candidate
+    if candidate.is_law and fit.theta is not None and fit.law is None:
+        rss = scan_law(problem, candidate, fit.members, fit.theta)[item.index]
+        reduction = max(reduction, fit.sum_of_squares - float(rss.min()))
+    known = unit_variance(problem)
+    if known is not None:
+        return reduction / known
+    floor = (problem.size - q.shape[1]) * problem.noise_floor**2
+    return float(ratio(np.array(reduction), np.array(fit.sum_of_squares), floor))
+
+
+def imitating_noise(
+    problem: Problem, without: Fit, identity: str, pool: Iterable[Candidate], draws: int
+) -> str | None:
+    """Kind of correlated noise that would show an effect as strong as this one too often.
+
+    Each stochastic rival is fitted to the model without the effect, as if the effect were nothing
+    but noise; the effect, with its whole scan, then runs over draws of that noise. BIC alone does
+    not do this: a walk that happens to look like a ramp is less likely than a ramp, and yet every
+    tenth walk looks like one.
+
+    Parameters
+    ----------
+    problem : Problem
+    without : Fit
+        The model without the effect.
+    identity : str
+    pool : iterable of Candidate
+    draws : int
+
+    Returns
+    -------
+    str or None
+        None where every rival is refuted.
+    """
+    if problem.sigma_known:
+        return None
+    q = orthonormal_design(without)
+    joining = [c for c in pool if may_join(c, without)]
+    own = [c for c in joining if c.id == identity]
+    family = tuple(item for item in (project(c, q) for c in own) if item.index.size)
+    if not family:
+        return None
+    observed = np.array([statistic(problem, without, item, q) for item in family])
+    for rival in with_noise(problem, without):
+        if rival.noise is None or rival.noise.gain < NOTABLE:
+            continue
+        colour: Array = np.asarray(np.linalg.inv(rival.noise.model.whitener), dtype=np.float64)
+        noise = Noise(draws, 0.0, problem.root_weights, colour=colour)
+        null = null_of(family, q, noise)
+        if float(null.p_values(observed).min()) > GATE:
+            return rival.noise.kind
+    return None
+
+
+def open_gate(problem: Problem, fit: Fit, pool: Iterable[Candidate], draws: int) -> Gate:
+    """Test every candidate beside a model.
+
+    Parameters
+    ----------
+    problem : Problem
+    fit : Fit
+    pool : iterable of Candidate
+    draws : int
+        Monte Carlo draws.
+
+    Returns
+    -------
+    Gate
+    """
+    q = orthonormal_design(fit)
+    joining = [c for c in pool if may_join(c, fit)]
+    every = [project(c, q) for c in joining]
+    family = tuple(item for item in every if item.index.size)
+    if not family:
+        return Gate(fit.effects, (), 1.0)
+    known = unit_variance(problem)
+    noise = Noise(draws, rounding_of(problem, fit), problem.root_weights, known is not None)
+    null = null_of(family, q, noise)
+    observed = [statistic(problem, fit, item, q) for item in family]
+    p = null.p_values(np.array(observed))
+    adjusted = null.family(p)
+    best: dict[str, Tested] = {}
+    for item, one, whole in zip(family, p, adjusted, strict=True):
+        test = Tested(item.candidate.id, float(one), float(whole), item.left)
+        if test.id not in best or one < (best[test.id].p or 0.0):
+            best[test.id] = test
+    for item in every:
+        if item.candidate.id not in best:
+            best[item.candidate.id] = Tested(item.candidate.id, None, None, item.left)
+    return Gate(fit.effects, tuple(best.values()), float(adjusted.min()))

@@ -1,0 +1,240 @@
+"""The loop: test, name, refit, test again; then prove, and say what could not be told apart.
+
+Greedy forward while the gate fires; then the sets of the depth that was reached are compared; a
+name must be in every set within the margin, must help to predict what did not choose it and must
+be missed when it is removed. Deterministic for a given input. Nothing is ever adopted silently:
+diagnosing returns a new value, the model that stands is not touched.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from surveyapp.diagnosis.candidates import Candidate, all_candidates
+from surveyapp.diagnosis.compare import (
+    MARGIN,
+    Level,
+    base_level,
+    best_with,
+    best_without,
+    most_parameters,
+    next_level,
+    within_margin,
+)
+from surveyapp.diagnosis.fits import Fit, fit_members
+from surveyapp.diagnosis.gate import Gate, imitating_noise, open_gate
+from surveyapp.diagnosis.problem import Problem
+from surveyapp.diagnosis.prove import confirm_rms, flagged, leave_one_out
+from surveyapp.diagnosis.value import plausible
+
+DEFAULT_DRAWS = 4000
+DEPTHS = ((45, 4), (20, 3), (12, 2), (8, 1))
+"""At most so many effects from so many observations on (diagnosis.md step 6)."""
+NAMED_DEPTH = 2
+"""Effects that enter later are named only when a second set confirms them."""
+LEAST_TO_NAME = 8
+COLOURED_DRAWS = 1000
+"""Draws of each coloured null: enough for a test at 5 %."""
+NOISE_WORDS = {
+    "random_walk": "a north that wanders at random",
+    "amplitude_walk": "a following that is irregular at random",
+    "ar1": "correlated noise",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """What the search found, before it is put into words.
+
+    Parameters
+    ----------
+    levels : tuple of Level
+        From the base model to the depth that was reached.
+    gates : tuple of Gate
+        One beside the best deterministic set of each level.
+    near : tuple of Fit
+        Sets of the last depth within the margin, best first; empty at depth 0.
+    adopted : tuple of str
+        Names.
+    refused : tuple of (str, str)
+        Names that were in every set but failed a proof, and which.
+    implausible : frozenset of str
+    after : Fit
+        The base model with the adopted effects.
+    best : Fit
+        The best set of the last depth.
+    pool : tuple of Candidate
+        Candidates beside the base model.
+    """
+
+    levels: tuple[Level, ...]
+    gates: tuple[Gate, ...]
+    near: tuple[Fit, ...]
+    adopted: tuple[str, ...]
+    refused: tuple[tuple[str, str], ...]
+    implausible: frozenset[str]
+    after: Fit
+    best: Fit
+    pool: tuple[Candidate, ...]
+
+    @property
+    def unexplained(self) -> bool:
+        """Whether something is left in the residuals of the best set after the last depth."""
+        return self.gates[-1].fired
+
+
+def deepest(size: int) -> int:
+    """How many effects a record of this size can carry."""
+    return next((depth for least, depth in DEPTHS if size >= least), 1)
+
+
+def search(problem: Problem, *, draws: int, confirm: Problem | None) -> Search:
+    """Run steps 2 to 6 of the algorithm."""
+    levels = [base_level(problem)]
+    base = levels[0].fits[0]
+    pool = all_candidates(problem, base.theta)
+    gates: list[Gate] = []
+    implausible: set[str] = set()
+    current = pool
+    while True:
+        fit = levels[-1].preferred or base
+        gates.append(open_gate(problem, fit, current, draws))
+        if not gates[-1].fired or len(levels) - 1 >= deepest(problem.size):
+            break
+        level, dropped = _possible(problem, next_level(problem, levels[-1], current))
+        implausible |= dropped
+        if not level.fits:
+            break
+        levels.append(level)
+        current = all_candidates(problem, (level.preferred or base).theta)
+    last = levels[-1]
+    if last.depth == 0:
+        return Search(
+            tuple(levels), tuple(gates), (), (), (), frozenset(implausible), base, base, pool
+        )
+    near = within_margin(last)
+    chosen = last.preferred or base
+    names = _names(problem, levels, near, confirmed=confirm is not None)
+    proofs = Proofs(current, min(draws, COLOURED_DRAWS), confirm)
+    adopted, refused, after = _proved(problem, chosen, names, base, proofs)
+    return Search(
+        tuple(levels),
+        tuple(gates),
+        near,
+        adopted,
+        refused,
+        frozenset(implausible),
+        after,
+        chosen if chosen.bic < near[0].bic + MARGIN else near[0],
+        pool,
+    )
+
+
+def _possible(problem: Problem, level: Level) -> tuple[Level, set[str]]:
+    """Drop sets with too many parameters or coefficients outside their physical range."""
+    kept, dropped = [], set()
+    for fit in level.fits:
+        if fit.parameters > most_parameters(problem.size):
+            continue
+        outside = set(plausible(problem, fit))
+        dropped |= outside if len(fit.members) == 1 else set()
+        if not outside:
+            kept.append(fit)
+        elif level.depth > 1:
+            dropped |= outside
+    allowed = [f for f in level.noises if f.parameters <= most_parameters(problem.size)]
+    return Level(level.depth, tuple(kept), tuple(allowed)), dropped
+
+
+def _names(
+    problem: Problem, levels: list[Level], near: tuple[Fit, ...], *, confirmed: bool
+) -> list[str]:
+    """Ids of named effects that are in every set within the margin."""
+    if problem.size < LEAST_TO_NAME:
+        return []
+    common = frozenset.intersection(*[fit.key for fit in near])
+    named = {m.candidate.id for f in near for m in f.members if m.candidate.kind == "named"}
+    found = [i for i in near[0].effects if i in common & named]
+    if confirmed or len(levels) - 1 <= NAMED_DEPTH:
+        return found
+    early = levels[NAMED_DEPTH].preferred
+    return [i for i in found if early is not None and i in early.key]
+
+
+@dataclass(frozen=True, slots=True)
+class Proofs:
+    """What the proofs need beside the fits."""
+
+    pool: tuple[Candidate, ...]
+    draws: int
+    confirm: Problem | None
+
+
+def _proved(
+    problem: Problem, best: Fit, names: list[str], base: Fit, proofs: Proofs
+) -> tuple[tuple[str, ...], tuple[tuple[str, str], ...], Fit]:
+    """Keep the names that predict better and are missed when removed; fit them jointly."""
+    refused: list[tuple[str, str]] = []
+    names = list(names)
+    while names:
+        after = reduced(problem, best, names)
+        failure = _failure(problem, after, names, proofs)
+        if failure is None:
+            return tuple(names), tuple(refused), after
+        refused.append(failure)
+        names.remove(failure[0])
+    return (), tuple(refused), base
+
+
+def reduced(problem: Problem, fit: Fit, names: Iterable[str]) -> Fit:
+    """The same fit with only the members of the given ids."""
+    keep = set(names)
+    members = [m for m in fit.members if m.candidate.id in keep]
+    return fit_members(problem, members, fit.theta if fit.theta is not None else None)
+
+
+def _failure(
+    problem: Problem, after: Fit, names: list[str], proofs: Proofs
+) -> tuple[str, str] | None:
+    """First adopted effect that fails a proof and why, else None."""
+    mask = flagged(after)
+    with_all = leave_one_out(problem, after)
+    for name in names:
+        without = reduced(problem, after, [n for n in names if n != name])
+        if without.bic <= after.bic:
+            return name, "the model is as good without it"
+        gross = float(np.sum(mask)) > float(np.sum(flagged(without)))
+        if not gross:
+            other = leave_one_out(problem, without, mask)
+            if with_all is not None and other is not None and with_all >= other:
+                return name, "it does not help to predict observations that were left out"
+        kind = imitating_noise(problem, without, name, proofs.pool, proofs.draws)
+        if kind is not None:
+            return name, f"{NOISE_WORDS[kind]} would look like it too often"
+        if proofs.confirm is not None:
+            here = confirm_rms(proofs.confirm, after)
+            there = confirm_rms(proofs.confirm, without)
+            if here is None or there is None:
+                return name, "the second set lacks what is needed to confirm it"
+            if here >= there:
+                return name, "the second set is predicted no better with it"
+    return None
+
+
+def rivals_delta(level: Level, identity: str) -> float | None:
+    """How much worse (positive) the best set with an effect is than the best of its depth."""
+    fit = best_with(level, identity)
+    every = level.every
+    return None if fit is None or not every else fit.bic - every[0].bic
+
+
+def margin_of(level: Level, identity: str) -> float | None:
+    """How much worse the best set without an effect is than the best one with it."""
+    fit, other = best_with(level, identity), best_without(level, identity)
+    return None if fit is None or other is None else other.bic - fit.bic
+
+
+__all__ = ["DEFAULT_DRAWS", "MARGIN", "Search", "deepest", "margin_of", "rivals_delta", "search"]

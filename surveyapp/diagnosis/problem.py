@@ -1,0 +1,151 @@
+"""What is diagnosed: observations, the model that stands, and the columns that effects may use.
+
+One form for every subject. A reversal run has a swing (side and half swings) beside its linear
+base; the other subjects have a linear base only. The engine works in SI units inside and prints in
+``unit``. Nothing here fits anything.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surveyapp.domain.project import ResultWarning
+from surveyapp_models.angles import ARCSEC
+from surveyapp_models.effects.effect import Effect, Subject
+
+Array = NDArray[np.float64]
+
+FEW_OBSERVATIONS = 6
+"""Below this number the stated sigmas serve instead of the residuals (diagnosis.md step 0)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """Observations with their base model.
+
+    Parameters
+    ----------
+    subject : str
+        Whose catalogue applies.
+    observations : ndarray, shape (n,)
+        Relative to ``offset`` [SI].
+    base : ndarray, shape (n, p)
+        Linear base design [SI per parameter]; a run and a campaign have one column of ones.
+    base_names : tuple of str
+    value_base : ndarray, shape (p,)
+        The result as a function of the base parameters.
+    value_weights : ndarray, shape (n,)
+        The result takes this weighted sum of every midpoint effect: 1/n = mean over the run.
+    position : ndarray, shape (n,)
+        Time or order for generic shapes and stochastic rivals.
+    columns : mapping
+        What effects may use, each of shape (n,); NaN = missing there.
+    effects : tuple of Effect
+        The subject's catalogue and the user's own.
+    side, half_swing : ndarray or None, shape (n,)
+        Of a swing: +1 right, -1 left; half swings since the first point.
+    sigma : ndarray or None, shape (n,)
+        Stated standard deviations [SI]; relative weights of a campaign, not taken for known noise
+        from six observations on.
+    weighted : bool
+        Whether the stated sigmas weight the observations.
+    resolution : float
+        Of the reading [SI]; 0 = unknown.
+    references : mapping
+        Values at which a datum is wanted, such as temperature_c.
+    offset : float
+        Added to the value [SI].
+    unit : str
+        Printed unit of residuals.
+    scale : float
+        SI value of one printed unit.
+    direction : bool
+        Whether the value is a direction (printed in degrees) or a small quantity (in ``unit``).
+    instrument : str
+    identity : str
+        Session or campaign, for messages.
+    labels : tuple of str
+        Name of each observation for messages.
+    grid_labels : mapping
+        Names behind numbered columns: ``{"line": {0.0: "A-B"}}``.
+    warnings : tuple of ResultWarning
+    """
+
+    subject: Subject
+    observations: Array
+    base: Array
+    base_names: tuple[str, ...]
+    value_base: Array
+    value_weights: Array
+    position: Array
+    columns: Mapping[str, Array]
+    effects: tuple[Effect, ...]
+    side: Array | None = None
+    half_swing: Array | None = None
+    sigma: Array | None = None
+    weighted: bool = False
+    resolution: float = 0.0
+    references: Mapping[str, float] = field(default_factory=dict)
+    offset: float = 0.0
+    unit: str = "arcsec"
+    scale: float = ARCSEC
+    direction: bool = False
+    instrument: str = ""
+    identity: str = ""
+    labels: tuple[str, ...] = ()
+    grid_labels: Mapping[str, Mapping[float, str]] = field(default_factory=dict)
+    warnings: tuple[ResultWarning, ...] = ()
+
+    @property
+    def size(self) -> int:
+        """Number of observations."""
+        return int(self.observations.size)
+
+    @property
+    def has_swing(self) -> bool:
+        """Whether an amplitude law belongs to the base model."""
+        return self.side is not None
+
+    @property
+    def base_parameters(self) -> int:
+        """Parameters of the base model: linear ones, amplitude and damping of a swing."""
+        return int(self.base.shape[1]) + (2 if self.has_swing else 0)
+
+    @property
+    def sigma_known(self) -> bool:
+        """Whether stated sigmas serve for the noise because there are too few observations."""
+        return self.size < FEW_OBSERVATIONS and self.sigma is not None
+
+    @property
+    def root_weights(self) -> Array:
+        """Factors that make the observations equally good, with mean square 1."""
+        if not self.weighted or self.sigma is None:
+            return np.ones(self.size)
+        root = 1.0 / self.sigma
+        return np.asarray(root / np.sqrt(np.mean(root**2)))
+
+    @property
+    def noise_floor(self) -> float:
+        """Smallest standard deviation that rounded readings can have [SI]."""
+        return self.resolution / float(np.sqrt(12.0))
+
+    def digest(self) -> str:
+        """Sha256 of everything that the result depends on."""
+        parts = [
+            self.subject.encode(),
+            repr(self.resolution).encode(),
+            repr(self.weighted).encode(),
+        ]
+        arrays = [self.observations, self.base, self.position, self.value_weights]
+        arrays += [a for a in (self.side, self.half_swing, self.sigma) if a is not None]
+        for name in sorted(self.columns):
+            parts.append(name.encode())
+            arrays.append(self.columns[name])
+        parts += [effect.id.encode() for effect in self.effects]
+        parts += [np.ascontiguousarray(a, dtype=np.float64).tobytes() for a in arrays]
+        return hashlib.sha256(b"\x00".join(parts)).hexdigest()

@@ -1,0 +1,206 @@
+"""A reversal run as a problem: turning points of a swing, N + A s_k exp(-k t) as the base model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from surveyapp.diagnosis.problem import Array, Problem
+from surveyapp.domain.project import ResultWarning
+from surveyapp.errors import Problem as InputProblem
+from surveyapp.errors import SurveyError
+from surveyapp_models.angles import circular_mean, wrap_pi_array
+from surveyapp_models.effects import of_subject
+from surveyapp_models.effects.effect import Effect
+
+LEAST_POINTS = 4
+IRREGULAR = 0.3
+"""Share of a half swing by which a time may miss the count of turning points."""
+
+
+@dataclass(frozen=True, slots=True)
+class TurningPoints:
+    """What a reversal run hands over.
+
+    Parameters
+    ----------
+    readings : sequence of float
+        Circle readings at the turning points [rad], in order, missed ones left out.
+    count : sequence of float, optional
+        Number of each turning point with missed ones counted; 0, 1, 2 ... if absent.
+    right : sequence of bool, optional
+        True at the right (east, larger) side; from the readings if absent.
+    elapsed_s : sequence of float or None, optional
+        Times [s].
+    covariates : mapping
+        Further columns, such as temperature_c; NaN = not read.
+    resolution : float
+        Of the readings [rad]; 0 = unknown.
+    sigma : float or None
+        Stated standard deviation of one turning point [rad].
+    reference_temperature_c : float or None
+    instrument, identity : str
+    """
+
+    readings: Sequence[float]
+    count: Sequence[float] | None = None
+    right: Sequence[bool] | None = None
+    elapsed_s: Sequence[float] | None = None
+    covariates: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    resolution: float = 0.0
+    sigma: float | None = None
+    reference_temperature_c: float | None = None
+    instrument: str = ""
+    identity: str = ""
+
+
+def reversal_run(points: TurningPoints, extra: tuple[Effect, ...] = ()) -> Problem:
+    """Make the problem of a reversal run.
+
+    Parameters
+    ----------
+    points : TurningPoints
+    extra : tuple of Effect
+        The user's own effects.
+
+    Returns
+    -------
+    Problem
+
+    Raises
+    ------
+    SurveyError
+        If there are fewer than four turning points, or they do not swing.
+    """
+    readings = np.asarray(points.readings, dtype=np.float64)
+    _check(points, readings)
+    count = (
+        np.arange(readings.size, dtype=np.float64)
+        if points.count is None
+        else np.asarray(points.count, dtype=np.float64)
+    )
+    offset = circular_mean(readings)
+    y = wrap_pi_array(readings - offset)
+    side = _sides(points, y, count)
+    warnings: list[ResultWarning] = []
+    columns = {name: np.asarray(v, dtype=np.float64) for name, v in points.covariates.items()}
+    if points.elapsed_s is None:
+        warnings.append(
+            ResultWarning(
+                "no_times",
+                "no times: the number of the turning point stands in for time, rates and time "
+                "constants are per half swing",
+            )
+        )
+    else:
+        times = np.asarray(points.elapsed_s, dtype=np.float64)
+        columns["elapsed_s"] = times
+        warnings += _time_warnings(times, count)
+    n = readings.size
+    references = {}
+    if points.reference_temperature_c is not None:
+        references["temperature_c"] = points.reference_temperature_c
+    return Problem(
+        subject="reversal_run",
+        observations=y,
+        base=np.ones((n, 1)),
+        base_names=("north",),
+        value_base=np.ones(1),
+        value_weights=np.full(n, 1.0 / n),
+        position=count - count[0],
+        columns=columns,
+        effects=(*of_subject("reversal_run"), *extra),
+        side=side,
+        half_swing=count - count[0],
+        sigma=None if points.sigma is None else np.full(n, points.sigma),
+        resolution=points.resolution,
+        references=references,
+        offset=offset,
+        direction=True,
+        instrument=points.instrument,
+        identity=points.identity,
+        labels=tuple(f"turning point {int(k) + 1}" for k in count - count[0]),
+        warnings=tuple(warnings),
+    )
+
+
+def _check(points: TurningPoints, readings: Array) -> None:
+    faults = []
+    if readings.size < LEAST_POINTS:
+        faults.append(
+            InputProblem(
+                "too few turning points to diagnose a run",
+                points.identity,
+                str(readings.size),
+                f"at least {LEAST_POINTS}; from 8 on an effect can be named",
+                "Three turning points give north but nothing to check it with.",
+            )
+        )
+    elif np.ptp(wrap_pi_array(readings - readings[0])) == 0.0:
+        faults.append(
+            InputProblem(
+                "the turning points do not swing",
+                points.identity,
+                "all readings equal",
+                "readings alternating between the two sides",
+                "Was the gyro clamped, or one reading copied?",
+            )
+        )
+    for name, values in (("count", points.count), ("elapsed_s", points.elapsed_s)):
+        if values is not None and len(values) != readings.size:
+            faults.append(
+                InputProblem(
+                    f"{name} does not belong to these readings",
+                    points.identity,
+                    str(len(values)),
+                    str(readings.size),
+                )
+            )
+        elif values is not None and np.any(np.diff(np.asarray(values, dtype=float)) <= 0.0):
+            faults.append(
+                InputProblem(f"{name} does not increase", points.identity, "", "increasing values")
+            )
+    if not np.isfinite(readings).all():
+        faults.append(InputProblem("a reading is no number", points.identity, "nan", "angles"))
+    if faults:
+        raise SurveyError(faults)
+
+
+def _sides(points: TurningPoints, y: Array, count: Array) -> Array:
+    """+1 right, -1 left; alternating with the count, whatever single readings look like."""
+    parity = np.where(np.round(count - count[0]) % 2 == 0, 1.0, -1.0)
+    if points.right is not None:
+        side = np.where(np.asarray(points.right, dtype=bool), 1.0, -1.0)
+        if np.any(side * side[0] != parity):
+            raise SurveyError(
+                InputProblem(
+                    "two turning points on one side follow each other",
+                    points.identity,
+                    "",
+                    "sides that alternate with the count of turning points",
+                    "Was one turning point missed? Count it.",
+                )
+            )
+        return side
+    even, odd = y[parity > 0.0], y[parity < 0.0]
+    first_is_right = float(np.median(even)) >= float(np.median(odd))
+    return parity if first_is_right else -parity
+
+
+def _time_warnings(times: Array, count: Array) -> list[ResultWarning]:
+    if not np.isfinite(times).all() or times.size < 3:
+        return [ResultWarning("times_incomplete", "times are incomplete and are not used")]
+    slope, start = np.polyfit(count, times, 1)
+    off = np.abs(times - start - slope * count) / max(abs(float(slope)), 1e-9)
+    if float(off.max()) > IRREGULAR:
+        k = int(np.argmax(off))
+        return [
+            ResultWarning(
+                "times_disagree",
+                f"the time of turning point {int(count[k] - count[0]) + 1} does not agree with "
+                "the count of half swings: was one missed?",
+            )
+        ]
+    return []

@@ -1,0 +1,194 @@
+"""The stochastic rivals: noise that wanders can look like any effect.
+
+Random walk of north, random walk of the amplitude, and an autoregressive process, each with white
+noise beside it. The white part is never smaller than the rounding of the readings and the first
+point has a variance of its own, else the likelihood runs away. Scanned on grids of variance ratios
+and correlations; every covariance is factorised once per set of positions.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from surveyapp.diagnosis.problem import Array, Problem
+
+NoiseKind = Literal["random_walk", "amplitude_walk", "ar1"]
+
+RATIOS = tuple(float(r) for r in np.geomspace(0.01, 30.0, 12))
+"""Variance of one step of the walk relative to the white noise."""
+CORRELATIONS: tuple[float, ...] = (-0.8, -0.5, 0.3, 0.5, 0.7, 0.85, 0.95)
+"""Correlation of neighbours of the autoregressive process."""
+SHARES = (0.5, 2.0, 8.0, 1e4)
+"""Variance of the autoregressive process relative to the white noise; the last is pure AR(1)."""
+LARGE = 100
+"""From this size on the grids are thinned to every second value."""
+EXTRA_PARAMETERS = {"random_walk": 1.0, "amplitude_walk": 1.0, "ar1": 2.0}
+
+
+@dataclass(frozen=True, slots=True)
+class NoiseModel:
+    """One covariance on the grid, whitened: W C W' = 1.
+
+    Parameters
+    ----------
+    kind : str
+    point : tuple of float
+        Ratio, or correlation and share.
+    process : ndarray, shape (n, n)
+        Covariance of the process in units of the white variance.
+    whitener : ndarray, shape (n, n)
+    log_determinant : float
+        Of the whole covariance in units of the white variance.
+    """
+
+    kind: NoiseKind
+    point: tuple[float, ...]
+    process: Array
+    whitener: Array
+    log_determinant: float
+
+
+_CACHE: dict[bytes, tuple[NoiseModel, ...]] = {}
+
+
+def noise_models(problem: Problem) -> tuple[NoiseModel, ...]:
+    """All covariances of the stochastic rivals for the positions of a problem."""
+    key = hashlib.sha256()
+    for part in (problem.position, problem.root_weights):
+        key.update(np.ascontiguousarray(part).tobytes())
+    key.update(b"swing" if problem.side is None else problem.side.tobytes())
+    found = _CACHE.get(key.digest())
+    if found is None:
+        found = _build(problem)
+        if len(_CACHE) >= 16:
+            _CACHE.pop(next(iter(_CACHE)))
+        _CACHE[key.digest()] = found
+    return found
+
+
+def _build(problem: Problem) -> tuple[NoiseModel, ...]:
+    n, root = problem.size, problem.root_weights
+    rank = _scaled_position(problem.position)
+    walk = np.minimum.outer(rank, rank) + 1.0
+    lag = np.abs(np.subtract.outer(rank, rank))
+    thin = slice(None, None, 2) if n >= LARGE else slice(None)
+    models: list[tuple[NoiseKind, tuple[float, ...], Array]] = []
+    for ratio in RATIOS[thin]:
+        models.append(("random_walk", (float(ratio),), ratio * walk))
+        if problem.side is not None:
+            sides = np.outer(problem.side, problem.side)
+            # A north that moves at any phase f of the swing kicks the amplitude by cos(pi f):
+            # averaged over f that is half the variance, alternating.
+            models.append(("random_walk", (float(ratio),), ratio * walk * (1.0 + 0.5 * sides)))
+            models.append(("amplitude_walk", (float(ratio),), ratio * walk * sides))
+    for correlation in CORRELATIONS[thin]:
+        decay: Array = np.asarray(abs(correlation) ** lag)
+        if correlation < 0.0:
+            decay = decay * np.cos(np.pi * np.round(lag))
+        models += [("ar1", (correlation, share), share * decay) for share in SHARES]
+    outer = np.outer(root, root)
+    stack = np.stack([np.eye(n) + process * outer for _, _, process in models])
+    lower = np.linalg.cholesky(stack)
+    whiteners = np.linalg.solve(lower, np.broadcast_to(np.eye(n), stack.shape))
+    logs = 2.0 * np.log(np.einsum("gii->gi", lower)).sum(axis=1)
+    return tuple(
+        NoiseModel(kind, point, process, w, float(log))
+        for (kind, point, process), w, log in zip(models, whiteners, logs, strict=True)
+    )
+
+
+def _scaled_position(position: Array) -> Array:
+    """Positions with a median spacing of 1, so that the grids fit every record."""
+    gaps = np.diff(np.sort(position))
+    gaps = gaps[gaps > 0.0]
+    spacing = float(np.median(gaps)) if gaps.size else 1.0
+    return np.asarray((position - position.min()) / spacing)
+
+
+@dataclass(frozen=True, slots=True)
+class NoiseFit:
+    """The likeliest member of one kind of noise beside a design.
+
+    Parameters
+    ----------
+    kind : str
+    model : NoiseModel
+    gain : float
+        Decrease of -2 log likelihood against white noise.
+    minus_two_log : float
+        -2 log likelihood up to the constant that the white model leaves out too.
+    step : ndarray, shape (p,)
+        Change of the parameters against least squares.
+    white : float
+        Variance of the white part [SI^2].
+    cofactor : ndarray, shape (p, p)
+        Covariance of the parameters in units of ``white``.
+    """
+
+    kind: NoiseKind
+    model: NoiseModel
+    gain: float
+    minus_two_log: float
+    step: Array
+    white: float
+    cofactor: Array
+
+
+def best_noises(
+    problem: Problem, J: Array, residual: Array, *, scale: float, floor: float
+) -> tuple[NoiseFit, ...]:
+    """Likeliest covariance of each kind for the residuals of a design.
+
+    Parameters
+    ----------
+    problem : Problem
+    J : ndarray, shape (n, p)
+        Design (weighted, derivatives of the non-linear part).
+    residual : ndarray, shape (n,)
+    scale : float
+        Unit in which the likelihood is counted [SI].
+    floor : float
+        Smallest white variance [SI^2].
+
+    Returns
+    -------
+    tuple of NoiseFit
+    """
+    models = noise_models(problem)
+    norms = np.sqrt((J**2).sum(axis=0))
+    norms = np.where(norms > 0.0, norms, 1.0)
+    whiteners = np.stack([m.whitener for m in models])
+    design = whiteners @ (J / norms)
+    seen = whiteners @ residual
+    q, r = np.linalg.qr(design)
+    along = np.einsum("gnp,gn->gp", q, seen)
+    left = np.einsum("gn,gn->g", seen, seen) - np.einsum("gp,gp->g", along, along)
+    n = residual.size
+    white = np.maximum(np.maximum(left / n, floor), 1e-12 * scale**2)
+    logs = np.array([m.log_determinant for m in models])
+    minus = n * np.log(white / scale**2) + logs + left / white - n
+    mean = max(float(residual @ residual) / n, floor, 1e-12 * scale**2)
+    plain = n * float(np.log(mean / scale**2))
+    best: dict[NoiseKind, int] = {}
+    for g, model in enumerate(models):
+        if model.kind not in best or minus[g] < minus[best[model.kind]]:
+            best[model.kind] = g
+    result = []
+    for kind, g in best.items():
+        inverse = np.linalg.pinv(r[g])
+        result.append(
+            NoiseFit(
+                kind,
+                models[g],
+                float(plain - minus[g]),
+                float(minus[g]),
+                inverse @ along[g] / norms,
+                float(white[g]),
+                (inverse @ inverse.T) / np.outer(norms, norms),
+            )
+        )
+    return tuple(result)

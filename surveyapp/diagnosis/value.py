@@ -1,0 +1,284 @@
+"""The result under a model: the mean over the record, its sigma, and the average over models.
+
+The value of a run is north averaged over the run; nothing ever moves it silently. Covariances
+include the non-linear parameters, searched positions and what a stochastic model says.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from surveyapp.diagnosis.candidates import swing_columns
+from surveyapp.diagnosis.fits import Fit, Member, fit_members, unit_variance
+from surveyapp.diagnosis.problem import Array, Problem
+
+NEAR_POSITIONS = 6.0
+"""BIC within which other positions of a searched effect contribute to its uncertainty."""
+MOST_POSITIONS = 8
+SHAPE_OBSERVATIONS = frozenset({"outlier"})
+
+
+@dataclass(frozen=True, slots=True)
+class Value:
+    """A result with its uncertainty [SI].
+
+    Parameters
+    ----------
+    value, sigma : float
+    dof : float
+        Degrees of freedom behind sigma; infinite where stated sigmas serve.
+    """
+
+    value: float
+    sigma: float
+    dof: float
+
+    @property
+    def interval95(self) -> float:
+        """Half-width of the 95 % interval."""
+        return self.sigma * t_quantile(0.975, self.dof)
+
+
+def t_quantile(probability: float, dof: float) -> float:
+    """Quantile of Student's t; normal for infinite degrees of freedom."""
+    from scipy.special import ndtri, stdtrit
+
+    if math.isinf(dof):
+        return float(ndtri(probability))
+    return float(stdtrit(dof, probability))
+
+
+def effect_rows(problem: Problem, member: Member, columns: Array) -> Array:
+    """What the value takes of a member's columns, shape (q,)."""
+    candidate = member.candidate
+    effect = candidate.effect
+    if candidate.describes_amplitude or candidate.id in SHAPE_OBSERVATIONS:
+        return np.zeros(candidate.size)
+    if effect is not None and effect.acts_on == "observation":
+        return np.zeros(candidate.size)
+    return np.asarray(problem.value_weights @ columns)
+
+
+def _midpoint_columns(problem: Problem, fit: Fit, member: Member) -> Array:
+    effect = member.candidate.effect
+    if effect is not None and effect.midpoint is not None:
+        return effect.midpoint(swing_columns(problem, fit.theta), **member.point)
+    return np.asarray(member.columns / problem.root_weights[:, None])
+
+
+def functional(problem: Problem, fit: Fit) -> Array:
+    """Row that makes the value of the parameters of a fit, shape (p,)."""
+    parts = [problem.value_base]
+    parts += [
+        effect_rows(problem, m, _midpoint_columns(problem, fit, m))
+        for m in fit.members
+        if not m.candidate.is_law
+    ]
+    row = np.concatenate(parts)
+    return np.concatenate([row, np.zeros(fit.design.shape[1] - row.size)])
+
+
+def _grid_derivatives(problem: Problem, fit: Fit) -> tuple[Array, Array]:
+    """Columns of the continuous grid parameters (n, r), and what the value takes of them (r,)."""
+    columns, rows = [], []
+    at = problem.base.shape[1]
+    named = swing_columns(problem, fit.theta)
+    for member in fit.members:
+        effect = member.candidate.effect
+        if member.candidate.is_law:
+            continue
+        size = member.candidate.size
+        coefficients = fit.linear[at : at + size]
+        at += size
+        if effect is None or member.candidate.count > 1:
+            continue
+        for parameter in effect.grid:
+            if not parameter.continuous:
+                continue
+            point = member.point
+            h = 1e-4 * max(abs(point[parameter.name]), 1e-6)
+            up = effect.basis(named, **point | {parameter.name: point[parameter.name] + h})
+            down = effect.basis(named, **point | {parameter.name: point[parameter.name] - h})
+            column = (up - down) @ coefficients / (2.0 * h)
+            columns.append(column * problem.root_weights)
+            rows.append(float(problem.value_weights @ column))
+    n = problem.size
+    return (np.column_stack(columns) if columns else np.zeros((n, 0))), np.array(rows)
+
+
+def _variance_factor(problem: Problem, fit: Fit) -> tuple[float, float]:
+    known = unit_variance(problem)
+    if known is not None:
+        return known, math.inf
+    dof = max(problem.size - fit.parameters, 1.0)
+    return max(fit.sum_of_squares / dof, problem.noise_floor**2), dof
+
+
+def plain_value(problem: Problem, fit: Fit, row: Array | None = None) -> Value:
+    """Value of a deterministic fit at its own grid point; ``row`` in place of the mean."""
+    row = functional(problem, fit) if row is None else row
+    extra, extra_row = _grid_derivatives(problem, fit)
+    J = np.hstack([fit.design, extra])
+    h = np.concatenate([row, extra_row])
+    norms = np.sqrt((J**2).sum(axis=0))
+    norms = np.where(norms > 0.0, norms, 1.0)
+    _, s, vt = np.linalg.svd(J / norms, full_matrices=False)
+    use = s > 1e-7 * s[0]
+    along = (vt[use] @ (h / norms)) / s[use]
+    factor, dof = _variance_factor(problem, fit)
+    parameters = np.zeros(fit.design.shape[1])
+    parameters[: fit.linear.size] = fit.linear
+    return Value(float(row @ parameters), math.sqrt(factor * float(along @ along)), dof)
+
+
+def _noise_value(problem: Problem, fit: Fit) -> Value:
+    """Value beside a stochastic rival: a walk of north is predicted, other noise is noise."""
+    noise = fit.noise
+    if noise is None:
+        return plain_value(problem, fit)
+    h = functional(problem, fit)
+    parameters = np.zeros(fit.design.shape[1])
+    parameters[: fit.linear.size] = fit.linear
+    value = float(h @ (parameters + noise.step))
+    white = noise.white * problem.size / max(problem.size - fit.design.shape[1], 1)
+    if noise.kind != "random_walk":
+        return Value(value, math.sqrt(white * float(h @ noise.cofactor @ h)), _dof(problem, fit))
+    w = problem.value_weights
+    cross = problem.root_weights * (noise.model.process @ w)
+    whitened = noise.model.whitener @ cross
+    left = noise.model.whitener @ (fit.residual - fit.design @ noise.step)
+    value += float(whitened @ left)
+    gap = h - (noise.model.whitener @ fit.design).T @ whitened
+    spread = float(w @ noise.model.process @ w) - float(whitened @ whitened)
+    variance = white * (max(spread, 0.0) + float(gap @ noise.cofactor @ gap))
+    return Value(value, math.sqrt(variance), _dof(problem, fit))
+
+
+def _dof(problem: Problem, fit: Fit) -> float:
+    return max(problem.size - fit.parameters, 1.0)
+
+
+def value_of(problem: Problem, fit: Fit) -> Value:
+    """Value of a fit, the spread over other likely positions of searched effects included."""
+    if fit.noise is not None:
+        return _noise_value(problem, fit)
+    central = plain_value(problem, fit)
+    others = [
+        (trial, plain_value(problem, trial))
+        for member in fit.members
+        for trial in neighbours(problem, fit, member)
+    ]
+    if not others:
+        return central
+    bics = np.array([fit.bic, *[trial.bic for trial, _ in others]])
+    weights = np.exp(-0.5 * (bics - bics.min()))
+    weights /= weights.sum()
+    values = np.array([central.value, *[value.value for _, value in others]])
+    spread = float(weights @ (values - central.value) ** 2)
+    return Value(central.value, math.hypot(central.sigma, math.sqrt(spread)), central.dof)
+
+
+def neighbours(problem: Problem, fit: Fit, member: Member) -> tuple[Fit, ...]:
+    """Fits with one member at the positions next to its best one that are about as likely."""
+    candidate = member.candidate
+    if len(candidate.points) < 2 or candidate.count > 1:
+        return ()
+    if candidate.effect is not None and all(g.continuous for g in candidate.effect.grid):
+        return ()
+    near = [g for g in range(len(candidate.points)) if 0 < abs(g - member.g) <= MOST_POSITIONS // 2]
+    found = []
+    for g in near:
+        swapped = [Member(candidate, g) if m is member else m for m in fit.members]
+        trial = fit_members(problem, swapped, fit.theta)
+        if trial.bic < fit.bic + NEAR_POSITIONS:
+            found.append(trial)
+    return tuple(found)
+
+
+def averaged_value(problem: Problem, fits: Sequence[Fit]) -> Value:
+    """Model average over sets of one depth, with the variance between the models."""
+    bics = np.array([fit.bic for fit in fits])
+    weights = np.exp(-0.5 * (bics - bics.min()))
+    weights /= weights.sum()
+    keep = weights > 1e-3
+    values = [value_of(problem, fit) for fit, k in zip(fits, keep, strict=True) if k]
+    weights = weights[keep] / weights[keep].sum()
+    middle = np.array([v.value for v in values])
+    mean = float(weights @ middle)
+    within = np.array([v.sigma**2 for v in values])
+    variance = float(weights @ (within + (middle - mean) ** 2))
+    finite = [v.dof for v in values]
+    dof = math.inf if any(math.isinf(d) for d in finite) else float(weights @ np.array(finite))
+    return Value(mean, math.sqrt(variance), dof)
+
+
+def datum_values(problem: Problem, fit: Fit) -> tuple[tuple[str, str, Value], ...]:
+    """(effect, state, value) at the physical datum of the first effect that has one."""
+    if fit.noise is not None:
+        return ()
+    named = swing_columns(problem, fit.theta)
+    at = problem.base.shape[1]
+    for member in fit.members:
+        if member.candidate.is_law:
+            continue
+        effect, size = member.candidate.effect, member.candidate.size
+        if effect is not None and effect.at_datum is not None and member.candidate.count == 1:
+            states = effect.at_datum(named, problem.references, **member.point)
+            rows = []
+            for text, row in states:
+                h = functional(problem, fit)
+                h[at : at + size] = row
+                rows.append((effect.id, text, plain_value(problem, fit, h)))
+            return tuple(rows)
+        at += size
+    return ()
+
+
+def rms(problem: Problem, fit: Fit) -> float:
+    """Root mean square of the unweighted residuals [SI]."""
+    return float(np.sqrt(np.mean((fit.residual / problem.root_weights) ** 2)))
+
+
+def coefficients(problem: Problem, fit: Fit) -> dict[str, tuple[Array, Array]]:
+    """Coefficients of each member and their covariance [SI], by id (gross errors joined)."""
+    factor, _ = _variance_factor(problem, fit)
+    norms = np.sqrt((fit.design**2).sum(axis=0))
+    unit = fit.design / np.where(norms > 0.0, norms, 1.0)
+    cofactor = np.linalg.pinv(unit.T @ unit, rcond=1e-14, hermitian=True)
+    covariance = factor * cofactor / np.outer(norms, norms)
+    found: dict[str, list[int]] = {}
+    at = problem.base.shape[1]
+    for member in fit.members:
+        size = member.candidate.size
+        if member.candidate.is_law:
+            index = [fit.design.shape[1] - 1]
+        else:
+            index = list(range(at, at + size))
+            at += size
+        found.setdefault(member.candidate.id, []).extend(index)
+    every = np.concatenate([fit.linear, fit.theta if fit.theta is not None else np.zeros(0)])
+    return {k: (every[i], covariance[np.ix_(i, i)]) for k, i in found.items()}
+
+
+def plausible(problem: Problem, fit: Fit) -> Iterable[str]:
+    """Yield ids of members whose coefficients lie outside their physical range."""
+    at = problem.base.shape[1]
+    for member in fit.members:
+        size = member.candidate.size
+        if member.candidate.is_law:
+            values = fit.theta[2:] if fit.theta is not None else np.zeros(0)
+        else:
+            values = fit.linear[at : at + size]
+            at += size
+        effect = member.candidate.effect
+        if effect is None:
+            continue
+        for i, value in enumerate(values):
+            c = effect.coefficients[i % len(effect.coefficients)]
+            if not c.low - 1e-12 <= value / c.scale <= c.high + 1e-12:
+                yield member.candidate.id
+                break
