@@ -132,6 +132,41 @@ def test_each_effect_has_its_signature():
     assert np.allclose(loss, 20.0, atol=0.3)
 
 
+def test_uneven_follow_up_changes_the_amplitude_only():
+    spec = SessionSpec(
+        points=20, noise=QUIET, ratio=1.0, effects=(parse_effect("tracking_jitter=15"),)
+    )
+    made = simulate_turning_points(spec, 200, np.random.default_rng(5))
+    swing = np.abs(np.diff(made.readings, axis=1)) / 2 / ARCSEC
+    loss = np.diff(swing, axis=1)
+    # half a difference of neighbours averages two half swings
+    assert np.std(loss) == pytest.approx(15.0 / math.sqrt(2), rel=0.06)
+    assert np.allclose(made.midpoint, spec.circle_of_north)
+
+
+@pytest.mark.parametrize("method", ["tracking", "amplitude"])
+def test_twist_of_the_tripod_takes_circle_and_line_along(method):
+    spec = SessionSpec(
+        method=method, points=9, noise=QUIET, ratio=1.0, effects=(parse_effect("tripod_twist=40"),)
+    )
+    made = simulate_turning_points(spec, 1, np.random.default_rng(5))
+    north = (made.gyro_north[0] - spec.circle_of_north) / ARCSEC
+    assert north[0] - north[-1] == pytest.approx(40.0, abs=0.2)
+    row = made.readings[0]
+    if method == "amplitude":
+        t1 = tracking_period_s(spec.gyro, spec.latitude)
+        t2 = clamped_period_s(spec.gyro, spec.latitude)
+        row = spec.circle_of_north + spec.clamp_offset + (t1 / t2) ** 2 * spec.scale_value * row
+    means = (row[:-3] + 3 * row[1:-2] + 3 * row[2:-1] + row[3:]) / 8 - spec.circle_of_north
+    assert np.allclose(np.diff(means) / ARCSEC, -5.0, atol=0.05)
+    session = simulate_session(spec, np.random.default_rng(5))
+    left = [parse_angle(r["value"], AngleUnit.DMS) for r in session.rows if r["face"] == "L"]
+    assert (left[0] - left[1]) / ARCSEC > 40.0
+    assert np.mean(left) - spec.collimation == pytest.approx(
+        math.radians(session.truth["line_reading_deg"]), abs=1.5 * ARCSEC
+    )
+
+
 def test_temperature_effect_follows_the_thermometer():
     means, _, made = signature(parse_effect("temperature=15"), temperature_span_c=1.0)
     warmth = made.temperature_c[0] - 15.0

@@ -71,7 +71,7 @@ class Disturbance:
         Viscous coefficient in place of the gyro's own [N m s/rad].
     quadratic_drag : array
         c in c |alpha'| alpha' [N m s2/rad2].
-    dry_friction : array
+    dry_friction : array or callable
         Torque against the motion, whatever its speed [N m].
     asymmetry : array
         e in the restoring torque e alpha^2 [N m/rad2]: stiffer on one side.
@@ -80,7 +80,7 @@ class Disturbance:
     torque: InTime | None = None
     damping: InTime | None = None
     quadratic_drag: ArrayLike = 0.0
-    dry_friction: ArrayLike = 0.0
+    dry_friction: ArrayLike | InTime = 0.0
     asymmetry: ArrayLike = 0.0
 
 
@@ -111,12 +111,12 @@ def _forcing(
     moment = directive_moment(gyro, latitude)
     tracking = tape.mode == "tracking"
     drag = np.asarray(disturbance.quadratic_drag, dtype=np.float64)
-    friction = np.asarray(disturbance.dry_friction, dtype=np.float64)
     asymmetry = np.asarray(disturbance.asymmetry, dtype=np.float64)
     lag = np.asarray(tape.lag, dtype=np.float64)
     eastward = np.asarray(tape.eastward_lag, dtype=np.float64)
     viscous = gyro.torsion * np.asarray(tape.delay_s, dtype=np.float64) if tracking else 0.0
-    both_ways = friction + gyro.torsion * (lag + 0.5 * eastward) if tracking else friction
+    trailing = gyro.torsion * (lag + 0.5 * eastward) if tracking else 0.0
+    friction = disturbance.dry_friction
     one_way = 0.5 * gyro.torsion * eastward if tracking else 0.0
     held = 0.0 if tracking else gyro.torsion * np.asarray(tape.clamp, dtype=np.float64)
 
@@ -124,7 +124,8 @@ def _forcing(
         given = gyro.damping if disturbance.damping is None else disturbance.damping(t)
         damping = np.asarray(given, dtype=np.float64)
         total = moment * (azimuth - np.sin(azimuth)) + held - one_way
-        total = total - (damping + viscous + drag * np.abs(rate)) * rate - both_ways * sign
+        dry = np.asarray(friction(t) if callable(friction) else friction, dtype=np.float64)
+        total = total - (damping + viscous + drag * np.abs(rate)) * rate - (dry + trailing) * sign
         total = total - asymmetry * azimuth**2
         if tape.zero is not None:
             total = total + gyro.torsion * np.asarray(tape.zero(t))

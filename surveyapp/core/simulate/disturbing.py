@@ -14,7 +14,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from surveyapp.core.simulate.specification import RUN_EFFECTS, Effect, SessionSpec
 from surveyapp_models.gyro.integration import Disturbance, TapeTop
@@ -133,30 +133,57 @@ def disturb(spec: SessionSpec, design: RunDesign, rng: np.random.Generator) -> D
 
     first = spec.first_amplitude
     stiffness = moment + (gyro.torsion if spec.clamped else 0.0)
-    asymmetry = _total(spec, "amplitude_asymmetry") / first**2
+    asymmetry = total_size(spec, "amplitude_asymmetry") / first**2
     inertia = effective_inertia(gyro, spec.latitude)
     disturbance = Disturbance(
         torque=(lambda t: moment * north_shift(np.asarray(t))[:, 0]) if shifts else None,
         damping=_damping(gyro, draw),
-        quadratic_drag=0.75 * _total(spec, "quadratic_drag") * inertia / first,
-        dry_friction=0.5 * _total(spec, "dry_friction") * stiffness,
+        quadratic_drag=0.75 * total_size(spec, "quadratic_drag") * inertia / first,
+        dry_friction=_friction(draw, stiffness),
         asymmetry=-3.0 * asymmetry * stiffness,
     )
     follows = not spec.clamped and gyro.torsion > 0.0
-    lag = _total(spec, "one_sided_lag") * moment / gyro.torsion if follows else 0.0
+    lag = total_size(spec, "one_sided_lag") * moment / gyro.torsion if follows else 0.0
     return Disturbed(gyro, disturbance, lag, north_shift, draw.temperature, asymmetry, draw.drawn)
 
 
-def _total(spec: SessionSpec, identity: str) -> float:
+def total_size(spec: SessionSpec, identity: str) -> float:
     """Sum of the sizes of the effects of one kind."""
     return sum(effect.size for effect in spec.effects if effect.id == identity)
 
 
-def tape_top(spec: SessionSpec, disturbed: Disturbed, zero_div: OfTime) -> TapeTop:
-    """Return what the tape top does: follow or hold, with the drifting tape zero [div]."""
+def _friction(draw: _Draw, stiffness: float) -> float | Callable[[float], FloatArray]:
+    """Torque of dry friction, and of a follow-up that is uneven from half swing to half swing."""
+    spec, design = draw.spec, draw.design
+    steady = 0.5 * total_size(spec, "dry_friction") * stiffness
+    jitter = total_size(spec, "tracking_jitter")
+    if jitter == 0.0 or spec.clamped:
+        return steady
+    loss = jitter * draw.rng.normal(size=(design.points + 2 * PATH_LEAD, design.runs))
+
+    def friction(t: float) -> FloatArray:
+        return np.asarray(
+            steady + 0.5 * stiffness * loss[int(t // design.half_swing_s) + PATH_LEAD]
+        )
+
+    return friction
+
+
+def tripod_twist(spec: SessionSpec, time_s: ArrayLike, length_s: float) -> FloatArray:
+    """Return by how much the tripod has turned clockwise against the middle of the run [rad]."""
+    share = np.asarray(time_s, dtype=np.float64) / length_s - 0.5
+    return np.asarray(total_size(spec, "tripod_twist") * share)
+
+
+def tape_top(spec: SessionSpec, disturbed: Disturbed, zero_div: OfTime, length_s: float) -> TapeTop:
+    """Return what the tape top does: follow or hold, with the drifting tape zero [div].
+
+    A held top turns with the tripod; ``length_s`` is the time from first to last point.
+    """
 
     def zero(t: float) -> FloatArray:
-        return np.asarray(spec.scale_value * zero_div(np.asarray(t)))
+        twist = tripod_twist(spec, t, length_s) if spec.clamped else 0.0
+        return np.asarray(spec.scale_value * zero_div(np.asarray(t)) + twist)
 
     return TapeTop(
         mode="clamped" if spec.clamped else "tracking",

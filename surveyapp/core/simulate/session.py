@@ -14,6 +14,7 @@ from datetime import timedelta
 
 import numpy as np
 
+from surveyapp.core.simulate.disturbing import tripod_twist
 from surveyapp.core.simulate.specification import RUN_EFFECTS, SessionSpec
 from surveyapp.core.simulate.turning_points import (
     SimulatedPoints,
@@ -142,7 +143,8 @@ def _row(spec: SessionSpec, seq: int, entry: _Entry, begin: float) -> Row:
 
 
 def _sights(spec: SessionSpec, moment_s: float, rng: np.random.Generator) -> list[_Entry]:
-    line = spec.circle_of_north + spec.line_azimuth
+    turn = float(tripod_twist(spec, moment_s + 20.0, timetable(spec).last_s))
+    line = spec.circle_of_north + spec.line_azimuth - turn
     errors = rng.normal(scale=spec.noise.sight, size=2)
     left = line + spec.collimation + float(errors[0])
     right = line + math.pi - spec.collimation + float(errors[1])

@@ -99,6 +99,15 @@ RUN_EFFECTS: Final = (
         ARCSEC,
         "amplitude lost per half swing by a follow-up that trails eastward only",
     ),
+    EffectKind(
+        "tracking_jitter",
+        "arcsec",
+        ARCSEC,
+        "sigma of the amplitude that an uneven follow-up takes or gives in a half swing",
+    ),
+    EffectKind(
+        "tripod_twist", "arcsec", ARCSEC, "clockwise turn of the tripod from first to last point"
+    ),
 )
 """Effects of a reversal run."""
 

@@ -15,7 +15,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from surveyapp.core.simulate.disturbing import Disturbed, RunDesign, damped_gyro, disturb, tape_top
+from surveyapp.core.simulate.disturbing import (
+    Disturbed,
+    RunDesign,
+    damped_gyro,
+    disturb,
+    tape_top,
+    total_size,
+    tripod_twist,
+)
 from surveyapp.core.simulate.specification import SessionSpec
 from surveyapp_models.gyro.integration import Start, integrate
 from surveyapp_models.gyro.moments import directive_moment
@@ -157,7 +165,8 @@ def _simulate(spec: SessionSpec, design: RunDesign, rng: np.random.Generator) ->
     turns, lines = _integrate(spec, disturbed, design)
     ratio = disturbed.gyro.torsion / directive_moment(disturbed.gyro, spec.latitude)
     shift = disturbed.north_shift(turns.time_s)
-    equilibrium = _equilibrium(spec, ratio, shift, turns.time_s)
+    twist = tripod_twist(spec, turns.time_s, design.length_s)
+    equilibrium = _equilibrium(spec, ratio, shift, turns.time_s) - twist
     origin = spec.circle_of_north + spec.constant
     swing = np.abs(turns.azimuth - equilibrium)
     centre = disturbed.asymmetry * swing**2 - 0.5 * ratio * disturbed.eastward_lag
@@ -178,7 +187,7 @@ def _simulate(spec: SessionSpec, design: RunDesign, rng: np.random.Generator) ->
         time_s=turns.time_s,
         midpoint=origin + equilibrium,
         swing_centre=origin + equilibrium + centre,
-        gyro_north=origin + shift,
+        gyro_north=origin + shift - twist,
         temperature_c=_rounded(warmth, noise.temperature_resolution_c),
         passage_time_s=_rounded(passed, noise.time_resolution_s),
         passage_eastward=lines.rising if spec.scale_value > 0.0 else ~lines.rising,
@@ -196,6 +205,7 @@ def _equilibrium(
     """Azimuth at which the gyro would rest, from its own undisturbed north [rad]."""
     zero = spec.scale_value * tape_zero_div(spec, time_s)
     if spec.clamped:
+        zero = zero + tripod_twist(spec, time_s, timetable(spec).last_s)
         return np.asarray((ratio * (spec.clamp_offset + zero) + shift) / (1.0 + ratio))
     return np.asarray(shift + ratio * zero)
 
@@ -219,11 +229,20 @@ def _integrate(spec: SessionSpec, disturbed: Disturbed, design: RunDesign) -> tu
         start,
         duration_s=(design.points + LEAD) * half,
         step_s=half / STEPS_PER_HALF_SWING,
-        tape=tape_top(spec, disturbed, lambda t: tape_zero_div(spec, t, table)),
+        tape=tape_top(spec, disturbed, lambda t: tape_zero_div(spec, t, table), design.length_s),
         disturbance=disturbed.disturbance,
     )
-    turns = turning_points(motion, design.points)
-    return turns, _passages(spec, motion, design)
+    motion = _from_the_tripod(spec, motion, design)
+    return turning_points(motion, design.points), _passages(spec, motion, design)
+
+
+def _from_the_tripod(spec: SessionSpec, motion: Motion, design: RunDesign) -> Motion:
+    """The motion as circle and scale show it, which turn with the tripod."""
+    turn = tripod_twist(spec, motion.time_s, design.length_s)
+    rate = total_size(spec, "tripod_twist") / design.length_s
+    return dataclasses.replace(
+        motion, azimuth=motion.azimuth - turn[:, None], velocity=motion.velocity - rate
+    )
 
 
 def _passages(spec: SessionSpec, motion: Motion, design: RunDesign) -> Events:
