@@ -21,7 +21,12 @@ from surveyapp.core.simulate.project import (
     project_truth,
     simulate_reversal_project,
 )
-from surveyapp.core.simulate.session import COLUMNS, book_text, simulate_session
+from surveyapp.core.simulate.session import (
+    COLUMNS,
+    book_text,
+    simulate_session,
+    simulate_sessions,
+)
 from surveyapp.core.simulate.specification import (
     RUN_EFFECTS,
     Effect,
@@ -301,6 +306,16 @@ def test_full_fit_times_several_lines():
     transits = [row for row in made.rows if row["kind"] == "transit"]
     assert sorted({row["value"] for row in transits}) == ["-3", "0", "3"]
     assert len(transits) == 12
+
+
+def test_sessions_of_an_ensemble_differ_in_noise_and_agree_in_kind():
+    spec = SessionSpec(method="transit", points=5, effects=(parse_effect("midpoint_step=20"),))
+    made = simulate_sessions(spec, 8, np.random.default_rng(2))
+    assert len(made) == 8
+    assert len({book_text(session.rows) for session in made}) == 8
+    assert len({session.truth["drawn"]["midpoint_step.at"] for session in made}) == 8
+    kinds = [[row["kind"] for row in session.rows] for session in made]
+    assert all(kind == kinds[0] for kind in kinds)
 
 
 def test_same_seed_same_book():

@@ -7,6 +7,7 @@ through text is the point: the reduction reads them like any other book.
 from __future__ import annotations
 
 import csv
+import dataclasses
 import io
 import math
 from dataclasses import dataclass
@@ -98,12 +99,53 @@ def simulate_session(spec: SessionSpec, rng: np.random.Generator) -> SimulatedSe
     ValueError
         If the swing, disturbed as asked, does not reach a line that is to be timed.
     """
-    points = simulate_turning_points(spec, 1, rng)
+    return simulate_sessions(spec, 1, rng)[0]
+
+
+def simulate_sessions(
+    spec: SessionSpec, runs: int, rng: np.random.Generator
+) -> tuple[SimulatedSession, ...]:
+    """Simulate many sessions of one specification at a fraction of the time of each by itself.
+
+    Parameters
+    ----------
+    spec : SessionSpec
+    runs : int
+        Each draws its own noise, paths, places and phases.
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    tuple of SimulatedSession
+
+    Raises
+    ------
+    ValueError
+        If a swing, disturbed as asked, does not reach a line that is to be timed.
+    """
+    points = simulate_turning_points(spec, runs, rng)
     table = timetable(spec)
+    return tuple(_session(spec, _one_run(points, run), table, rng) for run in range(runs))
+
+
+def _one_run(points: SimulatedPoints, run: int) -> SimulatedPoints:
+    """The ensemble of one run."""
+    arrays = {
+        field.name: getattr(points, field.name)[run : run + 1]
+        for field in dataclasses.fields(points)
+        if field.name != "drawn"
+    }
+    drawn = {name: values[run : run + 1] for name, values in points.drawn.items()}
+    return SimulatedPoints(**arrays, drawn=drawn)
+
+
+def _session(
+    spec: SessionSpec, points: SimulatedPoints, table: Timetable, rng: np.random.Generator
+) -> SimulatedSession:
     entries = [
         *_tape_zeros(spec, table.zero_before_s, table, rng),
         *_sights(spec, -300.0, rng),
-        *_clamp(spec, rng),
+        *_clamp(spec),
         *_swing(spec, points, rng),
         *_sights(spec, table.last_s + 150.0, rng),
         *_tape_zeros(spec, table.zero_after_s, table, rng),
@@ -155,7 +197,7 @@ def _sights(spec: SessionSpec, moment_s: float, rng: np.random.Generator) -> lis
     ]
 
 
-def _clamp(spec: SessionSpec, rng: np.random.Generator) -> list[_Entry]:
+def _clamp(spec: SessionSpec) -> list[_Entry]:
     if not spec.clamped:
         return []
     reading = spec.circle_of_north + spec.constant + spec.clamp_offset
