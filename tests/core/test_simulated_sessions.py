@@ -131,7 +131,9 @@ def test_each_effect_has_its_signature():
     assert np.allclose(loss[11] / 7200.0, 0.01, rtol=0.05)
     means, _, made = signature(parse_effect("amplitude_asymmetry=40"), ratio=0.97)
     assert means[0] - means[-1] == pytest.approx(40 * (0.97**3 - 0.97**35), rel=0.03)
-    assert np.allclose(made.swing_centre[0] - made.midpoint[0] > 0, True)
+    shift = (made.run_north[0] - made.gyro_north[0]) / ARCSEC
+    assert shift.mean() == pytest.approx(means.mean(), abs=1.0)
+    assert np.allclose(made.gyro_north, math.radians(100.0))
     means, loss, _ = signature(parse_effect("one_sided_lag=20"))
     assert np.allclose(means, -10.0, atol=0.3)
     assert np.allclose(loss, 20.0, atol=0.3)
@@ -225,6 +227,7 @@ def test_noise_free_books_reduce_to_the_truth(method, degrees):
     """Formulae of section 1.4 by hand, clamp 8' off, tape zero drifting from .3 to .5 div."""
     spec = SessionSpec(
         method=method,
+        first_east=degrees > 40.0,
         latitude=math.radians(degrees),
         points=6 if method == "tracking" else 5,
         noise=QUIET,

@@ -118,6 +118,7 @@ def _moved(spec: SessionSpec, index: int, rng: np.random.Generator) -> SessionSp
         spec,
         start=spec.start + timedelta(hours=3 * index),
         circle_of_north=wrap_two_pi(spec.circle_of_north + float(rng.uniform(-0.5, 0.5))),
+        first_east=bool(rng.random() < 0.5),
     )
 
 

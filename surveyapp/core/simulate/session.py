@@ -269,6 +269,7 @@ def _truth(spec: SessionSpec, points: SimulatedPoints, table: Timetable) -> dict
         "method": spec.method,
         "latitude_deg": math.degrees(spec.latitude),
         "gyro_north_deg": math.degrees(wrap_two_pi(north)),
+        "run_mean_north_deg": math.degrees(wrap_two_pi(float(points.run_north[0].mean()))),
         "line_reading_deg": math.degrees(wrap_two_pi(line)),
         "gyro_azimuth_deg": math.degrees(wrap_two_pi(line - north)),
         "azimuth_deg": math.degrees(wrap_two_pi(spec.line_azimuth)),

@@ -239,6 +239,8 @@ class SessionSpec:
         Rest position of the gyro east of the meridian: the instrument constant [rad].
     amplitude : float or None
         At the first turning point [rad]; 2 degrees tracked, 70 minutes clamped if None.
+    first_east : bool
+        Whether the first turning point is the eastern one.
     ratio : float
         Viscous amplitude ratio per half swing at the tracking period [-].
     clamp_offset : float
@@ -276,6 +278,7 @@ class SessionSpec:
     scale_value: float = 600.0 * ARCSEC
     constant: float = 0.0
     amplitude: float | None = None
+    first_east: bool = True
     ratio: float = 0.995
     clamp_offset: float = 480.0 * ARCSEC
     circle_of_north: float = math.radians(100.0)

@@ -57,7 +57,10 @@ class SimulatedPoints:
     swing_centre : ndarray, shape (runs, n)
         The same with what an asymmetric restoring torque or follow-up adds between turning points.
     gyro_north : ndarray, shape (runs, n)
-        Circle reading of gyro north freed from the tape [rad]; its mean is the run's true north.
+        Circle reading of gyro north freed from the tape [rad]: what the instrument seeks.
+    run_north : ndarray, shape (runs, n)
+        The same as the turning points show it, with what an asymmetry adds to their middle [rad];
+        its mean is north averaged over the run.
     temperature_c : ndarray, shape (runs, n)
         As read.
     passage_time_s : ndarray, shape (runs, lines, p)
@@ -74,6 +77,7 @@ class SimulatedPoints:
     midpoint: FloatArray
     swing_centre: FloatArray
     gyro_north: FloatArray
+    run_north: FloatArray
     temperature_c: FloatArray
     passage_time_s: FloatArray
     passage_eastward: NDArray[np.bool_]
@@ -188,6 +192,7 @@ def _simulate(spec: SessionSpec, design: RunDesign, rng: np.random.Generator) ->
         midpoint=origin + equilibrium,
         swing_centre=origin + equilibrium + centre,
         gyro_north=origin + shift - twist,
+        run_north=origin + shift - twist + centre * (1.0 + ratio if spec.clamped else 1.0),
         temperature_c=_rounded(warmth, noise.temperature_resolution_c),
         passage_time_s=_rounded(passed, noise.time_resolution_s),
         passage_eastward=lines.rising if spec.scale_value > 0.0 else ~lines.rising,
@@ -218,9 +223,10 @@ def _integrate(spec: SessionSpec, disturbed: Disturbed, design: RunDesign) -> tu
     ratio = gyro.torsion / directive_moment(gyro, spec.latitude)
     centre = _equilibrium(spec, ratio, disturbed.north_shift(lead)[:, 0], lead)
     phase = LEAD * math.pi
+    amplitude = spec.first_amplitude if spec.first_east else -spec.first_amplitude
     start = Start(
-        azimuth=centre + spec.first_amplitude * math.cos(phase),
-        velocity=np.full(design.runs, spec.first_amplitude * math.sin(phase) * math.pi / half),
+        azimuth=centre + amplitude * math.cos(phase),
+        velocity=np.full(design.runs, amplitude * math.sin(phase) * math.pi / half),
         time_s=float(lead),
     )
     motion = integrate(
