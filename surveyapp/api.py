@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from surveyapp.core.comparison import DemonstratedSample
+    from surveyapp.core.plan import StationPlan
 
 Folder = str | os.PathLike[str]
 
@@ -187,3 +188,43 @@ def new_project(
     title = name if name is not None else path.resolve().name
     create_project(path, name=title, crs=crs, angle_unit=AngleUnit(angle_unit))
     return path
+
+
+def plan(
+    project: Project | Folder, *, station: str | None = None, interval_arcsec: float = 20.0
+) -> tuple[StationPlan, ...]:
+    """Plan orientations: method, points and minutes for a wanted interval at each station.
+
+    Parameters
+    ----------
+    project : Project or path
+    station : str or None
+        This station alone; None for every station that can be placed (occupied ones if there are
+        sessions).
+    interval_arcsec : float
+        Wanted half-width of the 95 % interval of gyro north.
+
+    Raises
+    ------
+    SurveyError
+        If there is no such station, no instrument, or the interval is not positive.
+    """
+    import math
+
+    from surveyapp.core.plan import plan_stations
+    from surveyapp_models.angles import ARCSEC
+
+    if not isinstance(project, Project):
+        project = open_project(project)
+    names = [item.name for item in project.stations]
+    if station is not None:
+        _require(station, names, "station")
+        names = [station]
+    elif project.sessions:
+        names = list(dict.fromkeys(item.station for item in project.sessions))
+    if not math.isfinite(interval_arcsec) or interval_arcsec <= 0.0:
+        found = f"{interval_arcsec:g}"
+        raise SurveyError(
+            Problem("the wanted interval is not positive", "--interval", found, "arc-seconds > 0")
+        )
+    return plan_stations(project, names, wanted=interval_arcsec * ARCSEC)

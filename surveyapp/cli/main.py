@@ -37,6 +37,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("check", "check", "apply every limit and test that the data can answer"),
     Command("new", "new", "make a new project folder"),
     Command("models", "models", "instrument cards and what is known of them"),
+    Command("plan", "plan", "method, points and minutes for a wanted interval at this latitude"),
     Command("demo", "demo", "orient the measured samples: printed against computed"),
 )
 

@@ -13,18 +13,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from surveyapp.core.cardphysics import card_at
 from surveyapp.core.clamped import Observed, clamp_reading, observe, session_problem
 from surveyapp.core.goodness import FitTest, goodness_of_fit
 from surveyapp.core.gyrofit import design, fit_swing, schuler_means
 from surveyapp.core.reduction import Reduction, need_points, reading_sigma, tape_zero_parts
 from surveyapp.core.resolution import reading_resolution, rounding_sigma
 from surveyapp.core.swingfit import ClampedFit, fit_clamped
-from surveyapp.core.tapezero import TapeZeroCoefficient, reduce_tape_zero, torsion_ratio
+from surveyapp.core.tapezero import TapeZeroCoefficient, reduce_tape_zero, with_levels
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession, ResultWarning
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.domain.results import PointResult
+from surveyapp_models.angles import RHO_ARCSEC
 
 Floats = NDArray[np.float64]
 
@@ -161,6 +163,7 @@ def reduce_nontracking(
     observed = observe(session, card)
     middle, fit, extras = _middle(session, observed, card, estimator, latitude)
     zero = reduce_tape_zero(session.book, [*observed.readings, *observed.passages])
+    zero = None if zero is None else with_levels(zero, session.book, card)
     coefficient = TapeZeroCoefficient(-ratio * scale, 0.0, "lambda", latitude is not None)
     d = 0.0 if zero is None else zero.value_div
     north = Uncertain(
@@ -225,7 +228,7 @@ def reduce_nontracking(
 def _constants(
     session: OrientationSession, card: InstrumentCard, latitude: float | None
 ) -> tuple[float, float, float]:
-    ratio = torsion_ratio(card, latitude)
+    ratio = card_at(card, latitude).torsion_ratio
     if ratio is None or card.scale_value is None:
         missing = "the torsion ratio (lambda, or both periods)" if ratio is None else ""
         if card.scale_value is None:
@@ -237,7 +240,7 @@ def _constants(
             expected="scale_value_arcsec, and [torsion] lambda or both periods",
             hint="Give them in the [[instrument]] table, or observe by tracking.",
         )
-    return ratio[0], ratio[1], card.scale_value
+    return ratio.value, ratio.sigma, card.scale_value
 
 
 def _middle(
@@ -248,7 +251,9 @@ def _middle(
     latitude: float | None,
 ) -> tuple[Middle, ClampedFit | None, tuple[tuple[str, float, str], ...]]:
     """Choose the estimator; the closed transit form is shown beside the full fit."""
-    period = observed.period_s or _card_period(card, latitude)
+    here = card_at(card, latitude)
+    card_period = None if here.clamped_s is None else here.clamped_s.value
+    period = observed.period_s or card_period
     has_passages = observed.swing.passages_s.size > 0
     wants_fit = estimator in (None, "least-squares")
     extras: tuple[tuple[str, float, str], ...] = ()
@@ -272,6 +277,9 @@ def _middle(
             ("middle by the linear form", origin + linear, "div"),
             ("linear minus arcsine", origin + linear - closed.value_div, "div"),
         )
+        if here.transit_c is not None:
+            product = here.transit_c.value * amplitude * dt * RHO_ARCSEC
+            extras = (*extras, ("linear form C a dt", product, "arcsec"))
     if wants_fit and has_passages and period is not None and observed.swing.count >= MIN_FULL_FIT:
         full = _full_middle(observed, period)
         if full is not None:
@@ -290,18 +298,6 @@ def _middle(
         "least-squares" if observed.swing.readings.size >= LEAST_SQUARES_FROM else "amplitude"
     )
     return _scale_middle(session, observed, card, chosen), None, extras
-
-
-def _card_period(card: InstrumentCard, latitude: float | None) -> float | None:
-    """Clamped period at a latitude: T2^2 (cos phi + lambda1 cos phi1) is constant."""
-    periods = card.periods
-    if periods is None or periods.clamped_s is None:
-        return None
-    ratio = torsion_ratio(card, None)
-    if latitude is None or ratio is None:
-        return periods.clamped_s
-    there, stiffness = math.cos(periods.latitude), ratio[0] * math.cos(periods.latitude)
-    return periods.clamped_s * math.sqrt((there + stiffness) / (math.cos(latitude) + stiffness))
 
 
 def _residuals(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from surveyapp.core.instrument_checks import instrument_checks
 from surveyapp.core.instrument_constant import InstrumentConstant
 from surveyapp.core.lines import angle_result
 from surveyapp.core.orientation import Orientation
@@ -43,7 +44,11 @@ def outcome(
         Those of a rule book.
     """
     shown = [item for item in orientation.sessions if only is None or item.session.id == only]
-    checks = [*statistical_checks(orientation), *more_checks]
+    checks = [
+        *statistical_checks(orientation),
+        *instrument_checks(orientation),
+        *more_checks,
+    ]
     if only is not None:
         ids = {item.session.id for item in orientation.sessions} - {only}
         checks = [c for c in checks if not any(_names(c.where, other) for other in ids)]

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from surveyapp.core.cardphysics import card_at
 from surveyapp.core.gyrofit import fit_swing, schuler_means
 from surveyapp.core.sights import moments
 from surveyapp.domain.instrument import InstrumentCard
@@ -62,7 +63,8 @@ class TapeZero:
     factor_before, factor_after : float
         Its weights on before and after.
     interpolation : str
-        ``time``, ``mean`` or ``single``.
+        ``time``, ``mean``, ``single``, or ``tilt`` where the levels tell what the missing zero
+        would have been.
     """
 
     before: RestPosition | None
@@ -70,7 +72,7 @@ class TapeZero:
     value_div: float
     factor_before: float
     factor_after: float
-    interpolation: Literal["time", "mean", "single"]
+    interpolation: Literal["time", "mean", "single", "tilt"]
 
 
 def rest_position(readings: Floats, sides: Floats) -> RestPosition:
@@ -150,6 +152,31 @@ def _fraction(
     return ((middle - first) / (last - first), "time") if last > first else (0.5, "mean")
 
 
+def mean_level(book: FieldBook, kind: ReadingKind, place: Place) -> float | None:
+    """Mean level reading [rad] before or after the observation, None without one."""
+    rows = [row for row in book.of_kind(kind) if book.place_of(row) is place]
+    values = [row.value for row in rows if row.value is not None]
+    return sum(values) / len(values) if values else None
+
+
+def with_levels(zero: TapeZero, book: FieldBook, card: InstrumentCard) -> TapeZero:
+    """Replace a missing tape zero by the one that the change of level makes of the other.
+
+    Source: physics.md 2.5: the zero changes in proportion to the tilt of the standing axis; the
+    middle of the observation lies half-way between the two levels.
+    """
+    factor = card.tape_zero.div_per_tilt
+    if zero.interpolation != "single" or not factor:
+        return zero
+    before = mean_level(book, ReadingKind.LEVEL_ACROSS, Place.BEFORE)
+    after = mean_level(book, ReadingKind.LEVEL_ACROSS, Place.AFTER)
+    if before is None or after is None:
+        return zero
+    change = 0.5 * factor * (after - before)
+    sign = 1.0 if zero.before is not None else -1.0
+    return replace(zero, value_div=zero.value_div + sign * change, interpolation="tilt")
+
+
 @dataclass(frozen=True, slots=True)
 class TapeZeroCoefficient:
     """What one division of tape zero adds to gyro north.
@@ -172,28 +199,6 @@ class TapeZeroCoefficient:
     transferred: bool
 
 
-def torsion_ratio(card: InstrumentCard, latitude: float | None) -> tuple[float, float, str] | None:
-    """Torsion ratio lambda = D / M of a card at a latitude, its sigma, and where it comes from.
-
-    Source: physics.md 1.3, lambda = T1^2 / T2^2 - 1, lambda cos(latitude) constant,
-    sigma = 2 (1 + lambda) sqrt((s/T1)^2 + (s/T2)^2).
-    """
-    periods = card.periods
-    value, sigma, origin = card.torsion_lambda, 0.0, "lambda"
-    if periods is not None and periods.tracking_s and periods.clamped_s:
-        ratio = (periods.tracking_s / periods.clamped_s) ** 2
-        spread = periods.sigma_s or 0.0
-        relative = math.hypot(spread / periods.tracking_s, spread / periods.clamped_s)
-        if value is None:
-            value, sigma, origin = ratio - 1.0, 2.0 * ratio * relative, "periods"
-    if value is None:
-        return None
-    factor = 1.0
-    if latitude is not None and periods is not None:
-        factor = math.cos(periods.latitude) / math.cos(latitude)
-    return value * factor, sigma * factor, origin
-
-
 def tape_zero_coefficient(
     card: InstrumentCard, latitude: float | None
 ) -> TapeZeroCoefficient | None:
@@ -213,13 +218,12 @@ def tape_zero_coefficient(
             return TapeZeroCoefficient(zero.correction_per_div, 0.0, "card coefficient", False)
         factor = math.cos(at) / math.cos(latitude)
         return TapeZeroCoefficient(zero.correction_per_div * factor, 0.0, "card coefficient", True)
-    ratio = torsion_ratio(card, latitude)
-    if ratio is None or card.scale_value is None:
+    here = card_at(card, latitude)
+    if here.torsion_ratio is None or card.scale_value is None:
         return None
-    value, sigma, origin = ratio
     return TapeZeroCoefficient(
-        -value * card.scale_value,
-        sigma * abs(card.scale_value),
-        origin,
-        latitude is not None and card.periods is not None,
+        -here.torsion_ratio.value * card.scale_value,
+        here.torsion_ratio.sigma * abs(card.scale_value),
+        here.torsion_origin,
+        here.transferred,
     )

@@ -28,6 +28,7 @@ from surveyapp.core.tapezero import (
     TapeZeroCoefficient,
     reduce_tape_zero,
     tape_zero_coefficient,
+    with_levels,
 )
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import InstrumentCard
@@ -216,6 +217,7 @@ def tape_zero_of(
             text += f"; at the card's limit of {card.tape_zero.limit_div:g} div it moves north by "
             text += f'{worst:.0f}"'
         return None, coefficient, None, [ResultWarning("no_tape_zero", text)]
+    zero = with_levels(zero, session.book, card)
     warnings = []
     if zero.interpolation == "single":
         text = f"session {session.id}: tape zero observed on one side of the run only"
