@@ -6,7 +6,7 @@ Every function returns a frozen dataclass with ``to_dict()``, the JSON of the co
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from surveyapp.core.comparison import DemonstratedSample
     from surveyapp.core.plan import StationPlan
+    from surveyapp.io.simulated import SimulatedFiles
 
 Folder = str | os.PathLike[str]
 
@@ -228,3 +229,33 @@ def plan(
             Problem("the wanted interval is not positive", "--interval", found, "arc-seconds > 0")
         )
     return plan_stations(project, names, wanted=interval_arcsec * ARCSEC)
+
+
+def simulate(
+    kind: str, out: Folder, *, effects: Sequence[str] = (), seed: int = 1
+) -> SimulatedFiles:
+    """Write a simulated project, and its truth beside it.
+
+    Parameters
+    ----------
+    kind : str
+        ``reversal-run`` or ``campaign``.
+    out : path
+        A folder that does not exist or is empty.
+    effects : sequence of str
+        ``ID=VALUE[,option=value]`` each.
+    seed : int
+        The same seed, the same files.
+
+    Raises
+    ------
+    SurveyError
+        For an unknown kind or effect, or a folder that cannot be used.
+    """
+    from surveyapp.core.simulate.kinds import simulate_kind
+    from surveyapp.io.simulated import write_simulated
+
+    if seed < 0:
+        raise SurveyError(Problem("the seed is negative", "--seed", str(seed), "0 or more"))
+    files, truth = simulate_kind(kind, effects=effects, seed=seed)
+    return write_simulated(Path(out), files, truth)

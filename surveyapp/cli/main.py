@@ -38,6 +38,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("new", "new", "make a new project folder"),
     Command("models", "models", "instrument cards and what is known of them"),
     Command("plan", "plan", "method, points and minutes for a wanted interval at this latitude"),
+    Command("simulate", "simulate", "a simulated project with any effect, its truth apart"),
     Command("demo", "demo", "orient the measured samples: printed against computed"),
 )
 
