@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from surveyapp.cli.output import heading, number, print_json, table
+from surveyapp.cli.output import heading, number, paragraph, print_json, table
 from surveyapp.domain.results import to_arcsec
 from surveyapp_models.angles import AngleUnit, format_angle
 
@@ -25,7 +25,7 @@ def run(options: argparse.Namespace) -> int:
         return 0
     for sample in samples:
         print(heading(f"{sample.name}: {sample.result.project}"))
-        print(f"source: {sample.source}\n")
+        print(paragraph(f"source: {sample.source}", indent=0) + "\n")
         rows = [
             [
                 row.quantity,
@@ -45,7 +45,7 @@ def run(options: argparse.Namespace) -> int:
                 print(f'  {session.id}: gyro north by {session.estimator} {north} +-{sigma}"')
         for check in sample.default.checks:
             if check.passed is False and not check.rule.startswith("fit."):
-                print(f"  not met: {check.where}: {check.text}")
+                print(paragraph(f"not met: {check.where}: {check.text}"))
         print()
     print("Look closer: surveyapp orient DIR, or the screens: surveyapp open DIR")
     print("with DIR one of:")

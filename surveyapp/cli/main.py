@@ -7,6 +7,7 @@ module of the chosen command is imported, so that ``--help`` is instant.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import importlib
 import os
 import sys
@@ -48,29 +49,95 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Raise instead of leaving: the error may have to be printed as JSON."""
-        raise SurveyError(Problem(what=message, where=self.prog, hint=f"See {self.prog} --help."))
+        missing = message.removeprefix("the following arguments are required: ")
+        expected = missing if missing != message else ""
+        what = "an argument is missing" if expected else message
+        hint = f"See {self.prog} --help."
+        raise SurveyError(Problem(what=what, where=self.prog, expected=expected, hint=hint))
+
+    def parse_strictly(self, arguments: Sequence[str]) -> argparse.Namespace:
+        """Parse; what is left over is refused with the nearest options.
+
+        Raises
+        ------
+        SurveyError
+        """
+        options, rest = self.parse_known_args(arguments)
+        if not rest:
+            return options
+        known = [name for action in self._actions for name in action.option_strings if name[2:]]
+        raise SurveyError(
+            Problem(
+                what="there is no such option" if rest[0][:1] == "-" else "one argument too many",
+                where=self.prog,
+                found=rest[0],
+                expected="the options of this command",
+                hint=nearest_names(rest[0], known),
+            )
+        )
+
+    def _check_value(self, action: argparse.Action, value: object) -> None:
+        if action.choices is None or value in action.choices:
+            return
+        raise SurveyError(
+            Problem(
+                what="this is none of the possible values",
+                where=action.option_strings[-1] if action.option_strings else self.prog,
+                found=str(value),
+                expected=" or ".join(str(choice) for choice in action.choices),
+                hint=nearest_names(str(value), [str(choice) for choice in action.choices]),
+            )
+        )
+
+
+def parser_of(command: Command) -> Parser:
+    """The parser of a command, with its options."""
+    summary = command.summary
+    parser = Parser(prog=f"surveyapp {command.name}", description=summary, allow_abbrev=False)
+    _module(command.module).add_arguments(parser)
+    return parser
 
 
 def main(arguments: Sequence[str]) -> int:
     """Run one command and return its exit code."""
     as_json = "--json" in arguments
     try:
-        return _run(list(arguments))
+        code = _run(list(arguments))
+        _flush()
     except SurveyError as error:
-        _tell(error, as_json=as_json)
-        return EXIT_INPUT
+        return _tell(error, EXIT_INPUT, as_json=as_json)
     except KeyboardInterrupt:
         return 130
-    except BrokenPipeError:
-        sys.stderr.close()
+    except BrokenPipeError:  # the reader has seen enough, as head does
+        _leave_output()
         return EXIT_GOOD
     except Exception as fault:  # the last resort: a fault of ours, never a traceback for a surveyor
         if os.environ.get("SURVEYAPP_DEBUG"):
             raise
-        what = f"internal fault: {type(fault).__name__}: {fault}"
-        hint = "This is a fault of the program. Set SURVEYAPP_DEBUG=1 to see where."
-        _tell(SurveyError(Problem(what=what, hint=hint)), as_json=as_json)
-        return EXIT_FAULT
+        return _tell(*_told_fault(fault), as_json=as_json)
+    return code
+
+
+def _told_fault(fault: Exception) -> tuple[SurveyError, int]:
+    if isinstance(fault, OSError) and fault.filename is None and fault.strerror:
+        where, hint = "standard output", "Is the disk full?"
+        what = f"the result cannot be written ({fault.strerror})"
+        return SurveyError(Problem(what=what, where=where, hint=hint)), EXIT_INPUT
+    what = f"internal fault: {type(fault).__name__}: {fault}"
+    hint = "This is a fault of the program. Set SURVEYAPP_DEBUG=1 to see where."
+    return SurveyError(Problem(what=what, hint=hint)), EXIT_FAULT
+
+
+def _flush() -> None:
+    """Write what is still held back while an error can be told; a closed output is None."""
+    if sys.stdout is not None:
+        sys.stdout.flush()
+
+
+def _leave_output() -> None:
+    """Give up standard output, so that nothing is written to it again at the very end."""
+    with contextlib.suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _run(arguments: list[str]) -> int:
@@ -93,10 +160,8 @@ def _run(arguments: list[str]) -> int:
                 hint=nearest_names(first, names),
             )
         )
-    module = _module(names[first].module)
-    parser = Parser(prog=f"surveyapp {first}", description=names[first].summary)
-    module.add_arguments(parser)
-    return int(module.run(parser.parse_args(arguments[1:])))
+    options = parser_of(names[first]).parse_strictly(arguments[1:])
+    return int(_module(names[first].module).run(options))
 
 
 def _module(name: str) -> ModuleType:
@@ -122,11 +187,16 @@ def help_text() -> str:
     return "\n".join(lines)
 
 
-def _tell(error: SurveyError, *, as_json: bool) -> None:
-    if as_json:
-        problems = [problem.to_dict() for problem in error.problems]
-        print_json({"schema": "surveyapp.error/1", "problems": problems})
-        return
+def _tell(error: SurveyError, code: int, *, as_json: bool) -> int:
+    """Tell every problem, as JSON on standard output if that can be written; return the code."""
+    try:
+        if as_json:
+            problems = [problem.to_dict() for problem in error.problems]
+            print_json({"schema": "surveyapp.error/1", "problems": problems})
+            _flush()
+            return code
+    except OSError:
+        _leave_output()
     for problem in error.problems:
         head = f"{problem.where}: {problem.what}" if problem.where else problem.what
         print(head, file=sys.stderr)
@@ -137,3 +207,4 @@ def _tell(error: SurveyError, *, as_json: bool) -> None:
         ):
             if text:
                 print(f"  {label + ': ' if label else ''}{text}", file=sys.stderr)
+    return code

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 
-from surveyapp.cli.output import heading, print_json, table
+from surveyapp.cli.output import heading, paragraph, print_json, table
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp_models.angles import RHO_ARCSEC
 
@@ -35,9 +35,9 @@ def run(options: argparse.Namespace) -> int:
         for name, value in known(card).items()
     ]
     print(table(["quantity", "value"], facts))
-    print(f"\nSource: {card.source}")
+    print("\n" + paragraph(f"Source: {card.source}", indent=0))
     for name, text in card.notes:
-        print(f"{name}: {text}")
+        print(paragraph(f"{name}: {text}", indent=0))
     return 0
 
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 
-from surveyapp.cli.output import heading, number, print_json, table
+from surveyapp.cli.output import heading, number, paragraph, print_json, table
+from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.results import (
     AngleResult,
     Check,
@@ -45,9 +47,9 @@ def run(options: argparse.Namespace) -> int:
 def orientation_text(result: OrientationResult, unit: AngleUnit) -> str:
     """The whole result as readable tables, angles in the project's unit."""
     parts = [heading(f"{result.project}: orientation")]
-    parts += [_sessions(result, unit), _constants(result)]
+    parts += [_sessions(result, unit), _gyro_azimuths(result, unit), _constants(result)]
     parts += [_line(line, unit) for line in result.lines]
-    parts += [checks_text(result.checks), warnings_text(result)]
+    parts += [checks_text(result.checks, told=result.warnings), warnings_text(result)]
     return "\n\n".join(part for part in parts if part)
 
 
@@ -58,22 +60,26 @@ def _angle(item: AngleResult | None, unit: AngleUnit) -> tuple[str, str]:
 
 
 def _sessions(result: OrientationResult, unit: AngleUnit) -> str:
-    head = ["session", "method", "points", "gyro north", '±"', "line", "gyro azimuth", '±"', "rms"]
     rows = []
     for session in result.sessions:
-        north, north_sigma = _angle(session.gyro_north, unit)
-        method = f"{session.method}, {session.estimator}"
-        first = [session.id, method, str(session.points_used), north, north_sigma]
+        north, sigma = _angle(session.gyro_north, unit)
         rms = number(to_arcsec(session.residual_rms))
-        if not session.targets:
-            rows.append([*first, "-", "-", "-", rms])
+        method = f"{session.method}, {session.estimator}"
+        rows.append([session.id, method, str(session.points_used), north, sigma, rms])
+    head = ["session", "method", "points", "gyro north", '±"', 'rms "']
+    return "Sessions\n" + table(head, rows) if rows else ""
+
+
+def _gyro_azimuths(result: OrientationResult, unit: AngleUnit) -> str:
+    rows = []
+    for session in result.sessions:
         for target in session.targets:
+            reading, _ = _angle(target.line_reading, unit)
             azimuth, sigma = _angle(target.gyro_azimuth, unit)
             line = f"{session.station}-{target.target}"
-            rows.append([*first, line, azimuth, sigma, rms])
-            first = ["", "", "", "", ""]
-            rms = ""
-    return "Sessions\n" + table(head, rows) if rows else ""
+            rows.append([session.id, session.purpose, line, reading, azimuth, sigma])
+    head = ["session", "purpose", "line", "line reading", "gyro azimuth", '±"']
+    return "Gyro azimuths\n" + table(head, rows) if rows else ""
 
 
 def _constants(result: OrientationResult) -> str:
@@ -150,25 +156,47 @@ def small_angle(value: float) -> str:
     return f"{sign}{minutes:.0f}'{rest:05.2f}\"" if minutes else f'{sign}{rest:.2f}"'
 
 
-def checks_text(checks: tuple[Check, ...]) -> str:
-    """The checks, one a line, the verdict as a word."""
+def checks_text(checks: Sequence[Check], *, told: Sequence[ResultWarning] = ()) -> str:
+    """The checks, one a line, then what is not met in words, then where the limits come from.
+
+    Parameters
+    ----------
+    checks : sequence of Check
+    told : sequence of ResultWarning
+        Warnings that are shown as well: what they say of a check is not said twice.
+    """
     if not checks:
         return ""
-    words = {True: "met", False: "NOT MET", None: "open"}
     rows = []
     for check in checks:
-        verdict = words[check.passed]
-        if check.passed is False and not check.confirmed:
-            verdict = "warning"
         limit = "-" if check.limit is None else f"{check.limit:.4g}"
         value = "-" if check.value is None else f"{check.value:.4g}"
-        rows.append([verdict, check.rule, check.where, value, limit, check.unit, check.clause])
-    head = ["verdict", "check", "where", "value", "limit", "unit", "clause"]
-    return "Checks\n" + table(head, rows)
+        rows.append([_verdict(check), check.rule, check.where, value, limit, check.unit])
+    parts = [table(["verdict", "check", "where", "value", "limit", "unit"], rows)]
+    parts += [
+        paragraph(f"{_verdict(check)}: {check.where}: {check.text}")
+        for check in checks
+        if check.passed is False
+        and check.text
+        and not check.rule.startswith("fit.")  # the parts of the test of fit, told by it
+        and not any(check.text in warning.text for warning in told)
+    ]
+    clauses: dict[str, dict[str, None]] = {}
+    for check in checks:
+        clauses.setdefault(check.clause, {})[check.rule] = None
+    parts += [paragraph(f"{clause}: {', '.join(rules)}") for clause, rules in clauses.items()]
+    return "Checks\n" + "\n".join(parts)
+
+
+def _verdict(check: Check) -> str:
+    if check.passed is False:
+        return "NOT MET" if check.confirmed else "warning"
+    return "open" if check.passed is None else "met"
 
 
 def warnings_text(result: OrientationResult) -> str:
-    """The warnings, one a line."""
+    """The warnings, one a paragraph."""
     if not result.warnings:
         return ""
-    return "Warnings\n" + "\n".join(f"  {item.code}: {item.text}" for item in result.warnings)
+    texts = [paragraph(f"{item.code}: {item.text}") for item in result.warnings]
+    return "Warnings\n" + "\n".join(texts)

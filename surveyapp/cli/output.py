@@ -1,35 +1,89 @@
-"""How results are printed: one JSON object, or plain tables that fit a terminal."""
+"""How results are printed: one JSON object, or plain tables that fit a terminal of 80 columns."""
 
 from __future__ import annotations
 
 import json
 import sys
+import textwrap
+import unicodedata
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, Final
+
+WIDTH: Final = 80
+"""Columns of a terminal; a table that is wider has its texts wrapped."""
+
+_NARROWEST: Final = 8
+"""Columns below which no text is squeezed."""
+
+_GAP: Final = 2
 
 
 def print_json(value: Mapping[str, Any]) -> None:
-    """Print one JSON object; NaN is a fault and raises."""
-    json.dump(value, sys.stdout, ensure_ascii=False, indent=2, allow_nan=False)
-    sys.stdout.write("\n")
+    """Print one JSON object; NaN is a fault and raises.
+
+    What the encoding of standard output cannot hold is escaped.
+    """
+    encoding = (getattr(sys.stdout, "encoding", None) or "utf-8").lower().replace("-", "")
+    text = json.dumps(value, ensure_ascii=encoding != "utf8", indent=2, allow_nan=False)
+    print(text.encode("utf-8", "backslashreplace").decode("utf-8"))
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]], *, indent: int = 2) -> str:
-    """A plain table: columns as wide as needed, numbers to the right."""
-    widths = [max(len(row[i]) for row in [head, *rows]) for i in range(len(head))]
+    """A plain table: columns as wide as needed, numbers to the right, long texts wrapped."""
+    widths = [max(columns(row[i]) for row in [head, *rows]) for i in range(len(head))]
     numeric = [all(_is_number(row[i]) for row in rows) for i in range(len(head))]
+    _squeeze(widths, numeric, WIDTH - indent - _GAP * (len(head) - 1))
     lines = []
     for row in [head, *rows]:
         cells = [
-            cell.rjust(width) if right else cell.ljust(width)
-            for cell, width, right in zip(row, widths, numeric, strict=True)
+            _wrapped(cell, width) if columns(cell) > width else [cell]
+            for cell, width in zip(row, widths, strict=True)
         ]
-        lines.append((" " * indent + "  ".join(cells)).rstrip())
+        for i in range(max(len(cell) for cell in cells)):
+            shown = [
+                _padded(cell[i] if i < len(cell) else "", width, right)
+                for cell, width, right in zip(cells, widths, numeric, strict=True)
+            ]
+            lines.append((" " * indent + (" " * _GAP).join(shown)).rstrip())
     return "\n".join(lines)
+
+
+def _squeeze(widths: list[int], numeric: Sequence[bool], available: int) -> None:
+    """Take columns from the widest texts until the table fits, or no text has any left."""
+    while sum(widths) > available:
+        texts = [i for i, number in enumerate(numeric) if not number and widths[i] > _NARROWEST]
+        if not texts:
+            return
+        widths[max(texts, key=lambda i: widths[i])] -= 1
+
+
+def _wrapped(cell: str, width: int) -> list[str]:
+    return textwrap.wrap(cell, width) or [""]
+
+
+def columns(text: str) -> int:
+    """Columns of a terminal that a text takes: Chinese and the like take two each."""
+    return sum(2 if unicodedata.east_asian_width(letter) in "WF" else 1 for letter in text)
+
+
+def _padded(cell: str, width: int, right: bool) -> str:
+    space = " " * (width - columns(cell))
+    return space + cell if right else cell + space
 
 
 def _is_number(cell: str) -> bool:
     return not cell or cell.lstrip("+-±")[:1].isdigit() or cell == "-"
+
+
+def paragraph(text: str, *, indent: int = 2, hanging: int = 2) -> str:
+    """A text wrapped to the terminal, its further lines indented by ``hanging`` more."""
+    return textwrap.fill(
+        text,
+        WIDTH,
+        initial_indent=" " * indent,
+        subsequent_indent=" " * (indent + hanging),
+        break_on_hyphens=False,
+    )
 
 
 def number(value: float | None, decimals: int = 1, *, sign: bool = False) -> str:
@@ -41,4 +95,4 @@ def number(value: float | None, decimals: int = 1, *, sign: bool = False) -> str
 
 def heading(text: str) -> str:
     """A heading with a rule below."""
-    return f"{text}\n{'-' * len(text)}"
+    return f"{text}\n{'-' * min(columns(text), WIDTH)}"

@@ -105,7 +105,7 @@ def reduce_automatic(
         dof=dof,
         sigma_source=origin,
         reading_sigma=sigma.value if math.isfinite(sigma.value) else None,
-        residual_rms=math.sqrt(float(residuals @ residuals) / readings.size),
+        residual_rms=math.sqrt(float(residuals @ residuals) / readings.size) if dof else None,
         points=tuple(
             PointResult(
                 seq=row.seq,

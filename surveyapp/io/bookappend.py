@@ -14,7 +14,7 @@ from pathlib import Path
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.bookreading import judge, move_tail_aside, split_tail
 from surveyapp.io.bookrows import COLUMNS
-from surveyapp.io.files import has_control, read_bytes, shown
+from surveyapp.io.files import has_control, read_bytes, shown, shown_path
 from surveyapp.io.tomltext import sync_folder
 from surveyapp_models.angles import AngleUnit
 
@@ -48,7 +48,7 @@ def append_row(path: Path, row: Mapping[str, str], *, angle_unit: AngleUnit = An
     text, tail = split_tail(data, where=where)
     if tail and not move_tail_aside(path, size=len(data), tail=tail):
         raise SurveyError(
-            Problem("the torn last line of the book cannot be moved aside", where, shown(str(path)))
+            Problem("the torn last line of the book cannot be moved aside", where, shown_path(path))
         )
     before = judge(text, angle_unit=angle_unit, where=where)
     header = _header(text, where)
@@ -132,7 +132,7 @@ def _not_written(path: Path, error: OSError) -> SurveyError:
         Problem(
             f"the reading could not be written ({error.strerror or error})",
             path.name,
-            shown(str(path)),
+            shown_path(path),
             "a disk with room that may be written to",
             "the earlier rows stand; note the reading on paper and make room",
         )

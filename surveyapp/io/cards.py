@@ -87,11 +87,19 @@ def read_card(name_or_path: str, *, base: Path, override: Mapping[str, object]) 
 
 
 def load_card(
-    name_or_path: str, *, base: Path, override: Mapping[str, object], findings: Findings
+    name_or_path: str,
+    *,
+    base: Path,
+    override: Mapping[str, object],
+    findings: Findings,
+    where: str = "",
 ) -> InstrumentCard | None:
-    """As ``read_card``, but with problems and warnings noted in ``findings``."""
+    """As ``read_card``, but with problems and warnings noted in ``findings``.
+
+    ``where`` is the place that names the card.
+    """
     try:
-        text = _card_text(name_or_path, base)
+        text = _card_text(name_or_path, base, where)
         data = parse_toml(text, where=f"card {shown(name_or_path)}")
     except SurveyError as error:
         findings.absorb(error)
@@ -103,15 +111,15 @@ def load_card(
     return card if len(findings.problems) == before else None
 
 
-def _card_text(name: str, base: Path) -> str:
+def _card_text(name: str, base: Path, where: str) -> str:
     if is_path(name):
-        return read_text(base / name, where=f"card {shown(name)}")
+        return read_text(base / name, where=f"{where}, card {shown(name)}".lstrip(", "))
     known = installed_card_ids()
     if name not in known:
         raise SurveyError(
             Problem(
                 "there is no such instrument card",
-                "card",
+                f"{where}, card".lstrip(", "),
                 shown(name),
                 "the id of an installed card, or a path to your own ending in .toml",
                 nearest_names(name, known),

@@ -27,6 +27,12 @@ def shown(value: object) -> str:
     return text[:_SHOWN] + "..." if len(text) > _SHOWN else text
 
 
+def shown_path(path: Path) -> str:
+    """Text of a path for a message: of a long one the end, where the name stands."""
+    text = str(path)
+    return shown(text if len(text) <= _SHOWN else "..." + text[3 - _SHOWN :])
+
+
 def has_control(text: str) -> bool:
     """Whether the text holds control characters other than tab and line ends."""
     return _CONTROL.search(text) is not None
@@ -55,7 +61,7 @@ def read_bytes(path: Path, *, where: str) -> bytes:
         status = path.stat()
         if not stat.S_ISREG(status.st_mode):
             what = "this is a folder" if stat.S_ISDIR(status.st_mode) else "this is no regular file"
-            raise SurveyError(Problem(what, where, shown(str(path)), "a text file"))
+            raise SurveyError(Problem(what, where, shown_path(path), "a text file"))
         if status.st_size > MAX_BYTES:
             raise SurveyError(_too_large(where, status.st_size))
         with path.open("rb") as stream:
@@ -65,7 +71,7 @@ def read_bytes(path: Path, *, where: str) -> bytes:
             Problem(
                 "the file does not exist",
                 where,
-                shown(str(path)),
+                shown_path(path),
                 "an existing file",
                 "paths are relative to the file that names them",
             )
@@ -73,7 +79,7 @@ def read_bytes(path: Path, *, where: str) -> bytes:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise SurveyError(
-            Problem(f"the file cannot be read ({reason})", where, shown(str(path)))
+            Problem(f"the file cannot be read ({reason})", where, shown_path(path))
         ) from None
     if len(data) > MAX_BYTES:
         raise SurveyError(_too_large(where, len(data)))

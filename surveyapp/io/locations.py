@@ -12,7 +12,7 @@ from typing import Any
 
 import surveyapp
 from surveyapp.errors import Problem, SurveyError, nearest_names
-from surveyapp.io.files import shown
+from surveyapp.io.files import shown, shown_path
 
 
 def samples_folder() -> Path:
@@ -53,7 +53,7 @@ def copy_sample(name: str, folder: Path) -> Path:
         )
     except OSError as error:
         raise SurveyError(
-            Problem(f"the sample cannot be copied ({error.strerror or error})", shown(str(target)))
+            Problem(f"the sample cannot be copied ({error.strerror or error})", shown_path(target))
         ) from None
     return target
 

@@ -20,7 +20,7 @@ from surveyapp.domain.readings import FieldBook
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.bookreading import interpret, move_tail_aside, split_tail
 from surveyapp.io.cards import is_path
-from surveyapp.io.files import decode, read_bytes, shown
+from surveyapp.io.files import decode, read_bytes, shown, shown_path
 from surveyapp.io.project_tables import (
     Names,
     read_centring,
@@ -131,7 +131,7 @@ def _project_text(files: _Folder) -> str:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         what = f"the project folder cannot be read ({reason})"
-    raise SurveyError(Problem(what, shown(str(folder)), "", f"a folder with {PROJECT_FILE}", hint))
+    raise SurveyError(Problem(what, shown_path(folder), "", f"a folder with {PROJECT_FILE}", hint))
 
 
 def _check_format(data: Mapping[str, object]) -> None:

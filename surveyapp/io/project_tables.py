@@ -197,7 +197,9 @@ def read_instrument(table: Table, folder: Path) -> Instrument:
     override = {key: table.get(key) for key in CARD_KEYS if key in table}
     card: InstrumentCard | None = None
     if name is not None:
-        card = load_card(name, base=folder, override=override, findings=table.findings)
+        card = load_card(
+            name, base=folder, override=override, findings=table.findings, where=table.where
+        )
     constant = table.table("constant")
     known = None
     if constant is not None:

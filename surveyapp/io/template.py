@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.io.files import has_control, shown
+from surveyapp.io.files import has_control, shown, shown_path
 from surveyapp.io.tomltext import atomic_write, toml_value
 from surveyapp_models.angles import AngleUnit
 
@@ -99,7 +99,7 @@ def create_project(
             raise SurveyError(
                 Problem(
                     "a new project needs a folder of its own",
-                    shown(str(folder)),
+                    shown_path(folder),
                     "a folder that is not empty" if folder.is_dir() else "a file",
                     "a folder that does not exist or is empty",
                 )
@@ -108,7 +108,7 @@ def create_project(
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise SurveyError(
-            Problem(f"the folder cannot be made ({reason})", shown(str(folder)))
+            Problem(f"the folder cannot be made ({reason})", shown_path(folder))
         ) from None
     example = _EXAMPLES[angle_unit]
     crs_line = f"crs = {toml_value(crs)}" if crs else '# crs = "EPSG:4546"    # the grid'

@@ -15,7 +15,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.io.files import shown
+from surveyapp.io.files import shown, shown_path
 
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 _TOKEN = re.compile(
@@ -69,7 +69,7 @@ def atomic_write(path: Path, data: bytes) -> None:
             Problem(
                 f"the file could not be written ({error.strerror or error})",
                 path.name,
-                shown(str(path)),
+                shown_path(path),
                 "a folder with room that may be written to",
                 "the old file stands",
             )
