@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from surveyapp.domain.observations import Observation, ObservationKind
@@ -38,8 +39,8 @@ def network_point(document: GkfDocument, entry: PointEntry) -> NetworkPoint | No
         return None
 
 
-def _touched(observations: list[Observation]) -> dict[str, set[str]]:
-    """Components of each point that any observation touches."""
+def touched(observations: Sequence[Observation]) -> dict[str, set[str]]:
+    """Components (p = plane, h = height) of each point that any observation touches."""
     height = {
         ObservationKind.HEIGHT_DIFFERENCE,
         ObservationKind.COORDINATE_H,
@@ -59,11 +60,11 @@ def without_idle(
     points: list[NetworkPoint], observations: list[Observation]
 ) -> tuple[list[NetworkPoint], list[ResultWarning]]:
     """Take coordinates that nothing observes out of the network, as the format's own program."""
-    touched = _touched(observations)
+    observed = touched(observations)
     adjusted = (Status.FREE, Status.CONSTRAINED)
     result, idle = [], []
     for point in points:
-        parts = touched.get(point.name, set())
+        parts = observed.get(point.name, set())
         if point.status_e in adjusted and "p" not in parts:
             point = replace(point, status_e=Status.UNUSED, status_n=Status.UNUSED)
             idle.append(f"{point.name} (xy)")

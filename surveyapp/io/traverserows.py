@@ -1,0 +1,273 @@
+"""Rows of a traverse book: text to numbers in radians and metres, with every problem by line.
+
+Knows columns, kinds and units; what sigma a row gets where it states none is ``traversebook``.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from dataclasses import dataclass
+from typing import Final
+
+from surveyapp.domain.observations import ObservationKind
+from surveyapp.errors import Problem, nearest_names
+from surveyapp.io.files import shown
+from surveyapp_models.angles import ARCSEC, AngleError, AngleUnit, parse_angle
+
+COLUMNS: Final = (
+    "kind",
+    "at",
+    "from",
+    "to",
+    "value",
+    "unit",
+    "sigma",
+    "sigma_unit",
+    "set",
+    "hi",
+    "ht",
+    "note",
+)
+REQUIRED: Final = ("kind", "at", "to", "value")
+KINDS: Final = {
+    str(kind): kind
+    for kind in (
+        ObservationKind.ANGLE,
+        ObservationKind.DIRECTION,
+        ObservationKind.DISTANCE,
+        ObservationKind.SLOPE_DISTANCE,
+        ObservationKind.ZENITH,
+        ObservationKind.HEIGHT_DIFFERENCE,
+        ObservationKind.AZIMUTH,
+        ObservationKind.GYRO,
+    )
+}
+ANGLES: Final = frozenset(
+    {
+        ObservationKind.ANGLE,
+        ObservationKind.DIRECTION,
+        ObservationKind.ZENITH,
+        ObservationKind.AZIMUTH,
+    }
+)
+_ANGLE_UNITS: Final = {"dms": AngleUnit.DMS, "gon": AngleUnit.GON, "deg": AngleUnit.DEG}
+MGON: Final = math.pi / 200_000.0
+MM: Final = 1e-3
+
+
+@dataclass(frozen=True, slots=True)
+class TraverseRow:
+    """One row of a traverse book.
+
+    Parameters
+    ----------
+    kind : ObservationKind
+    at, back, to : str
+    value : float or None
+        [rad] or [m]; None for gyro rows, whose value comes from the sessions.
+    sigma : float or None
+        As stated in the row [rad] or [m].
+    set : str
+    hi, ht : float
+        [m].
+    note : str
+    line : int
+    """
+
+    kind: ObservationKind
+    at: str
+    back: str
+    to: str
+    value: float | None
+    sigma: float | None
+    set: str
+    hi: float
+    ht: float
+    note: str
+    line: int
+
+
+class _Row:
+    """Cells of one row and the place for messages."""
+
+    __slots__ = ("cells", "line", "problems", "where")
+
+    def __init__(
+        self, cells: dict[str, str], where: str, line: int, problems: list[Problem]
+    ) -> None:
+        self.cells, self.where, self.line, self.problems = cells, where, line, problems
+
+    def problem(self, what: str, found: str, expected: str, hint: str = "") -> None:
+        self.problems.append(
+            Problem(what, f"{self.where}, line {self.line}", shown(found), expected, hint)
+        )
+
+    def number(self, key: str) -> float | None:
+        text = self.cells[key]
+        if not text:
+            return None
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if math.isfinite(value):
+            return value
+        hint = "decimals are written with a point" if "," in text else ""
+        self.problem(f"{key} is no number", text, "a number", hint)
+        return None
+
+    def value(self, kind: ObservationKind, default: AngleUnit) -> float | None:
+        text, unit = self.cells["value"], self.cells["unit"]
+        if kind is ObservationKind.GYRO:
+            return None
+        if not text:
+            self.problem("the value is missing", "", "what was observed")
+            return None
+        if kind not in ANGLES:
+            if unit not in ("", "m"):
+                self.problem(f"{kind} in a wrong unit", unit, "m")
+                return None
+            return self.number("value")
+        if unit and unit not in _ANGLE_UNITS:
+            hint = nearest_names(unit, _ANGLE_UNITS)
+            self.problem(f"{kind} in a wrong unit", unit, "dms, gon or deg", hint)
+            return None
+        try:
+            return parse_angle(text, _ANGLE_UNITS[unit] if unit else default)
+        except AngleError as error:
+            self.problem(f"{kind} is no angle", text, error.expected, error.hint)
+            return None
+
+    def sigma(self, kind: ObservationKind, value: float | None) -> float | None:
+        text, unit = self.cells["sigma"], self.cells["sigma_unit"]
+        if not text:
+            return None
+        angular = kind in ANGLES or kind is ObservationKind.GYRO
+        allowed = ("arcsec", "mgon") if angular else ("mm", "mm+ppm")
+        unit = unit or allowed[0]
+        if unit not in allowed:
+            self.problem("the sigma has a wrong unit", unit, " or ".join(allowed))
+            return None
+        if unit == "mm+ppm":
+            return self._mm_ppm(text, value)
+        number = self.number("sigma")
+        if number is None:
+            return None
+        if number <= 0.0:
+            self.problem("the sigma is not positive", text, "a number above 0")
+            return None
+        return number * {"arcsec": ARCSEC, "mgon": MGON, "mm": MM}[unit]
+
+    def _mm_ppm(self, text: str, value: float | None) -> float | None:
+        parts = text.split("+")
+        try:
+            mm, ppm = (float(part) for part in parts)
+        except ValueError:
+            self.problem("the sigma is no mm+ppm", text, "two numbers like 2+2")
+            return None
+        if value is None:
+            return None
+        sigma = math.hypot(mm * MM, ppm * 1e-6 * value)
+        if mm < 0.0 or ppm < 0.0 or sigma <= 0.0 or not math.isfinite(sigma):
+            self.problem("the sigma is not positive", text, "numbers from 0 on, not both 0")
+            return None
+        return sigma
+
+
+def _read(row: _Row, default: AngleUnit) -> TraverseRow | None:
+    before = len(row.problems)
+    cells = row.cells
+    kind = KINDS.get(cells["kind"])
+    if kind is None:
+        hint = nearest_names(cells["kind"], KINDS)
+        row.problem("the kind is not known", cells["kind"], "a kind of observation", hint)
+        return None
+    value = row.value(kind, default)
+    sigma = row.sigma(kind, value)
+    hi, ht = row.number("hi") or 0.0, row.number("ht") or 0.0
+    if kind is ObservationKind.ZENITH and value is not None and not 0.0 < value < math.pi:
+        hint = "Reduce both faces to face left first."
+        row.problem("no zenith angle", cells["value"], "between 0 and 180 degrees", hint)
+    if len(row.problems) > before:
+        return None
+    back = cells["from"] if kind is ObservationKind.ANGLE else ""
+    return TraverseRow(
+        kind,
+        cells["at"],
+        back,
+        cells["to"],
+        value,
+        sigma,
+        cells["set"],
+        hi,
+        ht,
+        cells["note"],
+        row.line,
+    )
+
+
+def _header(cells: list[str], line: str, where: str, problems: list[Problem]) -> bool:
+    place = f"{where}, line 1"
+    if ";" in line and "," not in line:
+        problems.append(
+            Problem("the columns are separated by semicolons", place, shown(line), "commas")
+        )
+        return False
+    missing = [name for name in REQUIRED if name not in cells]
+    if missing:
+        expected = ",".join(COLUMNS)
+        problems.append(
+            Problem(f"there is no column {', '.join(missing)}", place, shown(line), expected)
+        )
+    return not missing
+
+
+def parse_traverse(
+    text: str, *, angle_unit: AngleUnit, where: str
+) -> tuple[list[TraverseRow], list[Problem]]:
+    """Parse a traverse book.
+
+    Parameters
+    ----------
+    text : str
+    angle_unit : AngleUnit
+        Unit of angles whose row names none.
+    where : str
+        What messages call the book.
+
+    Returns
+    -------
+    rows, problems
+    """
+    problems: list[Problem] = []
+    rows: list[TraverseRow] = []
+    header: list[str] | None = None
+    reader = csv.reader(text.splitlines(), strict=True)
+    try:
+        for cells in reader:
+            stripped = [cell.strip() for cell in cells]
+            if not any(stripped) or stripped[0].startswith("#"):
+                continue
+            if header is None:
+                header = [name.lower() for name in stripped]
+                if not _header(header, ",".join(cells), where, problems):
+                    return rows, problems
+                continue
+            if len(stripped) > len(header):
+                place = f"{where}, line {reader.line_num}"
+                hint = "decimals are written with a point"
+                problems.append(
+                    Problem("more values than columns", place, shown(",".join(cells)), "", hint)
+                )
+                continue
+            named = dict.fromkeys(COLUMNS, "")
+            named.update(zip(header, stripped, strict=False))
+            row = _read(_Row(named, where, reader.line_num, problems), angle_unit)
+            if row is not None:
+                rows.append(row)
+    except csv.Error as error:
+        problems.append(Problem(f"no CSV ({error})", f"{where}, line {reader.line_num}"))
+    if header is None:
+        problems.append(Problem("the book is empty", where, "", ",".join(COLUMNS)))
+    return rows, problems
