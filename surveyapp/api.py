@@ -11,9 +11,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from surveyapp import __version__
+from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import Check, OrientationResult
+from surveyapp.domain.traverse import Network
 from surveyapp.errors import Problem, SurveyError, nearest_names
 
 if TYPE_CHECKING:
@@ -121,6 +123,48 @@ def _require(name: str, known: Iterable[str], kind: str) -> None:
 def check(project: Project | Folder) -> tuple[Check, ...]:
     """Apply every limit and test that the project's data can answer."""
     return orient(project).checks
+
+
+def adjust(
+    source: Project | Folder, *, traverse: str | None = None, family_level: float = 0.05
+) -> AdjustmentResult:
+    """Adjust the traverses of a project, gyro sides included, or a GNU Gama file.
+
+    Parameters
+    ----------
+    source : Project or path
+        A project, its folder, or a ``.gkf`` file.
+    traverse : str or None
+        One traverse; all of them together without it.
+    family_level : float
+        Level of data snooping for all observations together.
+
+    Raises
+    ------
+    SurveyError
+        If something cannot be read, has no datum, is not determined or does not converge.
+    """
+    from surveyapp.core.network import adjust as adjust_network
+
+    return adjust_network(network(source, traverse=traverse), family_level=family_level)
+
+
+def network(source: Project | Folder, *, traverse: str | None = None) -> Network:
+    """Network of a project's traverses or of a ``.gkf`` file, as ``adjust`` takes it."""
+    from dataclasses import replace
+
+    from surveyapp.core.network.oriented import oriented_lines
+    from surveyapp.io.importers.gkf import read_gkf
+    from surveyapp.io.traversebook import network_of
+
+    if not isinstance(source, Project):
+        path = Path(source)
+        if path.suffix.lower() in (".gkf", ".xml"):
+            return read_gkf(path)
+        source = open_project(path)
+    lines, constants, warnings = oriented_lines(orient(source).lines if source.sessions else ())
+    found = network_of(source, traverse, lines, constants)
+    return replace(found, warnings=(*found.warnings, *warnings))
 
 
 def models() -> tuple[InstrumentCard, ...]:

@@ -95,7 +95,8 @@ class AdjustedObservation:
     standardized : float or None
         Residual over its standard deviation; None where nothing controls the observation.
     redundancy : float
-        Its share of the degrees of freedom, 0 (uncontrolled) to 1.
+        Its share of the degrees of freedom, 0 (uncontrolled) to 1; within a correlated block it
+        may lie outside, the sum is right all the same.
     mdb : float or None
         Smallest bias that the test detects with the stated power.
     mdb_effect_m : float or None

@@ -1,4 +1,4 @@
-"""The ``[[traverse]]`` tables of a project: class, sigmas, centring, what the instrument corrected."""
+"""The ``[[traverse]]`` tables of a project: class, sigmas, centring, corrections applied."""
 
 from __future__ import annotations
 

@@ -262,7 +262,7 @@ def _observations(
         residual.tolist(),
         (checked.sigma_adjusted * scale).tolist(),
         (checked.standardized / scale if scale > 0.0 else checked.standardized).tolist(),
-        np.clip(checked.redundancy, 0.0, 1.0).tolist(),
+        np.where(np.abs(checked.redundancy) < q.UNCONTROLLED, 0.0, checked.redundancy).tolist(),
         (checked.mdb * scale).tolist(),
         (checked.effect * scale).tolist(),
         strict=True,

@@ -137,7 +137,7 @@ def _known_bearing(points: dict[str, NetworkPoint], start: str, end: str) -> flo
     return math.atan2(b.e - a.e, b.n - a.n)
 
 
-def _orientation(
+def route_orientation(
     seen: Sighted, points: dict[str, NetworkPoint], fixed: frozenset[str], leg: tuple[str, str]
 ) -> tuple[float, float] | None:
     """Azimuth of a leg out of a fixed point, from a sight to another fixed point."""
@@ -151,6 +151,13 @@ def _orientation(
     return None
 
 
+def plane_fixed(network: Network) -> frozenset[str]:
+    """Points with fixed east and north."""
+    return frozenset(
+        p.name for p in network.points if p.status_e is Status.FIXED and p.status_n is Status.FIXED
+    )
+
+
 def _connecting(
     route: Route, seen: Sighted, points: dict[str, NetworkPoint], fixed: frozenset[str]
 ) -> Closure | None:
@@ -159,8 +166,8 @@ def _connecting(
     turns = [None] + [_turn(seen, names[i], names[i - 1], names[i + 1]) for i in range(1, n - 1)]
     if any(turn is None for turn in turns[1:]):
         return None
-    start = _orientation(seen, points, fixed, (names[0], names[1]))
-    end = _orientation(seen, points, fixed, (names[-1], names[-2]))
+    start = route_orientation(seen, points, fixed, (names[0], names[1]))
+    end = route_orientation(seen, points, fixed, (names[-1], names[-2]))
     lengths = [seen.lengths[names[i], names[i + 1]].value for i in range(n - 1)]
     inner = [turn for turn in turns[1:] if turn is not None]
     angular = sigma = None
@@ -222,9 +229,7 @@ def network_closures(network: Network) -> tuple[Closure, ...]:
     """
     seen = sighted(network.observations)
     points = {point.name: point for point in network.points}
-    plane = frozenset(
-        p.name for p in network.points if p.status_e is Status.FIXED and p.status_n is Status.FIXED
-    )
+    plane = plane_fixed(network)
     level = frozenset(p.name for p in network.points if p.status_h is Status.FIXED)
     found = [
         _loop(route, seen) if route.closed else _connecting(route, seen, points, plane)

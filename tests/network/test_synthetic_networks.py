@@ -1,0 +1,153 @@
+"""Synthetic networks of every kind against dense QR on numerically differentiated equations."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from network_factory import Independent, make
+
+from surveyapp.core.leastsquares import solution
+from surveyapp.core.network import adjust, gaussnewton
+from surveyapp.core.network.linearise import LINEARISATION
+from surveyapp.domain.observations import ObservationKind
+
+CASES = [
+    # kinds, datum, correlated
+    (("distance",), "fixed", False),
+    (("distance",), "free", False),
+    (("direction",), "fixed", False),
+    (("direction",), "free", False),
+    (("angle",), "fixed", False),
+    (("angle",), "free", False),
+    (("angle", "distance"), "fixed", False),
+    (("angle", "distance"), "free", False),
+    (("angle", "distance"), "fixed", True),
+    (("direction", "distance"), "fixed", False),
+    (("direction", "distance"), "free", False),
+    (("direction", "distance"), "free", True),
+    (("direction", "distance", "azimuth"), "fixed", False),
+    (("direction", "distance", "azimuth"), "free", False),
+    (("direction", "distance", "gyro"), "fixed", False),
+    (("direction", "distance", "gyro"), "free", False),
+    (("direction", "distance", "gyro"), "fixed", True),
+    (("angle", "distance", "gyro", "azimuth"), "fixed", False),
+    (("distance", "azimuth"), "free", False),
+    (("distance", "coordinate"), "free", False),
+    (("direction", "distance", "coordinate"), "free", True),
+    (("distance", "vector"), "fixed", False),
+    (("distance", "vector"), "free", True),
+    (("vector",), "free", False),
+    (("height_difference",), "fixed", False),
+    (("height_difference",), "free", False),
+    (("height_difference",), "free", True),
+    (("slope_distance",), "fixed", False),
+    (("slope_distance", "zenith"), "fixed", False),
+    (("slope_distance", "zenith", "direction"), "fixed", False),
+    (("slope_distance", "zenith", "direction"), "free", False),
+    (("slope_distance", "zenith", "direction"), "free", True),
+    (("slope_distance", "zenith", "angle", "height_difference"), "fixed", False),
+    (("distance", "direction", "height_difference"), "free", False),
+    (("slope_distance", "zenith", "direction", "gyro", "azimuth"), "fixed", True),
+    (("slope_distance", "zenith", "angle", "distance", "gyro", "vector"), "free", True),
+]  # fmt: skip
+IDS = [f"{'+'.join(kinds)}-{datum}{'-cov' if c else ''}" for kinds, datum, c in CASES]
+
+
+def compare(network: object, tolerance: float = 2e-6) -> None:
+    result = adjust(network)  # type: ignore[arg-type]
+    other = Independent(network)  # type: ignore[arg-type]
+    x, cofactor, squares, redundancy = other.solve(result.defect)
+    assert result.dof == len(other.observations) - len(x) + result.defect
+    assert result.global_test.sum_of_squares == pytest.approx(squares, rel=1e-6, abs=1e-9)
+    sums = sum(item.redundancy for item in result.observations)
+    assert sums == pytest.approx(result.dof, abs=1e-6)
+    np.testing.assert_allclose(
+        [item.redundancy for item in result.observations], redundancy, atol=1e-5
+    )
+    number = {key: i for i, key in enumerate(other.keys)}
+    for point in result.points:
+        for i, value in enumerate((point.e, point.n, point.h)):
+            row = number.get(("point", point.name, i))
+            if row is None:
+                continue
+            assert value == pytest.approx(x[row], abs=tolerance)
+            for j in range(3):
+                column = number.get(("point", point.name, j))
+                if column is not None:
+                    scale = np.sqrt(cofactor[row, row] * cofactor[column, column])
+                    assert point.covariance[i][j] == pytest.approx(
+                        cofactor[row, column], abs=1e-5 * scale
+                    )
+
+
+@pytest.mark.parametrize(("kinds", "datum", "correlated"), CASES, ids=IDS)
+def test_the_dense_route_agrees(kinds: tuple[str, ...], datum: str, correlated: bool) -> None:
+    network, _ = make(len(kinds) * 7 + len(datum), kinds, datum=datum, correlated=correlated)
+    compare(network)
+
+
+@pytest.mark.parametrize(("kinds", "datum", "correlated"), CASES, ids=IDS)
+def test_the_sparse_route_agrees(
+    kinds: tuple[str, ...], datum: str, correlated: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(gaussnewton, "DENSE_UNKNOWNS", 0)
+    monkeypatch.setattr("surveyapp.core.leastsquares.ordering.ROOT_UNKNOWNS", 6)
+    network, _ = make(len(kinds) * 11 + len(datum), kinds, datum=datum, correlated=correlated)
+    compare(network)
+
+
+def test_both_routes_agree_on_a_larger_network(monkeypatch: pytest.MonkeyPatch) -> None:
+    network, _ = make(3, ("direction", "distance", "gyro"), points=40, datum="free")
+    sparse = adjust(network)
+    assert 3 * len(sparse.points) > 100
+    monkeypatch.setattr(gaussnewton, "DENSE_UNKNOWNS", 10_000)
+    dense = adjust(network)
+    assert dense.defect == sparse.defect == 2  # the known constant orients the network
+    for a, b in zip(dense.points, sparse.points, strict=True):
+        assert a.e == pytest.approx(b.e, abs=1e-7)
+        np.testing.assert_allclose(a.covariance, b.covariance, rtol=1e-6, atol=1e-14)
+    for u, v in zip(dense.observations, sparse.observations, strict=True):
+        assert u.redundancy == pytest.approx(v.redundancy, abs=1e-8)
+        assert u.mdb_effect_m == pytest.approx(v.mdb_effect_m, rel=1e-5)
+
+
+def test_every_kind_has_its_linearisation() -> None:
+    assert set(LINEARISATION) == set(ObservationKind)
+
+
+@pytest.mark.parametrize("kind", list(LINEARISATION))
+def test_partials_are_the_central_differences(kind: ObservationKind) -> None:
+    rng = np.random.default_rng(4)
+    width = {"angle": 6, "slope_distance": 6, "zenith": 6, "direction": 5, "gyro": 5}
+    width |= {"distance": 4, "azimuth": 4}
+    slots = width.get(str(kind), 2 if "vector" in kind or "difference" in kind else 1)
+    values = rng.uniform(0.0, 300.0, slots)
+    places = np.arange(slots)[None, :]
+    constant = np.array([0.2])
+    partials = LINEARISATION[kind](values, places, constant).partials[0]
+    for i in range(slots):
+        step = np.zeros(slots)
+        step[i] = 1e-4
+        high = LINEARISATION[kind](values + step, places, constant).computed[0]
+        low = LINEARISATION[kind](values - step, places, constant).computed[0]
+        assert partials[i] == pytest.approx((high - low) / 2e-4, rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize("kinds", [("distance",), ("direction", "distance"), ("angle", "distance")])
+def test_nothing_but_observations_is_needed(kinds: tuple[str, ...]) -> None:
+    network, _ = make(21, kinds, points=9)
+    result = adjust(network)
+    bare = tuple(
+        point if point.status_e == "fixed" else replace(point, e=None, n=None)
+        for point in network.points
+    )
+    alone = adjust(replace(network, points=bare))
+    for a, b in zip(result.points, alone.points, strict=True):
+        assert a.e == pytest.approx(b.e, abs=1e-6)
+        assert a.n == pytest.approx(b.n, abs=1e-6)
+
+
+def test_rank_tolerances_leave_room_on_both_sides() -> None:
+    assert 1e-12 < solution.RANK_TOLERANCE < 1e-7
