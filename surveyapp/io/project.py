@@ -37,6 +37,9 @@ FORMAT: Final = 1
 RAW_TABLES: Final = ("traverse", "penetration", "shaft", "sensor_log")
 """Tables that their own readers interpret."""
 
+ANGLE_TYPING: Final = ("separated", "packed")
+"""How the screens take a plain number for dms: not at all, or as degrees.MMSS."""
+
 _HEADER = re.compile(r"^[ \t]*\[\[[ \t]*([A-Za-z_-]+)[ \t]*\]\]", re.MULTILINE)
 
 
@@ -186,6 +189,9 @@ def _read_tables(
     if rule_book is not None and is_path(rule_book):
         files.read(rule_book, f"{PROJECT_FILE}, rule_book")
     tables: dict[str, object] = {k: top.get(k) for k in RAW_TABLES if k in top}
+    typing = top.choice("angle_typing", ANGLE_TYPING)
+    if typing is not None:
+        tables["angle_typing"] = typing
     _read_other_files(top, files, lines)
     project = Project(
         name=top.text("name") or files.path.resolve().name,

@@ -294,6 +294,9 @@ def _session_override(table: Table) -> tuple[tuple[str, object], ...]:
     sigma = table.number("sigma_arcsec", high=36000.0, positive=True)
     if sigma is not None:
         pairs.append(("sigma_arcsec", sigma))
+    wanted = table.number("wanted_interval_arcsec", high=36000.0, positive=True)
+    if wanted is not None:
+        pairs.append(("wanted_interval_arcsec", wanted))
     centring = read_centring(table)
     if centring is not None:
         pairs.append(("centring", centring))

@@ -8,9 +8,14 @@ from typing import ClassVar
 from textual.app import App
 from textual.binding import Binding, BindingType
 
+from surveyapp.api_session import Observation
+from surveyapp.errors import SurveyError
+from surveyapp.io.settings import read_settings
 from surveyapp.tui import texts
 from surveyapp.tui.screens.home import HomeScreen
 from surveyapp.tui.screens.project import ProjectScreen
+from surveyapp.tui.screens.result import ResultScreen
+from surveyapp.tui.screens.session import SessionScreen
 
 
 class SurveyApp(App[int]):
@@ -33,6 +38,8 @@ class SurveyApp(App[int]):
     def __init__(self, folder: str | None) -> None:
         super().__init__()
         self.folder = folder
+        self.drafts: dict[str, str] = {}
+        self.settings = read_settings()
 
     def on_mount(self) -> None:
         """Show the first screen."""
@@ -40,6 +47,39 @@ class SurveyApp(App[int]):
             self.push_screen(HomeScreen())
         else:
             self.push_screen(ProjectScreen(self.folder, Path(self.folder).resolve().name))
+
+    def open_session(self, session: str) -> None:
+        """Open a session of the project for observing."""
+        if self.folder is None:
+            return
+        try:
+            observation = Observation(self.folder, session)
+        except SurveyError as error:
+            self.notify(str(error), severity="error", markup=False)
+            return
+        self.push_screen(SessionScreen(observation, self.drafts.pop(session, "")))
+
+    def on_project_screen_session_chosen(self, message: ProjectScreen.SessionChosen) -> None:
+        """Observe a session of the project."""
+        self.open_session(message.session)
+
+    async def on_session_screen_left(self, message: SessionScreen.Left) -> None:
+        """Back to the project; what was half typed waits for the next opening."""
+        if message.draft:
+            self.drafts[message.session] = message.draft
+        await self.action_pop_screen()
+        if isinstance(self.screen, ProjectScreen):
+            self.screen.action_reload()
+
+    def on_session_screen_result_wanted(self, message: SessionScreen.ResultWanted) -> None:
+        """Show what the session says."""
+        if self.folder is not None:
+            self.push_screen(ResultScreen(self.folder, message.session))
+
+    def on_run_pane_near(self) -> None:
+        """The next turning point is near: make it heard."""
+        if self.settings.sound:
+            self.bell()
 
     async def action_leave(self) -> None:
         """Leave a project: back to where one came from, or out."""

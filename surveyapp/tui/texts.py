@@ -23,6 +23,7 @@ TAB_CONSTANTS: Final = "3 Constants"
 TAB_CHECKS: Final = "4 Checks"
 TAB_WARNINGS: Final = "5 Warnings"
 NO_SESSIONS: Final = "This project has no orientation session yet."
+BEING_OBSERVED: Final = "This session is still being observed: Enter goes on with it."
 NO_LINES: Final = "No line is oriented yet: a line needs sights of a target and gyro north."
 NO_CONSTANTS: Final = "No calibration session: there is no instrument constant from this project."
 NO_CHECK_ROWS: Final = "There is nothing to check yet."
@@ -47,6 +48,7 @@ COL_CHECK: Final = "check"
 COL_WHERE: Final = "where"
 COL_VALUE: Final = "value"
 COL_LIMIT: Final = "limit"
+COL_WARNING: Final = "warning"
 
 # details
 D_STATION: Final = "station"
@@ -105,3 +107,137 @@ KEY_BACK: Final = "Back"
 KEY_TABS: Final = "Page"
 KEY_RELOAD: Final = "Read again"
 KEY_OPEN: Final = "Open"
+
+# session screen
+SESSION_TITLE: Final = "{project}  {session}  {method}  {line}"
+WRITING: Final = "each reading goes to disk"
+READING_ONLY: Final = "READING ONLY: open elsewhere, or read-only"
+STEP_NAMES: Final = {
+    "set-up": "set-up, level",
+    "sights-before": "sights before",
+    "tape-zero-before": "tape zero",
+    "run-up": "run-up",
+    "observation": "observation",
+    "tape-zero-after": "tape zero after",
+    "sights-after": "sights after",
+    "result": "result",
+}
+SWING_NAMES: Final = {
+    "tracking": "turning points",
+    "amplitude": "scale points",
+    "transit": "transits",
+    "automatic": "azimuths",
+}
+STEP_MARKS: Final = {"open": "·", "begun": "~", "done": "√"}
+STEP_HERE: Final = ">"
+KIND_NAMES: Final = {
+    "backsight": "sight",
+    "zenith": "zenith angle",
+    "reversal": "turning point",
+    "missed": "missed",
+    "clamp": "clamp, circle",
+    "scale_reversal": "scale point, div",
+    "transit": "transit",
+    "tape_zero": "tape zero, div",
+    "azimuth": "gyro azimuth",
+    "north": "gyro north",
+    "level_along": 'level along, "',
+    "level_across": 'level across, "',
+    "supply": "supply, V Hz mA",
+    "temperature": "temperature, °C",
+    "note": "note",
+    "strike": "strike",
+}
+PROMPT: Final = "{kind} {number}{detail}"
+PROMPT_FACE: Final = " {target} face {face}"
+PROMPT_SIDE: Final = " {side}"
+ENTRY_HINT: Final = "type the reading, Enter writes it"
+TRANSIT_HINT: Final = "Space at the moment of passage"
+RESULT_HINT: Final = "F8 shows the result, Escape leaves"
+UNDERSTOOD: Final = "= {value}"
+UNDERSTOOD_COMPLETED: Final = "= {value}  (completed)"
+REFUSED: Final = "not possible: {what}"
+REFUSED_EXPECTED: Final = "not possible: {what}; expected {expected}"
+RECORDED: Final = "on disk: row {seq}, {kind} {value}"
+STRUCK: Final = "row {seq} struck: {reason}; it stays visible"
+NOTHING_TO_STRIKE: Final = "there is no reading to strike"
+MISSED_NOTED: Final = "on disk: row {seq}, turning point missed; the count goes on"
+NOT_WRITTEN: Final = "NOT written: {what}. {hint}"
+ASK_AGAIN: Final = "{question} Enter again writes it."
+DRAFT_KEPT: Final = "what you typed is kept; Escape again leaves, Enter writes it"
+CLOSED_BEFORE: Final = "the swing has begun: what is read now counts as after it (F8 goes on)"
+CLOCK_SET: Final = (
+    "the computer's clock was set by {seconds:+.0f} s; the session's time goes on unbroken"
+)
+CLOCK_BACK: Final = (
+    "the computer's clock is {seconds:.0f} s before the last row; time goes on from that row"
+)
+TORN: Final = "a torn last line was moved aside to {book}.torn"
+QUESTIONS: Final = {
+    "outside_forecast": "{difference} from the forecast, ±{limit} expected.",
+    "wrong_side": "The next turning point lies on the other side.",
+    "faces_contradict": "The faces differ by {difference} beyond half a circle.",
+    "sight_moved": "{difference} from the last sight in this face.",
+    "collimation_jump": "Twice the collimation jumps by {difference}.",
+}
+ALERTS: Final = {
+    "gross_error": "Point {number} stands out: strike it and repeat (p {p:.3f})",
+    "midpoint_step": "Midpoint jumps at point {number}: check the tripod (p {p:.3f})",
+    "damping_break": "Decay changes at point {number}: check follow-up (p {p:.3f})",
+    "unclear": "Run breaks at point {number}: go on to point 12 (p {p:.3f})",
+}
+LEDGER_COLUMNS: Final = ("row", "time", "kind", "reading", "", 'v "')
+LEDGER_STRUCK: Final = "struck"
+LEDGER_MISSED: Final = "missed"
+NEXT_POINT: Final = "next {side} in {time}"
+NEXT_NOW: Final = "next {side} NOW ({time})"
+NEXT_LONG_PAST: Final = "next {side} long past: F5 for each point missed"
+NEXT_SIDE: Final = "next {side}"
+NEXT_READING: Final = "at {reading}"
+NEXT_INTERVAL: Final = ' ±{interval}"'
+NORTH_NOW: Final = 'north {north} ±{interval}"'
+NORTH_OPEN: Final = "north {north}, interval not known"
+NORTH_NONE: Final = "north from {needed} turning points on"
+AFTER_TWO: Final = '±{interval}" after two more'
+WANTED: Final = 'wanted ±{interval}"'
+ENOUGH: Final = "ENOUGH"
+NO_WANTED: Final = "no wanted interval set"
+SCHULER: Final = "Schuler means (tape zero not in)"
+CHANNEL_MIDPOINT: Final = 'v" midpoint '
+CHANNEL_AMPLITUDE: Final = 'v" amplitude'
+PLOT_EMPTY: Final = "The swing is drawn from the third turning point on."
+ROUNDS_EMPTY: Final = "Readings of this step are listed below."
+
+# strike
+STRIKE_TITLE: Final = "Strike a reading: it stays in the book and no longer counts"
+STRIKE_REASON: Final = "reason"
+STRIKE_KEYS: Final = "Up and Down choose the row, Enter strikes it, Escape leaves it"
+UNDO_REASON: Final = "undo"
+
+KEY_HELP: Final = "Help"
+KEY_KIND: Final = "Kind"
+KEY_FACE: Final = "Face"
+KEY_TARGET: Final = "Target"
+KEY_MISSED: Final = "Missed"
+KEY_STRIKE: Final = "Strike"
+KEY_UNDO: Final = "Undo"
+KEY_NEXT: Final = "Next"
+KEY_PREVIOUS: Final = "Back"
+KEY_LEAVE: Final = "Leave"
+KEY_CLOSE: Final = "Close"
+
+# result screen
+RESULT_TITLE: Final = "{project}  {session}  result"
+R_CHAIN: Final = "From the readings to the azimuth"
+R_CHECKS: Final = "Checks"
+R_BUDGET: Final = "What the sigma is made of; the first helps most"
+R_CONSTANTS: Final = "Instrument constant through time"
+R_WARNINGS: Final = "To know"
+R_POINTS: Final = "Turning points"
+R_LIMIT: Final = "limit {limit}"
+R_NO_LINE: Final = "no grid azimuth from this session: see below"
+KEY_PDF: Final = "PDF"
+KEY_OBSERVE: Final = "Observe"
+KEY_NEW: Final = "New session"
+PDF_WRITTEN: Final = "written: {path}"
+PDF_WRITING: Final = "writing the record ..."

@@ -16,7 +16,7 @@ from textual.message import Message
 from textual.screen import Screen
 from textual.widgets import DataTable, Footer, TabbedContent, TabPane
 
-from surveyapp import api
+from surveyapp import api, api_session
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import SurveyError
@@ -38,9 +38,17 @@ class ProjectScreen(Screen[None]):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("1", f"page('{PAGES[0]}')", texts.KEY_TABS, key_display="1-5"),
         *[Binding(str(i), f"page('{name}')", show=False) for i, name in enumerate(PAGES[1:], 2)],
+        Binding("enter", "observe", texts.KEY_OBSERVE),
         Binding("f5", "reload", texts.KEY_RELOAD),
         Binding("escape", "back", texts.KEY_BACK),
     ]
+
+    class SessionChosen(Message):
+        """A session is to be observed."""
+
+        def __init__(self, session: str) -> None:
+            super().__init__()
+            self.session = session
 
     class Oriented(Message):
         """The computation has ended."""
@@ -63,6 +71,7 @@ class ProjectScreen(Screen[None]):
         self.title_text = texts.PROJECT_TITLE.format(name=name)
         self.project: Project | None = None
         self.result: OrientationResult | None = None
+        self.resumed = False
 
     def compose(self) -> ComposeResult:
         """Title, pages, keys."""
@@ -77,7 +86,7 @@ class ProjectScreen(Screen[None]):
             with TabPane(texts.TAB_CHECKS, id="checks"):
                 yield Records(CHECK_COLUMNS, empty=texts.NO_CHECK_ROWS, details=self._check)
             with TabPane(texts.TAB_WARNINGS, id="warnings"):
-                yield Records(("",), empty=texts.NO_WARNINGS, details=self._warning)
+                yield Records((texts.COL_WARNING,), empty=texts.NO_WARNINGS, details=self._warning)
         yield Footer()
 
     def on_mount(self) -> None:
@@ -94,7 +103,8 @@ class ProjectScreen(Screen[None]):
         """Orient in a thread; the result comes as a message."""
         try:
             project = api.open_project(self.folder)
-            self.post_message(self.Oriented(project, api.orient(project)))
+            result, _ = api_session.orient_observed(project)
+            self.post_message(self.Oriented(project, result))
         except SurveyError as error:
             self.post_message(self.Failed(error))
 
@@ -107,7 +117,7 @@ class ProjectScreen(Screen[None]):
         result = message.result
         self.query_one(TitleBar).state = summary(result)
         rows: dict[str, list[tuple[str, ...]]] = {
-            "sessions": session_rows(result, unit),
+            "sessions": session_rows(message.project, result),
             "lines": line_rows(result, unit),
             "constants": constant_rows(result),
             "checks": check_rows(result),
@@ -115,6 +125,12 @@ class ProjectScreen(Screen[None]):
         }
         for name, values in rows.items():
             self.query_one(f"#{name} Records", Records).show(values)
+        self.action_page(self.query_one(TabbedContent).active)
+        if not self.resumed:
+            self.resumed = True
+            unfinished = api_session.unfinished_session(message.project)
+            if unfinished is not None:
+                self.post_message(self.SessionChosen(unfinished))
 
     async def on_project_screen_failed(self, message: Failed) -> None:
         """Say in words what is wrong."""
@@ -130,6 +146,17 @@ class ProjectScreen(Screen[None]):
             pages.active = name
             self.query_one(f"#{name} DataTable", DataTable).focus()
 
+    def on_data_table_row_selected(self) -> None:
+        """Enter on a session opens it."""
+        self.action_observe()
+
+    def action_observe(self) -> None:
+        """Observe the session under the cursor."""
+        row = self.query_one("#sessions DataTable", DataTable).cursor_row
+        on_sessions = self.query_one(TabbedContent).active == "sessions"
+        if on_sessions and self.project is not None and self.project.sessions:
+            self.post_message(self.SessionChosen(self.project.sessions[row].id))
+
     async def action_back(self) -> None:
         """Leave the project; nothing is unsaved here."""
         await self.app.run_action("leave")
@@ -137,7 +164,11 @@ class ProjectScreen(Screen[None]):
     def _session(self, row: int) -> Text:
         if self.result is None or self.project is None:
             return Text()
-        return pairs_text(session_details(self.result.sessions[row], self.project.angle_unit))
+        wanted = self.project.sessions[row].id
+        for session in self.result.sessions:
+            if session.id == wanted:
+                return pairs_text(session_details(session, self.project.angle_unit))
+        return Text(texts.BEING_OBSERVED)
 
     def _line(self, row: int) -> Text:
         if self.result is None or self.project is None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from surveyapp.core.steps import current_step
+from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult, SessionResult
 from surveyapp.tui import texts
 from surveyapp.tui.views.form import angle_text, arcsec_text, number_text, sigma_text, small_text
@@ -19,10 +21,17 @@ SESSION_COLUMNS = (
 )
 
 
-def session_rows(result: OrientationResult, unit: AngleUnit) -> list[tuple[str, ...]]:
-    """Each session in one row."""
+def session_rows(project: Project, result: OrientationResult) -> list[tuple[str, ...]]:
+    """Each session of the project in one row, also those without a result yet."""
+    unit = project.angle_unit
+    results = {session.id: session for session in result.sessions}
     rows: list[tuple[str, ...]] = []
-    for session in result.sessions:
+    for item in project.sessions:
+        session = results.get(item.id)
+        if session is None:
+            step = current_step(item.book, item.method)
+            rows.append((item.id, item.method, "", texts.STEP_NAMES[step], "", ""))
+            continue
         main = session.main
         azimuth = None if main is None else main.gyro_azimuth
         rows.append(

@@ -1,0 +1,314 @@
+"""Observing: a session opened for writing, one reading at a time, and what it says so far.
+
+The screens call nothing else while a surveyor observes. A row is on the disk when ``record``
+returns; what cannot be written is told in words and changes nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from datetime import datetime
+from pathlib import Path
+from typing import Final
+
+from surveyapp import api
+from surveyapp.core.progress import Progress
+from surveyapp.core.steps import (
+    NEEDED_POINTS,
+    STEP_NOTE,
+    Step,
+    StepState,
+    current_step,
+    rows_of,
+    step_states,
+    swing_begun,
+)
+from surveyapp.domain.project import OrientationSession, Project
+from surveyapp.domain.readings import FieldBook, Reading, ReadingKind
+from surveyapp.domain.results import OrientationResult
+from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.clock import SessionClock, Stamp, local_now, steady_seconds
+from surveyapp.io.fieldbook import append_row, read_field_book
+from surveyapp.io.lock import ProjectLock
+from surveyapp_models.angles import ARCSEC
+
+WANTED_KEY: Final = "wanted_interval_arcsec"
+"""Key of an [[orientation]] table: half-width of the 95 % interval of gyro north to stop at."""
+
+
+@dataclass(frozen=True, slots=True)
+class NewRow:
+    """A row before it has a number.
+
+    Parameters
+    ----------
+    kind : ReadingKind
+    value, unit : str
+        As it goes into the book.
+    face, side, target, note : str
+    """
+
+    kind: ReadingKind
+    value: str = ""
+    unit: str = ""
+    face: str = ""
+    side: str = ""
+    target: str = ""
+    note: str = ""
+
+
+class Observation:
+    """One session, open for observing.
+
+    Parameters
+    ----------
+    folder : path
+        Project folder.
+    session : str
+        Id of the session.
+    now, steady : callable
+        Wall clock, and seconds that never go back; for tests.
+
+    Attributes
+    ----------
+    writable : bool
+        False where another program has the project open, or the folder is read-only.
+    project : Project
+        As it stands after the last row.
+
+    Raises
+    ------
+    SurveyError
+        If the project cannot be used, or has no such session.
+    """
+
+    def __init__(
+        self,
+        folder: api.Folder,
+        session: str,
+        *,
+        now: Callable[[], datetime] = local_now,
+        steady: Callable[[], float] = steady_seconds,
+    ) -> None:
+        self.folder = Path(folder)
+        self.session_id = session
+        self._lock = ProjectLock(self.folder)
+        try:
+            self.project = api.open_project(self.folder)
+            self.clock = SessionClock(self.session.book.rows, now=now, steady=steady)
+        except BaseException:
+            self._lock.release()
+            raise
+
+    @property
+    def writable(self) -> bool:
+        """Whether rows may be written."""
+        return self._lock.writable
+
+    @property
+    def session(self) -> OrientationSession:
+        """The session as it stands."""
+        return self.project.session(self.session_id)
+
+    @property
+    def book(self) -> FieldBook:
+        """Its field book as it stands."""
+        return self.session.book
+
+    @property
+    def targets(self) -> tuple[str, ...]:
+        """Targets of this set-up, the session's own first."""
+        own = (self.session.target,) if self.session.target else ()
+        sighted = [row.target for row in self.book.of_kind(ReadingKind.BACKSIGHT) if row.target]
+        return tuple(dict.fromkeys((*own, *sighted)))
+
+    @property
+    def step(self) -> Step:
+        """The step that the book stands at."""
+        return current_step(self.book, self.session.method)
+
+    def steps(self) -> tuple[StepState, ...]:
+        """State of every step."""
+        return step_states(self.book, self.session.method, self.targets)
+
+    def rows(self, step: Step) -> tuple[Reading, ...]:
+        """Live readings of a step."""
+        return rows_of(self.book, step, self.session.method)
+
+    def swing_begun(self) -> bool:
+        """Whether what is read now can no longer stand before the observation."""
+        return swing_begun(self.book, self.session.method)
+
+    def record(self, row: NewRow, stamp: Stamp | None = None) -> int:
+        """Append one row; it is on the disk when this returns.
+
+        Parameters
+        ----------
+        row : NewRow
+        stamp : Stamp or None
+            When the reading was taken; this moment if None.
+
+        Returns
+        -------
+        int
+            seq of the row.
+
+        Raises
+        ------
+        SurveyError
+            If the folder may not be written to, if the row cannot stand in the book, or if the
+            disk refuses; the book is as it was in each case.
+        """
+        if not self.writable:
+            raise SurveyError(_read_only(self.folder))
+        moment = stamp or self.clock.stamp()
+        latest = max((r.elapsed_s for r in self.book.rows if r.elapsed_s is not None), default=0.0)
+        elapsed = max(moment.elapsed_s, latest)
+        cells = {
+            "time": moment.time.isoformat(timespec="milliseconds"),
+            "elapsed_s": f"{elapsed:.3f}",
+            "kind": str(row.kind),
+            "value": row.value,
+            "unit": row.unit,
+            "face": row.face,
+            "side": row.side,
+            "target": row.target,
+            "note": row.note,
+        }
+        path = self.folder / self.session.book_path
+        seq = append_row(path, self._fitting(cells), angle_unit=self.project.angle_unit)
+        self._read_again(path)
+        return seq
+
+    def _fitting(self, cells: dict[str, str]) -> dict[str, str]:
+        """Cells without the moment where an older book has no column for it."""
+        rows = self.book.rows
+        if rows and not any(row.time is not None or row.elapsed_s is not None for row in rows):
+            return {name: text for name, text in cells.items() if name not in ("time", "elapsed_s")}
+        return cells
+
+    def _read_again(self, path: Path) -> None:
+        book = read_field_book(path, angle_unit=self.project.angle_unit, repair=False)
+        self.project = replace(
+            self.project,
+            sessions=tuple(
+                replace(item, book=book) if item.id == self.session_id else item
+                for item in self.project.sessions
+            ),
+        )
+
+    def strike(self, seq: int, reason: str) -> int:
+        """Strike a row; it stays in the book, and the next of its kind takes its place."""
+        return self.record(NewRow(ReadingKind.STRIKE, value=str(seq), note=reason))
+
+    def last_live(self) -> Reading | None:
+        """The latest reading that counts: what undo strikes."""
+        struck = set(self.book.struck)
+        quiet = (ReadingKind.STRIKE, ReadingKind.NOTE)
+        for row in reversed(self.book.rows):
+            if row.kind not in quiet and row.seq not in struck:
+                return row
+        return None
+
+    def go_to(self, step: Step) -> None:
+        """Note that the surveyor goes to a step, unless the book stands there already."""
+        if step is not self.step:
+            self.record(NewRow(ReadingKind.NOTE, note=f"{STEP_NOTE}{step}"))
+
+    def wanted_interval(self) -> float | None:
+        """Half-width of the 95 % interval to stop at [rad], None where nobody has named one."""
+        value = dict(self.session.override).get(WANTED_KEY)
+        return float(value) * ARCSEC if isinstance(value, int | float) else None
+
+    def remaining_s(self, progress: Progress) -> float | None:
+        """Seconds to the next turning point, None where its moment is not known or long past."""
+        if progress.next is None or progress.next.moment_s is None:
+            return None
+        remaining = progress.next.moment_s - self.clock.stamp().elapsed_s
+        late = progress.period_s is not None and -remaining > 0.5 * progress.period_s
+        return None if late else remaining
+
+    def close(self) -> None:
+        """Give the right to write back."""
+        self._lock.release()
+
+
+def progress(project: Project, session: str) -> Progress:
+    """What a tracking session says so far: forecast, interval, alarm.
+
+    Parameters
+    ----------
+    project : Project
+        A snapshot: nothing is read from the disk.
+    session : str
+        Id of the session.
+    """
+    from surveyapp.core.geodesy import open_grid, position_of
+    from surveyapp.core.progress import progress_of
+
+    item = project.session(session)
+    grid = open_grid(project.crs) if project.crs is not None else None
+    position = position_of(project.station(item.station), grid)
+    card = project.instrument(item.instrument).card
+    rng = api.generator_of(project)
+    return progress_of(item, card, rng, latitude=position.latitude)
+
+
+def orient_observed(project: Project) -> tuple[OrientationResult, tuple[str, ...]]:
+    """Orient a project whose newest sessions are still being observed.
+
+    Parameters
+    ----------
+    project : Project
+
+    Returns
+    -------
+    result : OrientationResult
+        As ``api.orient`` gives it without the sessions that have too few readings yet.
+    left_out : tuple of str
+        Their ids; empty where the whole project could be oriented.
+
+    Raises
+    ------
+    SurveyError
+        If what has enough readings cannot be oriented.
+    """
+    enough = {
+        item.id
+        for item in project.sessions
+        if _swing_count(item) >= (1 if item.method == "automatic" else NEEDED_POINTS)
+    }
+    left_out = tuple(item.id for item in project.sessions if item.id not in enough)
+    kept = tuple(item for item in project.sessions if item.id in enough)
+    return api.orient(replace(project, sessions=kept) if left_out else project), left_out
+
+
+def _swing_count(session: OrientationSession) -> int:
+    quiet = (ReadingKind.CLAMP, ReadingKind.MISSED)
+    rows = rows_of(session.book, Step.SWING, session.method)
+    return sum(row.kind not in quiet for row in rows)
+
+
+def unfinished_session(project: Project) -> str | None:
+    """The session to go on with: the one with the latest row that was begun here and not ended."""
+    best: tuple[float, str] | None = None
+    for session in project.sessions:
+        begun = any(row.note.startswith(STEP_NOTE) for row in session.book.rows)
+        if not begun or current_step(session.book, session.method) is Step.RESULT:
+            continue
+        last = next((r.time for r in reversed(session.book.rows) if r.time is not None), None)
+        moment = last.timestamp() if last is not None else 0.0
+        if best is None or moment > best[0]:
+            best = (moment, session.id)
+    return None if best is None else best[1]
+
+
+def _read_only(folder: Path) -> Problem:
+    return Problem(
+        "this project cannot be written to now",
+        folder.name,
+        "it is open in another program, or the folder is read-only",
+        "the only program that has the project open",
+        "Close the other one and open the session again; it is shown for reading until then.",
+    )

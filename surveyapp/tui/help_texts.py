@@ -1,0 +1,121 @@
+"""The longer half of the text catalogue: what F1 says of each step.
+
+Pictures are drawn in plain characters so that every terminal shows them.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from surveyapp.core.steps import Step
+
+CLOSE_HINT: Final = "Escape or F1 closes this page."
+
+_SETUP: Final = """\
+Set up over the mark and level. Let the tripod settle. Read the level
+along the sight (+ = target side low) and across it (+ = right side
+low), in arc-seconds, and the temperature if you have it. None of
+these is needed to go on.
+
+        target
+          |
+      ____|____        F2  level along / level across / temperature
+     |  gyro   |       F8  goes on to the sights
+     |_________|
+       /  |  \\
+"""
+_SIGHTS: Final = """\
+Sight every target in face left, then back in face right. The prompt
+names target and face; F3 takes the other face, F4 another target.
+Typed in full once, minutes and seconds, or the seconds alone, are
+enough afterwards: the degrees are taken from the last sight.
+
+   face L   179-01-56           twice the collimation:
+   face R   359-02-12           L - R + 180 degrees
+
+Sights stand before or after the observation by their place in the
+book. Once the first turning point is written, nothing can be added
+before it any more.
+"""
+_ZERO: Final = """\
+The rotor stands still and the tape swings freely: read the turning
+points of the light mark on the scale, in divisions with their sign.
+Three are needed, five are better. Before and after the observation:
+the tape zero is interpolated between.
+
+   -7.4 |------*-----|-----------*------| +11.4
+               zero of the tape, (x1 + 2 x2 + x3)/4
+"""
+_RUN_UP: Final = """\
+Clamp the gyro and start the rotor. Wait until the spin has settled: a
+rotor that still warms up moves north slowly. You may note the supply:
+24.1 V, 400 Hz, 320 mA. Then lower the gyro gently, so that it swings
+a few degrees to either side.
+
+   ~~~ spin up ~~~|---- steady ----|-- lower, F8 --
+"""
+_TRACKING: Final = """\
+Follow the light mark with the fine motion, without haste and without
+a jerk. Where it stands still it turns: read the circle there and type
+the reading. The time is taken when you begin to type; add @-20 for 20
+seconds ago, @08:15:30 for a moment.
+
+   R   *           *           *      the larger reading is right, east
+      / \\         / \\         / \\
+     /   \\       /   \\       /   \\
+  L *     \\_*__ /     \\__*__/
+
+From the third point on the next one is forecast. A reading outside
+its interval is asked for once. F5 a point not read, F6 strike, Ctrl+Z
+undo. Take points until the interval is the wanted one: the screen
+says ENOUGH.
+"""
+_AMPLITUDE: Final = """\
+The alidade stays clamped. Type the circle reading of the clamp first
+(F2 changes to it), then the turning points of the light mark on the
+scale, in divisions with their sign.
+
+   -9.2 |---*-----------|-----------*---| +8.6
+"""
+_TRANSIT: Final = """\
+The alidade stays clamped near north. Type the circle reading of the
+clamp (F2), then press Space at the moment at which the mark passes
+the zero of the scale. Read the turning points between the passages on
+the scale (F2 changes the kind).
+
+   Space     Space     Space
+     |    *    |         |    *        * turning points on the scale
+   --0---------0----*----0---------
+"""
+_AUTOMATIC: Final = """\
+Start the measurement on the instrument and type what it delivers, one
+round a row: the gyro azimuth of the line, or (F2) the circle reading
+of gyro north, which needs sights of the target before and after.
+"""
+_RESULT: Final = """\
+F8 or Enter shows the result: gyro north, the gyro azimuth of each
+target, the constant, and the grid azimuth with its sigma, every check
+with its clause and verdict. The readings are all in the book; you may
+still go back with F7.
+"""
+
+_BY_STEP: Final = {
+    Step.SETUP: _SETUP,
+    Step.SIGHTS_BEFORE: _SIGHTS,
+    Step.ZERO_BEFORE: _ZERO,
+    Step.RUN_UP: _RUN_UP,
+    Step.ZERO_AFTER: _ZERO,
+    Step.SIGHTS_AFTER: _SIGHTS,
+    Step.RESULT: _RESULT,
+}
+_BY_METHOD: Final = {
+    "tracking": _TRACKING,
+    "amplitude": _AMPLITUDE,
+    "transit": _TRANSIT,
+    "automatic": _AUTOMATIC,
+}
+
+
+def help_of(step: Step, method: str) -> str:
+    """The explanation of a step."""
+    return _BY_METHOD[method] if step is Step.SWING else _BY_STEP[step]

@@ -1,0 +1,220 @@
+"""The guided session: steps, readings, and what the run says so far.
+
+The screen passes keys to the desk and results to the widgets. Each reading is on the disk before
+the screen says so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import ClassVar
+
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal
+from textual.message import Message
+from textual.screen import Screen
+from textual.widgets import Footer, Input
+
+from surveyapp.api_session import Observation
+from surveyapp.core.steps import Step
+from surveyapp.domain.readings import ReadingKind
+from surveyapp.tui import texts
+from surveyapp.tui.desk import Desk, NotWrittenError
+from surveyapp.tui.screens.help import HelpScreen
+from surveyapp.tui.screens.strike import StrikeScreen
+from surveyapp.tui.widgets.entry import EntryLine, ReadingInput
+from surveyapp.tui.widgets.run import RunPane
+from surveyapp.tui.widgets.steps import StepList
+from surveyapp.tui.widgets.titlebar import TitleBar
+
+
+class SessionScreen(Screen[None]):
+    """Observes one session.
+
+    Parameters
+    ----------
+    observation : Observation
+        Open; the screen closes it when it is left.
+    draft : str
+        What was half typed when the session was left.
+    """
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("f1", "help", texts.KEY_HELP),
+        Binding("f2", "kind", texts.KEY_KIND),
+        Binding("f3", "face", texts.KEY_FACE),
+        Binding("f4", "target", texts.KEY_TARGET),
+        Binding("f5", "missed", texts.KEY_MISSED),
+        Binding("f6", "strike", texts.KEY_STRIKE),
+        Binding("ctrl+z", "undo", texts.KEY_UNDO, priority=True),
+        Binding("f7", "step(-1)", texts.KEY_PREVIOUS),
+        Binding("f8", "step(1)", texts.KEY_NEXT),
+        Binding("escape", "leave", texts.KEY_LEAVE),
+    ]
+
+    class Left(Message):
+        """The session is left; what was half typed goes with it."""
+
+        def __init__(self, session: str, draft: str) -> None:
+            super().__init__()
+            self.session = session
+            self.draft = draft
+
+    class ResultWanted(Message):
+        """The result of the session is to be shown."""
+
+        def __init__(self, session: str) -> None:
+            super().__init__()
+            self.session = session
+
+    def __init__(self, observation: Observation, draft: str = "") -> None:
+        super().__init__()
+        self.observation = observation
+        self.desk = Desk(observation)
+        self.draft = draft
+        self.warned = False
+
+    def compose(self) -> ComposeResult:
+        """Title, steps, the run, the entry line, keys."""
+        session = self.observation.session
+        line = f"{session.station}-{session.target}" if session.target else session.station
+        title = texts.SESSION_TITLE.format(
+            project=self.observation.project.name,
+            session=session.id,
+            method=session.method,
+            line=line,
+        )
+        yield TitleBar(title)
+        with Horizontal(id="work"):
+            yield StepList(session.method)
+            yield RunPane(self.desk)
+        yield EntryLine()
+        yield Footer(show_command_palette=False)
+
+    def on_mount(self) -> None:
+        """Show where the book stands."""
+        writable = self.observation.writable
+        self.query_one(TitleBar).state = texts.WRITING if writable else texts.READING_ONLY
+        entry = self.query_one(EntryLine)
+        back = self.observation.clock.set_back_s
+        if back:
+            entry.tell(texts.CLOCK_BACK.format(seconds=back), serious=True)
+        entry.text = self.draft
+        self.query_one(ReadingInput).focus()
+        self.show_book()
+
+    def show_book(self) -> None:
+        """Show steps, readings and prompt as the book stands."""
+        self.query_one(StepList).show(self.observation.steps(), self.desk.step)
+        self.query_one(RunPane).show_book()
+        self.show_prompt()
+        self.refresh_bindings()
+
+    def show_prompt(self) -> None:
+        """Say what is to be read."""
+        entry = self.query_one(EntryLine)
+        entry.ask(self.desk.prompt(), self.desk.hint())
+        entry.understood(self.desk.typing(entry.text))
+
+    def on_run_pane_judged(self) -> None:
+        """The side and the forecast of the next point are known now."""
+        self.show_prompt()
+
+    def on_input_changed(self, event: Input.Changed) -> None:
+        """Say how the typed text is understood; its first character is the moment of reading."""
+        self.warned = False
+        self.query_one(EntryLine).understood(self.desk.typing(event.value))
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        """Write the reading."""
+        if self.desk.step is Step.RESULT:
+            self.post_message(self.ResultWanted(self.observation.session_id))
+        elif event.value.strip() and self.attempt(lambda: self.desk.enter(event.value)):
+            self.query_one(EntryLine).text = ""
+
+    def attempt(self, act: Callable[[], str]) -> bool:
+        """Do something that writes, and tell what became of it."""
+        entry = self.query_one(EntryLine)
+        try:
+            told = act()
+        except NotWrittenError as refusal:
+            entry.tell(str(refusal), serious=True)
+            return False
+        off = self.observation.clock.wall_clock_off_s()
+        entry.tell(texts.CLOCK_SET.format(seconds=off) if off else told)
+        self.show_book()
+        return True
+
+    def on_reading_input_passage(self) -> None:
+        """Space in the empty line: a timed passage."""
+        if self.desk.what().kind is ReadingKind.TRANSIT:
+            self.attempt(self.desk.passage)
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Show the keys that mean something in this step."""
+        what = self.desk.what()
+        shown = {
+            "face": what.face is not None,
+            "target": what.face is not None,
+            "missed": self.desk.step is Step.SWING and self.desk.swings(),
+            "kind": self.desk.has_kinds(),
+        }
+        return shown.get(action, True)
+
+    def action_kind(self) -> None:
+        """Another kind of reading."""
+        self.desk.other_kind()
+        self.show_prompt()
+
+    def action_face(self) -> None:
+        """The other face."""
+        self.desk.other_face()
+        self.show_prompt()
+
+    def action_target(self) -> None:
+        """Another target."""
+        self.desk.other_target()
+        self.show_prompt()
+
+    def action_missed(self) -> None:
+        """A turning point was not read."""
+        self.attempt(self.desk.missed)
+
+    def action_undo(self) -> None:
+        """Strike the latest reading."""
+        self.attempt(self.desk.undo)
+
+    def action_strike(self) -> None:
+        """Choose a reading to strike."""
+        rows = self.desk.strikable()
+        if not rows:
+            self.query_one(EntryLine).tell(texts.NOTHING_TO_STRIKE)
+            return
+
+        def struck(choice: tuple[int, str] | None) -> None:
+            if choice is not None:
+                self.attempt(lambda: self.desk.strike(*choice))
+
+        self.app.push_screen(StrikeScreen(rows), struck)
+
+    def action_step(self, places: int) -> None:
+        """Go on, or back, by one step."""
+        if places > 0 and self.desk.step is Step.RESULT:
+            self.post_message(self.ResultWanted(self.observation.session_id))
+        else:
+            self.attempt(lambda: self.desk.go(places))
+
+    def action_help(self) -> None:
+        """Explain this step."""
+        self.app.push_screen(HelpScreen(self.desk.step, self.observation.session.method))
+
+    def action_leave(self) -> None:
+        """Leave; what is half typed is kept."""
+        text = self.query_one(EntryLine).text
+        if text and not self.warned:
+            self.warned = True
+            self.query_one(EntryLine).tell(texts.DRAFT_KEPT)
+            return
+        self.observation.close()
+        self.post_message(self.Left(self.observation.session_id, text))

@@ -1,0 +1,51 @@
+"""Rows of the field book as rows of text, struck ones visible."""
+
+from __future__ import annotations
+
+from surveyapp.core.progress import Progress
+from surveyapp.domain.readings import FieldBook, Reading, ReadingKind
+from surveyapp.tui import texts
+from surveyapp.tui.views.form import arcsec_text
+
+QUIET = (ReadingKind.NOTE, ReadingKind.STRIKE)
+
+
+def ledger_rows(
+    book: FieldBook, progress: Progress | None, rows: tuple[Reading, ...]
+) -> list[tuple[str, ...]]:
+    """Cells of the given rows: number, time, kind, reading, state, residual."""
+    residuals = {}
+    if progress is not None:
+        residuals = {point.seq: point.residual for point in progress.points}
+    sides = {row.seq: row.side for row in book.live}
+    struck = set(book.struck)
+    return [
+        (
+            str(row.seq),
+            "" if row.time is None else f"{row.time:%H:%M:%S}",
+            _kind(row),
+            row.text or row.note,
+            texts.LEDGER_STRUCK if row.seq in struck else _place(row, sides.get(row.seq)),
+            "" if row.seq in struck else _residual(residuals.get(row.seq)),
+        )
+        for row in rows
+    ]
+
+
+def _kind(row: Reading) -> str:
+    return texts.KIND_NAMES[row.kind].split(",")[0]
+
+
+def _place(row: Reading, side: str | None) -> str:
+    if row.face is not None:
+        return f"{row.target} {row.face}".strip()
+    return "" if side is None else str(side)
+
+
+def _residual(value: float | None) -> str:
+    return "" if value is None else arcsec_text(value, sign=True)
+
+
+def book_rows(book: FieldBook, kinds: tuple[ReadingKind, ...]) -> tuple[Reading, ...]:
+    """Every row of some kinds, struck ones included, in the order of the book."""
+    return tuple(row for row in book.rows if row.kind in kinds)

@@ -1,0 +1,65 @@
+"""Countdown, forecast, gyro north now and the residual channels, as lines of text."""
+
+from __future__ import annotations
+
+from rich.text import Text
+from textual.app import ComposeResult
+from textual.containers import Vertical
+from textual.widgets import Static
+
+from surveyapp.core.progress import Progress
+from surveyapp.tui import texts
+from surveyapp.tui.views.progress import (
+    alert_text,
+    channel_lines,
+    countdown_text,
+    forecast_text,
+    north_text,
+    outlook_text,
+    schuler_text,
+)
+from surveyapp_models.angles import AngleUnit
+
+
+class Forecast(Vertical):
+    """What the run says so far."""
+
+    def __init__(self, unit: AngleUnit, wanted: float | None) -> None:
+        super().__init__()
+        self.unit = unit
+        self.wanted = wanted
+        self.progress: Progress | None = None
+
+    def compose(self) -> ComposeResult:
+        """Countdown, then the lines, then the alarm."""
+        yield Static(id="countdown", markup=False)
+        yield Static(id="facts", markup=False)
+        yield Static(id="alert", markup=False)
+
+    def show(self, progress: Progress) -> None:
+        """Show another state of the run."""
+        self.progress = progress
+        text = Text(f"{north_text(progress, self.unit)}  ", no_wrap=True)
+        outlook = outlook_text(progress, self.wanted)
+        if progress.north is not None:
+            style = "bold" if outlook.endswith(texts.ENOUGH) else ""
+            text.append(f"\n{outlook}", style=style)
+        if progress.schuler_means:
+            text.append(f"\n{schuler_text(progress, self.unit)}")
+        for line in channel_lines(progress, 6):
+            text.append(f"\n{line}")
+        self.query_one("#facts", Static).update(text)
+        alert = self.query_one("#alert", Static)
+        alert.update(alert_text(progress.alert))
+        alert.display = progress.alert is not None
+
+    def count_down(self, remaining_s: float | None) -> bool:
+        """Show the time to the next turning point; True while the moment is near."""
+        if self.progress is None:
+            return False
+        text = countdown_text(self.progress.next, remaining_s)
+        near = text.startswith(texts.NEXT_NOW[:4]) and " NOW " in text
+        line = Text(text, style="reverse bold" if near else "bold")
+        line.append("  " + forecast_text(self.progress, self.unit), style="not reverse")
+        self.query_one("#countdown", Static).update(line)
+        return near

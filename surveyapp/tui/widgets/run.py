@@ -1,0 +1,107 @@
+"""The run under observation: the swing, its forecast, and the readings of the step.
+
+The judgement is computed in a thread on the project as it then was; it comes back as a message.
+"""
+
+from __future__ import annotations
+
+from textual import work
+from textual.app import ComposeResult
+from textual.containers import Vertical
+from textual.message import Message
+
+from surveyapp import api_session
+from surveyapp.core.progress import Progress
+from surveyapp.core.steps import Step, kinds_of
+from surveyapp.domain.readings import ReadingKind
+from surveyapp.errors import SurveyError
+from surveyapp.tui.desk import Desk
+from surveyapp.tui.views.ledger import book_rows, ledger_rows
+from surveyapp.tui.widgets.forecast import Forecast
+from surveyapp.tui.widgets.ledger import Ledger
+from surveyapp.tui.widgets.swing import SwingPlot
+
+
+class RunPane(Vertical):
+    """Swing, forecast and ledger.
+
+    Parameters
+    ----------
+    desk : Desk
+    """
+
+    class Judged(Message):
+        """The run has been judged as it was at some row."""
+
+        def __init__(self, progress: Progress) -> None:
+            super().__init__()
+            self.progress = progress
+
+    class Near(Message):
+        """The next turning point is near."""
+
+    def __init__(self, desk: Desk) -> None:
+        super().__init__()
+        self.desk = desk
+        self.near = False
+
+    def compose(self) -> ComposeResult:
+        """The three parts."""
+        yield SwingPlot()
+        yield Forecast(self.desk.unit, self.desk.observation.wanted_interval())
+        yield Ledger()
+
+    def on_mount(self) -> None:
+        """Count down every second."""
+        self.set_interval(1.0, self.tick)
+
+    def swinging(self) -> bool:
+        """Whether turning points are being read that can be forecast."""
+        tracking = self.desk.observation.session.method == "tracking"
+        return tracking and self.desk.step is Step.SWING
+
+    def show_book(self) -> None:
+        """Show the readings of the step, and judge the run anew while it swings."""
+        swinging = self.swinging()
+        self.query_one(SwingPlot).display = swinging
+        self.query_one(Forecast).display = swinging
+        self.show_rows()
+        if swinging:
+            self.judge()
+
+    def show_rows(self) -> None:
+        """Show the readings of the step."""
+        observation = self.desk.observation
+        kinds = kinds_of(self.desk.step, observation.session.method)
+        if self.desk.step is Step.SWING:
+            kinds = (*kinds, ReadingKind.MISSED)
+        rows = book_rows(observation.book, kinds)
+        self.query_one(Ledger).show(ledger_rows(observation.book, self.desk.progress, rows))
+
+    @work(thread=True, exclusive=True)
+    def judge(self) -> None:
+        """Judge the run in a thread."""
+        observation = self.desk.observation
+        try:
+            result = api_session.progress(observation.project, observation.session_id)
+        except SurveyError:
+            result = Progress()
+        self.post_message(self.Judged(result))
+
+    def on_run_pane_judged(self, message: Judged) -> None:
+        """Show forecast and alarm."""
+        self.desk.progress = message.progress
+        self.query_one(SwingPlot).show(message.progress)
+        self.query_one(Forecast).show(message.progress)
+        self.show_rows()
+        self.tick()
+
+    def tick(self) -> None:
+        """Count down to the next turning point."""
+        if self.desk.progress is None or not self.swinging():
+            return
+        remaining = self.desk.observation.remaining_s(self.desk.progress)
+        near = self.query_one(Forecast).count_down(remaining)
+        if near and not self.near:
+            self.post_message(self.Near())
+        self.near = near

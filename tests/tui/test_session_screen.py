@@ -1,0 +1,205 @@
+"""A whole session is typed on the screen; the book gives to the last digit what it must."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from helpers_tui import SMALL, make_project, readings, rows_on_disk, simulated
+from textual.pilot import Pilot
+from textual.widgets import Static
+
+from surveyapp import api
+from surveyapp.core.simulate.session import book_text
+from surveyapp.core.steps import Step
+from surveyapp.tui import texts
+from surveyapp.tui.app import SurveyApp
+from surveyapp.tui.screens.help import HelpScreen
+from surveyapp.tui.screens.result import ResultScreen
+from surveyapp.tui.screens.session import SessionScreen
+from surveyapp.tui.widgets.entry import EntryLine
+
+
+async def settle(pilot: Pilot[int]) -> None:
+    await pilot.app.workers.wait_for_complete()
+    await pilot.pause()
+
+
+async def enter(pilot: Pilot[int], text: str) -> None:
+    """Type a text and press Enter; the run is judged before the next."""
+    entry = pilot.app.screen.query_one(EntryLine)
+    entry.text = text
+    await pilot.press("enter")
+    await settle(pilot)
+
+
+async def open_session(pilot: Pilot[int]) -> SessionScreen:
+    await settle(pilot)
+    await pilot.press("enter")
+    await settle(pilot)
+    screen = pilot.app.screen
+    assert isinstance(screen, SessionScreen)
+    return screen
+
+
+def told(screen: SessionScreen) -> str:
+    return str(screen.query_one("#message", Static).content)
+
+
+async def go_to(pilot: Pilot[int], screen: SessionScreen, step: Step) -> None:
+    for _ in range(10):
+        if screen.desk.step is step:
+            return
+        await pilot.press("f8")
+        await settle(pilot)
+    raise AssertionError(step)
+
+
+ORDER = {
+    "tape_zero": (Step.ZERO_BEFORE, Step.ZERO_AFTER),
+    "backsight": (Step.SIGHTS_BEFORE, Step.SIGHTS_AFTER),
+    "reversal": (Step.SWING, Step.SWING),
+}
+
+
+async def test_a_whole_tracking_session_typed_gives_what_orient_gives(tmp_path: Path) -> None:
+    session = simulated(points=9)
+    folder = make_project(tmp_path / "p")
+    swing = [i for i, row in enumerate(session.rows) if row["kind"] == "reversal"]
+    before = sorted(session.rows[: swing[0]], key=lambda r: r["kind"])
+    during = list(session.rows[swing[0] : swing[-1] + 1])
+    after = sorted(session.rows[swing[-1] + 1 :], key=lambda r: r["kind"], reverse=True)
+    typed = [*before, *during, *after]
+    app = SurveyApp(str(folder))
+    async with app.run_test(size=SMALL) as pilot:
+        screen = await open_session(pilot)
+        for number, row in enumerate(typed):
+            place = 0 if number < len(before) + len(during) else 1
+            await go_to(pilot, screen, ORDER[row["kind"]][place])
+            await enter(pilot, row["value"])
+            assert told(screen).startswith("on disk: row"), (row, told(screen))
+        await pilot.press("f8")
+        await settle(pilot)
+        await pilot.press("f8")
+        await settle(pilot)
+        assert isinstance(app.screen, ResultScreen)
+        assert app.screen.result is not None
+        shown = app.screen.result.to_dict()
+    assert readings(rows_on_disk(folder)) == [(row["kind"], row["value"]) for row in typed]
+    expected = api.orient(folder, session="r1").to_dict()
+    assert shown == expected
+    # an independent route: the same readings as another hand would have written them
+    other = make_project(tmp_path / "other")
+    plain = [{**row, "time": "", "elapsed_s": "", "seq": str(n)} for n, row in enumerate(typed, 1)]
+    (other / "observations" / "r1.csv").write_text(book_text(tuple(plain)), encoding="utf-8")
+    by_hand = api.orient(other, session="r1").to_dict()["sessions"][0]
+    assert shown["sessions"][0]["gyro_north"]["deg"] == pytest.approx(
+        by_hand["gyro_north"]["deg"], abs=0.2 / 3600.0
+    )
+
+
+async def test_short_forms_misses_strikes_and_undo(tmp_path: Path) -> None:
+    folder = make_project(tmp_path / "p")
+    app = SurveyApp(str(folder))
+    async with app.run_test(size=SMALL) as pilot:
+        screen = await open_session(pilot)
+        await go_to(pilot, screen, Step.SWING)
+        for text in ("102-00-14", "98-01-04", "59 08", "02 30", "101-58-02"):
+            await enter(pilot, text)
+        await pilot.press("f5")
+        await settle(pilot)
+        assert "missed" in told(screen)
+        await enter(pilot, "56-50")
+        await pilot.press("ctrl+z")
+        await settle(pilot)
+        await pilot.press("f6")
+        await pilot.pause()
+        await pilot.press("down", *"shaky", "enter")
+        await settle(pilot)
+        assert "shaky" in told(screen)
+    rows = rows_on_disk(folder)
+    assert readings(rows) == [
+        ("reversal", "102-00-14"),
+        ("reversal", "98-01-04"),
+        ("reversal", "101-59-08"),
+        ("reversal", "98-02-30"),
+        ("reversal", "101-58-02"),
+        ("missed", ""),
+        ("reversal", "101-56-50"),
+        ("strike", rows[-2]["value"]),
+        ("strike", rows[-1]["value"]),
+    ]
+    struck = {row["seq"]: row for row in rows}
+    assert struck[rows[-2]["value"]]["value"] == "101-56-50"
+    assert struck[rows[-1]["value"]]["kind"] == "reversal"
+
+
+async def test_an_implausible_reading_is_asked_for_once_and_then_written(tmp_path: Path) -> None:
+    folder = make_project(tmp_path / "p")
+    app = SurveyApp(str(folder))
+    async with app.run_test(size=SMALL) as pilot:
+        screen = await open_session(pilot)
+        await go_to(pilot, screen, Step.SWING)
+        for text in ("102-00-14", "98-01-04", "101-59-08", "98-02-30"):
+            await enter(pilot, text)
+        await enter(pilot, "98-58-02")
+        assert "other side" in told(screen)
+        assert screen.query_one(EntryLine).text == "98-58-02"
+        await pilot.press("backspace", "3", "enter")
+        await settle(pilot)
+        assert "other side" in told(screen), "another text is asked about anew"
+        for _ in range(8):
+            await pilot.press("backspace")
+        await enter(pilot, "101-48-02")
+        assert "from the forecast" in told(screen)
+        await pilot.press("enter")
+        await settle(pilot)
+        assert told(screen).startswith("on disk")
+        await enter(pilot, "361-00-00")
+        assert told(screen).startswith("not possible")
+    assert [value for _, value in readings(rows_on_disk(folder))][-1] == "101-48-02"
+
+
+async def test_escape_keeps_what_is_half_typed_and_the_step_returns(tmp_path: Path) -> None:
+    folder = make_project(tmp_path / "p")
+    app = SurveyApp(str(folder))
+    async with app.run_test(size=SMALL) as pilot:
+        screen = await open_session(pilot)
+        await go_to(pilot, screen, Step.SWING)
+        await enter(pilot, "102-00-14")
+        await pilot.press("9", "8", "-", "escape")
+        await settle(pilot)
+        assert told(screen) == texts.DRAFT_KEPT
+        await pilot.press("escape")
+        await settle(pilot)
+        again = await open_session(pilot)
+        assert again is not screen
+        assert again.query_one(EntryLine).text == "98-"
+        assert again.desk.step is Step.SWING
+    app = SurveyApp(str(folder))
+    async with app.run_test(size=SMALL) as pilot:
+        await settle(pilot)
+        await settle(pilot)
+        assert isinstance(app.screen, SessionScreen), "an unfinished session opens by itself"
+        assert app.screen.desk.step is Step.SWING
+        await pilot.press("f1")
+        await settle(pilot)
+        assert isinstance(app.screen, HelpScreen)
+        await pilot.press("escape")
+        await settle(pilot)
+        assert isinstance(app.screen, SessionScreen)
+
+
+async def test_what_comes_after_the_first_turning_point_is_not_before_it(tmp_path: Path) -> None:
+    folder = make_project(tmp_path / "p")
+    app = SurveyApp(str(folder))
+    async with app.run_test(size=SMALL) as pilot:
+        screen = await open_session(pilot)
+        await go_to(pilot, screen, Step.SWING)
+        await enter(pilot, "102-00-14")
+        await pilot.press("f7", "f7", "f7")
+        await settle(pilot)
+        assert screen.desk.step is Step.SIGHTS_BEFORE
+        await enter(pilot, "175-00-09")
+        assert told(screen) == texts.CLOSED_BEFORE
+    assert readings(rows_on_disk(folder)) == [("reversal", "102-00-14")]
