@@ -8,7 +8,7 @@ the station's latitude (physics.md 1.4).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +19,9 @@ from surveyapp.core.goodness import FitTest, goodness_of_fit
 from surveyapp.core.gyrofit import design, fit_swing, schuler_means
 from surveyapp.core.reduction import Reduction, need_points, reading_sigma, tape_zero_parts
 from surveyapp.core.resolution import reading_resolution, rounding_sigma
+from surveyapp.core.sights import moments
 from surveyapp.core.swingfit import ClampedFit, fit_clamped
-from surveyapp.core.tapezero import TapeZeroCoefficient, reduce_tape_zero, with_levels
+from surveyapp.core.tapezero import TapeZero, TapeZeroCoefficient, reduce_tape_zero, with_levels
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession, ResultWarning
@@ -64,7 +65,8 @@ def _transit_middle(
     """Closed form B = v + a sin(pi dt / (2 T2)), and dt and a (physics.md 1.4, 2.3)."""
     swing = observed.swing
     need_points(session, found=swing.divisions.size, needed=3, kind="transit")
-    usable = np.flatnonzero(swing.divisions == swing.divisions[0])
+    written = np.array([row.value for row in observed.passages], dtype=np.float64)
+    usable = np.flatnonzero(written == written[0])
     need_points(session, found=usable.size, needed=3, kind="transit (of one division)")
     times, after = swing.passages_s[usable], swing.after[usable]
     parity = 1.0 if int(swing.index[0]) % 2 == 0 else -1.0
@@ -84,7 +86,7 @@ def _transit_middle(
     amplitude = 0.5 * float(right.mean() - left.mean())
     sigma_a = 0.5 * swing.sigma_div * math.sqrt(1.0 / right.size + 1.0 / left.size)
     phase = 0.5 * math.pi * dt / period
-    value = float(swing.divisions[0]) + amplitude * math.sin(phase)
+    value = float(swing.divisions[usable].mean()) + amplitude * math.sin(phase)
     sigma_t = swing.sigma_s * float(np.sqrt(weights @ weights))
     by_dt = amplitude * math.cos(phase) * 0.5 * math.pi / period
     sigma = math.hypot(math.sin(phase) * sigma_a, by_dt * sigma_t)
@@ -161,9 +163,11 @@ def reduce_nontracking(
     clamp, clamp_sigma = clamp_reading(session)
     ratio, ratio_sigma, scale = _constants(session, card, latitude)
     observed = observe(session, card)
-    middle, fit, extras = _middle(session, observed, card, estimator, latitude)
     zero = reduce_tape_zero(session.book, [*observed.readings, *observed.passages])
-    zero = None if zero is None else with_levels(zero, session.book, card)
+    if zero is not None:
+        zero = with_levels(zero, session.book, card)
+        observed = _without_tape_drift(observed, zero, ratio)
+    middle, fit, extras = _middle(session, observed, card, estimator, latitude)
     coefficient = TapeZeroCoefficient(-ratio * scale, 0.0, "lambda", latitude is not None)
     d = 0.0 if zero is None else zero.value_div
     north = Uncertain(
@@ -225,6 +229,24 @@ def reduce_nontracking(
     )
 
 
+def _without_tape_drift(observed: Observed, zero: TapeZero, ratio: float) -> Observed:
+    """Refer readings and passages to the tape zero at the middle of the run.
+
+    The middle of a clamped swing follows the tape zero by lambda / (1 + lambda).
+    """
+    times = moments([*observed.readings, *observed.passages])
+    if times is None or zero.drift_div_per_s == 0.0:
+        return observed
+    shift = ratio / (1.0 + ratio) * zero.drift_at(times)
+    count = len(observed.readings)
+    swing = replace(
+        observed.swing,
+        readings=observed.swing.readings - shift[:count],
+        divisions=observed.swing.divisions - shift[count:],
+    )
+    return replace(observed, swing=swing)
+
+
 def _constants(
     session: OrientationSession, card: InstrumentCard, latitude: float | None
 ) -> tuple[float, float, float]:
@@ -269,7 +291,7 @@ def _middle(
             )
         closed, dt, amplitude = _transit_middle(session, observed, period)
         linear = amplitude * 0.5 * math.pi * dt / period
-        origin = float(observed.swing.divisions[0])
+        origin = float(observed.swing.divisions.mean())
         extras = (
             ("time difference east minus west", dt, "s"),
             ("amplitude", amplitude, "div"),

@@ -73,6 +73,11 @@ class TapeZero:
     factor_before: float
     factor_after: float
     interpolation: Literal["time", "mean", "single", "tilt"]
+    drift_div_per_s: float = 0.0
+
+    def drift_at(self, times: Floats) -> Floats:
+        """Zero at the moments of the run's rows minus the zero in force, which is their mean."""
+        return self.drift_div_per_s * (times - float(times.mean()))
 
 
 def rest_position(readings: Floats, sides: Floats) -> RestPosition:
@@ -127,9 +132,15 @@ def reduce_tape_zero(book: FieldBook, swing: Sequence[Reading]) -> TapeZero | No
             float(after is not None),
             "single",
         )
-    fraction, how = _fraction(groups[Place.BEFORE], groups[Place.AFTER], swing)
-    value = (1.0 - fraction) * before.value_div + fraction * after.value_div
-    return TapeZero(before, after, value, 1.0 - fraction, fraction, how)
+    clock = _clock(groups[Place.BEFORE], groups[Place.AFTER], swing)
+    if clock is None:
+        value = 0.5 * (before.value_div + after.value_div)
+        return TapeZero(before, after, value, 0.5, 0.5, "mean")
+    first, middle, last = clock
+    drift = (after.value_div - before.value_div) / (last - first)
+    fraction = (middle - first) / (last - first)
+    value = before.value_div + drift * (middle - first)
+    return TapeZero(before, after, value, 1.0 - fraction, fraction, "time", drift)
 
 
 def _group(rows: Sequence[Reading]) -> RestPosition | None:
@@ -140,16 +151,17 @@ def _group(rows: Sequence[Reading]) -> RestPosition | None:
     return rest_position(readings, sides)
 
 
-def _fraction(
+def _clock(
     before: Sequence[Reading], after: Sequence[Reading], swing: Sequence[Reading]
-) -> tuple[float, Literal["time", "mean"]]:
+) -> tuple[float, float, float] | None:
+    """Mean moments of the zero before, the run and the zero after, None where not all are timed."""
     times = moments([*before, *after, *swing])
     if times is None or not swing:
-        return 0.5, "mean"
+        return None
     first = float(times[: len(before)].mean())
     last = float(times[len(before) : len(before) + len(after)].mean())
     middle = float(times[len(before) + len(after) :].mean())
-    return ((middle - first) / (last - first), "time") if last > first else (0.5, "mean")
+    return (first, middle, last) if last > first else None
 
 
 def mean_level(book: FieldBook, kind: ReadingKind, place: Place) -> float | None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -94,6 +94,20 @@ def turning_points(
     )
 
 
+def without_tape_drift(
+    points: TurningPoints, zero: TapeZero | None, coefficient: TapeZeroCoefficient | None
+) -> TurningPoints:
+    """Refer every turning point to the tape zero at the middle of the run.
+
+    A zero that changes from before to after moves the middle of the swing while it is observed:
+    the known regressor -lambda mu d(t) of physics.md section 4.
+    """
+    times = moments(points.rows)
+    if zero is None or coefficient is None or times is None or zero.drift_div_per_s == 0.0:
+        return points
+    return replace(points, values=points.values + coefficient.value * zero.drift_at(times))
+
+
 def period_from_times(rows: Sequence[Reading], index: Floats) -> float | None:
     """Full period [s] from the moments of the turning points, None without them."""
     times = moments(rows)
@@ -131,6 +145,8 @@ def reduce_tracking(
         if the damped fit does not converge.
     """
     points = turning_points(session)
+    zero, coefficient, correction, warnings = tape_zero_of(session, card, points.rows, latitude)
+    points = without_tape_drift(points, zero, coefficient)
     chosen = estimator or (
         "least-squares" if points.values.size >= LEAST_SQUARES_FROM else "schuler"
     )
@@ -151,7 +167,6 @@ def reduce_tracking(
         card_sigma=card.sigma.reversal,
         resolution=points.resolution,
     )
-    zero, coefficient, correction, warnings = tape_zero_of(session, card, points.rows, latitude)
     north = Uncertain(
         points.origin + observed,
         {Source("turning points", session.id, sigma.dof): norm * sigma.value},
@@ -263,16 +278,16 @@ def _point_results(points: TurningPoints, fit: SwingFit) -> tuple[PointResult, .
             seq=row.seq,
             index=int(index),
             side="R" if side > 0 else "L",
-            observed=wrap_two_pi(points.origin + value),
-            fitted=wrap_two_pi(points.origin + value - residual),
+            observed=observed,
+            fitted=wrap_two_pi(observed - residual),
             residual=residual,
             elapsed_s=row.elapsed_s,
         )
-        for row, index, side, value, residual in zip(
+        for row, index, side, observed, residual in zip(
             points.rows,
             points.index.tolist(),
             points.sides.tolist(),
-            points.values.tolist(),
+            [row.value or 0.0 for row in points.rows],
             fit.residuals.tolist(),
             strict=True,
         )
