@@ -11,6 +11,7 @@ from surveyapp.diagnosis.engine import diagnose
 from surveyapp.diagnosis.problem import Problem
 from surveyapp.diagnosis.result import Diagnosis
 from surveyapp.diagnosis.reversal_run import TurningPoints, reversal_run
+from surveyapp.diagnosis.words import plain_words
 
 __all__ = [
     "Determination",
@@ -19,5 +20,6 @@ __all__ = [
     "TurningPoints",
     "campaign",
     "diagnose",
+    "plain_words",
     "reversal_run",
 ]

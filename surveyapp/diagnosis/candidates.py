@@ -194,8 +194,6 @@ def _shapes(problem: Problem, columns: Mapping[str, Array], root: Array) -> list
         inner = np.unique(position)[1:-2]
         kicks = [((position > p) * amplitude)[:, None] for p in inner]
         shapes.append(_shape("amplitude_step", kicks, 2, root))
-        bend = np.column_stack([amplitude * x**2, amplitude * x**3])
-        shapes.append(_shape("amplitude_smooth", [bend], 2, root))
         shapes.append(_periodic("long_oscillation", x, (0.8, 1.45), root, n=problem.size))
     else:
         if "transport_step" not in taken:

@@ -52,6 +52,12 @@ class Level:
         return tuple(sorted((*self.fits, *self.noises), key=lambda fit: fit.bic))
 
     @property
+    def stochastic(self) -> bool:
+        """Whether correlated noise alone beats every deterministic set by the margin."""
+        pure = [fit.bic for fit in self.noises if not fit.members]
+        return bool(pure) and bool(self.fits) and min(pure) + MARGIN <= self.fits[0].bic
+
+    @property
     def preferred(self) -> Fit | None:
         """The best deterministic set, or a simpler one within the margin that it merely spans."""
         if not self.fits:
@@ -104,7 +110,7 @@ def may_join_gross(candidate: Candidate, fit: Fit) -> bool:
 def next_level(problem: Problem, level: Level, candidates: Iterable[Candidate]) -> Level:
     """Best fit of every set that has one candidate more than the best sets of a level."""
     pool = tuple(candidates)
-    drafts: dict[frozenset[str], tuple[float, tuple[Member, ...], Fit]] = {}
+    drafts: dict[frozenset[str], tuple[float, float, tuple[Member, ...], Fit]] = {}
     for anchor in level.fits[:ANCHORS]:
         q = orthonormal_design(anchor)
         for candidate in pool:
@@ -115,13 +121,15 @@ def next_level(problem: Problem, level: Level, candidates: Iterable[Candidate]) 
                 continue
             bic, members = draft
             key = anchor.key | {candidate.id}
-            if key not in drafts or bic < drafts[key][0]:
-                drafts[key] = (bic, members, anchor)
+            # Each further gross error must earn the margin, as any other name.
+            handicapped = bic + MARGIN * (sum(m.candidate.count for m in members) - len(key))
+            if key not in drafts or handicapped < drafts[key][0]:
+                drafts[key] = (handicapped, bic, members, anchor)
     if not drafts:
         return Level(level.depth + 1, (), ())
-    best = min(bic for bic, _, _ in drafts.values())
+    best = min(bic for _, bic, _, _ in drafts.values())
     fits = []
-    for bic, members, anchor in drafts.values():
+    for _, bic, members, anchor in drafts.values():
         if level.depth == 0 or bic <= best + REFINED:
             fits.append(_refined(problem, members, anchor, every=level.depth > 0))
     fits.sort(key=lambda fit: fit.bic)
@@ -188,6 +196,8 @@ def within_margin(level: Level) -> tuple[Fit, ...]:
         return level.every[:1]
     near = [f for f in level.every if f.bic < best.bic + MARGIN and f.key != best.key]
     rivals = [fit for fit in near if not spans(fit, best)]
+    # What a smaller set within the margin explains needs no more.
+    rivals = [f for f in rivals if not any(g.key < f.key for g in rivals)]
     return tuple(sorted((best, *rivals), key=lambda fit: (fit.bic, fit is not best)))
 
 

@@ -40,6 +40,8 @@ from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem as InputProblem
 from surveyapp.errors import SurveyError
 
+MOST_OPTIONS = 8
+"""Sets that are told; the ledger has them all."""
 SEPARATING = {
     "quadratic": "a longer record, or the same at another time of day",
     "smooth": "a longer record",
@@ -82,7 +84,7 @@ def diagnose(
     digest = problem.digest()
     found = search(problem, draws=draws, confirm=confirm)
     base = found.levels[0].fits[0]
-    averaged = averaged_value(problem, _averaged_fits(found))
+    averaged = averaged_value(problem, found.levels[-1].every)
     battery = run_battery(problem, base, int(digest[:15], 16))
     adopted = _adoptions(problem, found, digest, confirm)
     ambiguous = _ambiguities(problem, found)
@@ -160,11 +162,6 @@ def _check(problem: Problem, confirm: Problem | None) -> None:
             )
     if faults:
         raise SurveyError(faults)
-
-
-def _averaged_fits(found: Search) -> tuple[Fit, ...]:
-    """Sets over which the value is averaged: all of the last depth, stochastic ones included."""
-    return found.levels[-1].every
 
 
 def _quantity(problem: Problem, value: Value) -> Quantity:
@@ -294,6 +291,7 @@ def _ambiguities(problem: Problem, found: Search) -> tuple[Ambiguity, ...]:
     if not options:
         return ()
     best = min(fit.bic for fit in found.near)
+    options = dict(list(options.items())[:MOST_OPTIONS])
     fits = list(options.values())
     texts = []
     for fit in fits:

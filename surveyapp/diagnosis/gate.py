@@ -15,7 +15,7 @@ from surveyapp.diagnosis.problem import Array, Problem
 
 GATE = 0.05
 """Family p at which the search goes on (diagnosis.md step 3)."""
-NOTABLE = 1.0
+NOTABLE = 0.5
 """Gain of -2 log likelihood below which correlated noise is white noise."""
 FINE = 0.3
 """Rounding below this share of the noise's standard deviation changes nothing."""
@@ -90,20 +90,21 @@ def statistic(problem: Problem, fit: Fit, item: Projected, q: Array) -> float:
 
 
 def imitating_noise(
-    problem: Problem, without: Fit, identity: str, pool: Iterable[Candidate], draws: int
+    problem: Problem, fits: tuple[Fit, Fit], identity: str, pool: Iterable[Candidate], draws: int
 ) -> str | None:
     """Kind of correlated noise that would show an effect as strong as this one too often.
 
     Each stochastic rival is fitted to the model without the effect, as if the effect were nothing
     but noise; the effect, with its whole scan, then runs over draws of that noise. BIC alone does
     not do this: a walk that happens to look like a ramp is less likely than a ramp, and yet every
-    tenth walk looks like one.
+    tenth walk looks like one. A walk leaves traces of itself beside the effect that it imitates:
+    where none are left, it is no rival.
 
     Parameters
     ----------
     problem : Problem
-    without : Fit
-        The model without the effect.
+    fits : tuple of Fit
+        The model with the effect and without it.
     identity : str
     pool : iterable of Candidate
     draws : int
@@ -113,7 +114,9 @@ def imitating_noise(
     str or None
         None where every rival is refuted.
     """
-    if problem.sigma_known:
+    after, without = fits
+    traces = [f.noise.gain for f in with_noise(problem, after) if f.noise is not None]
+    if problem.sigma_known or max(traces, default=np.inf) < NOTABLE:
         return None
     q = orthonormal_design(without)
     joining = [c for c in pool if may_join(c, without)]

@@ -102,7 +102,8 @@ def search(problem: Problem, *, draws: int, confirm: Problem | None) -> Search:
     while True:
         fit = levels[-1].preferred or base
         gates.append(open_gate(problem, fit, current, draws))
-        if not gates[-1].fired or len(levels) - 1 >= deepest(problem.size):
+        done = len(levels) - 1 >= deepest(problem.size)
+        if not gates[-1].fired or done or (len(levels) > 1 and levels[-1].stochastic):
             break
         level, dropped = _possible(problem, next_level(problem, levels[-1], current))
         implausible |= dropped
@@ -211,7 +212,7 @@ def _failure(
             other = leave_one_out(problem, without, mask)
             if with_all is not None and other is not None and with_all >= other:
                 return name, "it does not help to predict observations that were left out"
-        kind = imitating_noise(problem, without, name, proofs.pool, proofs.draws)
+        kind = imitating_noise(problem, (after, without), name, proofs.pool, proofs.draws)
         if kind is not None:
             return name, f"{NOISE_WORDS[kind]} would look like it too often"
         if proofs.confirm is not None:

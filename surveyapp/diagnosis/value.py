@@ -19,6 +19,8 @@ from surveyapp.diagnosis.problem import Array, Problem
 NEAR_POSITIONS = 6.0
 """BIC within which other positions of a searched effect contribute to its uncertainty."""
 MOST_POSITIONS = 8
+WIDENING = 4.0
+"""BIC within which autocorrelated noise widens the averaged value."""
 SHAPE_OBSERVATIONS = frozenset({"outlier"})
 
 
@@ -200,17 +202,32 @@ def neighbours(problem: Problem, fit: Fit, member: Member) -> tuple[Fit, ...]:
 
 
 def averaged_value(problem: Problem, fits: Sequence[Fit]) -> Value:
-    """Model average over sets of one depth, with the variance between the models."""
+    """Model average over sets of one depth, with the variance between the models.
+
+    Where autocorrelated noise is as good an explanation as any other within 4 BIC, sigma is not
+    smaller than under that noise: what is unattributed widens the result. The walk of a constant
+    over a campaign is no knowledge of its mean, so that a campaign counts it as such noise too.
+    """
+    if not problem.has_swing:
+        plain = [f for f in fits if f.noise is None or f.noise.kind != "random_walk"]
+        fits = plain or fits
     bics = np.array([fit.bic for fit in fits])
     weights = np.exp(-0.5 * (bics - bics.min()))
     weights /= weights.sum()
     keep = weights > 1e-3
     values = [value_of(problem, fit) for fit, k in zip(fits, keep, strict=True) if k]
+    near = [
+        value.sigma
+        for fit, value in zip(
+            [f for f, k in zip(fits, keep, strict=True) if k], values, strict=True
+        )
+        if fit.noise is not None and fit.noise.kind == "ar1" and fit.bic < bics.min() + WIDENING
+    ]
     weights = weights[keep] / weights[keep].sum()
     middle = np.array([v.value for v in values])
     mean = float(weights @ middle)
     within = np.array([v.sigma**2 for v in values])
-    variance = float(weights @ (within + (middle - mean) ** 2))
+    variance = max(float(weights @ (within + (middle - mean) ** 2)), *[s**2 for s in near], 0.0)
     finite = [v.dof for v in values]
     dof = math.inf if any(math.isinf(d) for d in finite) else float(weights @ np.array(finite))
     return Value(mean, math.sqrt(variance), dof)
