@@ -68,7 +68,7 @@ def _lengths(rows: Sequence[TraverseRow], stations: Mapping[str, Station]) -> di
     zeniths = {(row.at, row.to): row.value for row in rows if row.kind is K.ZENITH}
     found: dict[str, float] = {}
     for row in rows:
-        if row.kind not in _LENGTHS or row.value is None:
+        if row.kind not in _LENGTHS or row.value is None or row.value <= 0.0:
             continue
         steep = zeniths.get((row.at, row.to)) if row.kind is K.SLOPE_DISTANCE else None
         length = row.value * (1.0 if steep is None else math.sin(steep))
@@ -78,8 +78,10 @@ def _lengths(rows: Sequence[TraverseRow], stations: Mapping[str, Station]) -> di
             a, b = stations.get(row.at), stations.get(name)
             if a is None or b is None or f"{row.at}|{name}" in found:
                 continue
-            if a.e is not None and a.n is not None and b.e is not None and b.n is not None:
-                found[f"{row.at}|{name}"] = math.hypot(b.e - a.e, b.n - a.n)
+            if a.e is None or a.n is None or b.e is None or b.n is None:
+                continue
+            if (length := math.hypot(b.e - a.e, b.n - a.n)) > 0.0:
+                found[f"{row.at}|{name}"] = length
     return found
 
 

@@ -30,6 +30,7 @@ from surveyapp.domain.adjustment import (
 )
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network, Status
+from surveyapp.errors import SurveyError
 
 FAMILY_LEVEL = 0.05
 """Probability of accusing any observation of a network that has no gross error."""
@@ -76,7 +77,7 @@ def solve_network(network: Network, model: Model) -> Converged:
     except NotConverged as failure:
         try:
             state = iterate(model, approximate(network, model, fresh=True))
-        except NotConverged:
+        except (NotConverged, SurveyError):
             raise refuse(names, failure) from None
     if len(state.solved.undetermined):
         raise refuse_undetermined(network, state)
