@@ -1,0 +1,151 @@
+"""What a record is made of: plain blocks that a terminal and a PDF page can both show.
+
+A section turns results into blocks; whoever shows blocks knows no surveying. All text is final:
+numbers are formatted by the section, lengths in figures are millimetres on paper.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+Tone = Literal["body", "small", "warning"]
+Stroke = Literal["axis", "grid", "data", "mean", "limit", "bar"]
+Anchor = Literal["start", "middle", "end"]
+Shape = Literal["circle", "dot", "cross", "square"]
+
+
+@dataclass(frozen=True, slots=True)
+class Heading:
+    """A heading; level 1 opens a section."""
+
+    text: str
+    level: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Paragraph:
+    """Running text."""
+
+    text: str
+    tone: Tone = "body"
+
+
+@dataclass(frozen=True, slots=True)
+class KeyValues:
+    """Facts, one a line."""
+
+    pairs: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A table.
+
+    Parameters
+    ----------
+    head : tuple of str
+    rows : tuple of tuple of str
+        Each as long as the head.
+    align : str
+        One letter a column: l, r or c; empty: all to the left.
+    struck : frozenset of int
+        Rows that were struck: shown, with a line through them.
+    strong : frozenset of int
+        Rows that are results.
+    row_height_mm : float or None
+        At least this high: for forms to be filled in by hand.
+    lined : bool
+        Whether every cell is framed.
+    """
+
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    align: str = ""
+    struck: frozenset[int] = frozenset()
+    strong: frozenset[int] = frozenset()
+    row_height_mm: float | None = None
+    lined: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A straight line of a figure [mm]."""
+
+    start: tuple[float, float]
+    end: tuple[float, float]
+    stroke: Stroke = "axis"
+
+
+@dataclass(frozen=True, slots=True)
+class Polyline:
+    """A curve of a figure through its points [mm]."""
+
+    points: tuple[tuple[float, float], ...]
+    stroke: Stroke = "data"
+
+
+@dataclass(frozen=True, slots=True)
+class Marker:
+    """A mark of a figure at a point [mm]."""
+
+    at: tuple[float, float]
+    shape: Shape = "circle"
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """A text of a figure [mm]."""
+
+    at: tuple[float, float]
+    text: str
+    anchor: Anchor = "middle"
+    upright: bool = False
+
+
+Primitive = Line | Polyline | Marker | Label
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """A figure of vector primitives, its origin at the lower left [mm]."""
+
+    title: str
+    width_mm: float
+    height_mm: float
+    primitives: tuple[Primitive, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Signature:
+    """Lines to be signed, one a role."""
+
+    roles: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PageBreak:
+    """What follows begins on a new page."""
+
+
+Block = Heading | Paragraph | KeyValues | Table | Figure | Signature | PageBreak
+
+
+@dataclass(frozen=True, slots=True)
+class Document:
+    """A whole document.
+
+    Parameters
+    ----------
+    title : str
+    running_head : str
+        At the top of every page.
+    foot : tuple of str
+        At the bottom of every page, beside the page number.
+    blocks : tuple of Block
+    """
+
+    title: str
+    running_head: str
+    foot: tuple[str, ...]
+    blocks: tuple[Block, ...] = field(default=())

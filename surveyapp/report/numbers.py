@@ -1,0 +1,52 @@
+"""Numbers as a record prints them: one place for decimals, signs and what is not known."""
+
+from __future__ import annotations
+
+import math
+
+from surveyapp.domain.results import AngleResult, to_arcsec
+from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, format_angle
+
+NOTHING = "-"
+
+
+def plain(value: float | None, decimals: int = 1, *, sign: bool = False) -> str:
+    """A number with fixed decimals, ``-`` where it is not determined."""
+    if value is None or not math.isfinite(value):
+        return NOTHING
+    text = f"{value:+.{decimals}f}" if sign else f"{value:.{decimals}f}"
+    return text.replace("-0.", "0.", 1) if float(text) == 0.0 and not sign else text
+
+
+def seconds(angle: float | None, decimals: int = 2, *, sign: bool = False) -> str:
+    """A small angle [rad] in arc-seconds."""
+    return plain(to_arcsec(angle), decimals, sign=sign)
+
+
+def signed_angle(angle: float | None) -> str:
+    """A small angle [rad] with its sign: seconds, from a minute on minutes and seconds too."""
+    if angle is None or not math.isfinite(angle):
+        return NOTHING
+    total = round(abs(angle) * RHO_ARCSEC, 2)
+    sign = "-" if angle < 0.0 else "+"
+    minutes, rest = divmod(total, 60.0)
+    if not minutes:
+        return f'{sign}{rest:.2f}"'
+    return f'{sign}{minutes:.0f}\'{rest:05.2f}" ({sign}{total:.2f}")'
+
+
+def direction(angle: float | None, unit: AngleUnit, decimals: int = 1) -> str:
+    """A direction [rad] in the project's unit."""
+    return NOTHING if angle is None else format_angle(angle, unit, decimals)
+
+
+def with_sigma(item: AngleResult | None, unit: AngleUnit) -> tuple[str, str, str]:
+    """A direction, its sigma and the half-width of its 95 % interval [arcsec]."""
+    if item is None:
+        return NOTHING, NOTHING, NOTHING
+    return direction(item.value, unit), seconds(item.sigma), seconds(item.interval95)
+
+
+def four_digits(value: float | None) -> str:
+    """A number with four significant digits."""
+    return NOTHING if value is None or not math.isfinite(value) else f"{value:.4g}"

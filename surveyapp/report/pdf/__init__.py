@@ -1,0 +1,261 @@
+"""Blocks on paper: the only package that imports reportlab, and it knows no surveying.
+
+The same document gives the same bytes: no clock, no random identifier. Latin, Greek and Cyrillic
+are drawn with an embedded face, Chinese, Japanese and Korean with a TrueType face that is named or
+found, else with the CID faces that PDF viewers bring.
+"""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+from pathlib import Path
+
+from reportlab.lib.pagesizes import A4
+from reportlab.lib.units import mm
+from reportlab.pdfbase import pdfmetrics
+from reportlab.pdfgen.canvas import Canvas
+from reportlab.platypus import (
+    BaseDocTemplate,
+    CondPageBreak,
+    Flowable,
+    Frame,
+    KeepTogether,
+    PageTemplate,
+    Spacer,
+)
+from reportlab.platypus import PageBreak as NewPage
+from reportlab.platypus import Paragraph as Text
+from reportlab.platypus import Table as Grid
+
+from surveyapp.report.blocks import (
+    Block,
+    Document,
+    Figure,
+    Heading,
+    KeyValues,
+    PageBreak,
+    Paragraph,
+    Signature,
+    Table,
+)
+from surveyapp.report.pdf.figures import figure_flowables
+from surveyapp.report.pdf.fonts import Faces, register_faces
+from surveyapp.report.pdf.style import (
+    ACCENT,
+    BODY,
+    CELL,
+    INK,
+    MARGIN,
+    QUIET,
+    RULE,
+    SMALL,
+    WIDTH,
+    style_of,
+)
+from surveyapp.report.pdf.tables import table_flowable
+from surveyapp.report.typeface import runs
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """What was written: the bytes and the number of pages."""
+
+    data: bytes
+    pages: int
+
+
+def write_pdf(document: Document, *, face: Path | None = None) -> Written:
+    """Write a document as PDF.
+
+    Parameters
+    ----------
+    document : Document
+    face : Path or None
+        TrueType face for what the embedded face lacks; None: one found on the system.
+
+    Raises
+    ------
+    SurveyError
+        If the named face cannot be embedded.
+    """
+    faces = register_faces(face)
+    first = _build(document, faces, total=0)
+    return _build(document, faces, total=first.pages)
+
+
+def _build(document: Document, faces: Faces, *, total: int) -> Written:
+    """Build once; the total number of pages is known from a build before."""
+    stream = io.BytesIO()
+    template = BaseDocTemplate(
+        stream,
+        pagesize=A4,
+        leftMargin=MARGIN,
+        rightMargin=MARGIN,
+        topMargin=MARGIN,
+        bottomMargin=MARGIN,
+        title=document.title,
+        author="",
+        creator="surveyapp",
+        invariant=1,
+        pageCompression=1,
+    )
+    frame = Frame(
+        MARGIN,
+        20.0 * mm,
+        WIDTH,
+        A4[1] - 40.0 * mm,
+        leftPadding=0,
+        rightPadding=0,
+        topPadding=0,
+        bottomPadding=0,
+    )
+    pages = [0]
+
+    def furniture(canvas: Canvas, _: object) -> None:
+        pages[0] = canvas.getPageNumber()
+        _draw_furniture(canvas, document, faces, total=total)
+
+    template.addPageTemplates([PageTemplate(id="page", frames=[frame], onPage=furniture)])
+    template.build(_flowables(document, faces))
+    return Written(stream.getvalue(), pages[0])
+
+
+def _draw_text(
+    canvas: Canvas, faces: Faces, text: str, at: tuple[float, float], size: float
+) -> None:
+    x, y = at
+    for name, run in runs(text, faces.of(text)):
+        canvas.setFont(name, size)
+        canvas.drawString(x, y, run)
+        x += pdfmetrics.stringWidth(run, name, size)
+
+
+def _fitted(faces: Faces, text: str, size: float, room: float) -> str:
+    if faces.width(text, size) <= room:
+        return text
+    while text and faces.width(text + "...", size) > room:
+        text = text[:-1]
+    return text + "..."
+
+
+def _draw_furniture(canvas: Canvas, document: Document, faces: Faces, *, total: int) -> None:
+    canvas.saveState()
+    canvas.setFillColor(QUIET)
+    canvas.setStrokeColor(RULE)
+    canvas.setLineWidth(0.4)
+    top, bottom = A4[1] - 14.0 * mm, 16.0 * mm
+    head = _fitted(faces, document.running_head, SMALL + 0.5, WIDTH)
+    _draw_text(canvas, faces, head, (MARGIN, top), SMALL + 0.5)
+    canvas.line(MARGIN, top - 1.5 * mm, MARGIN + WIDTH, top - 1.5 * mm)
+    canvas.line(MARGIN, bottom, MARGIN + WIDTH, bottom)
+    page = f"page {canvas.getPageNumber()} of {total}"
+    right = faces.width(page, SMALL)
+    _draw_text(canvas, faces, page, (MARGIN + WIDTH - right, bottom - 3.5 * mm), SMALL)
+    for index, line in enumerate(document.foot):
+        text = _fitted(faces, line, SMALL - 0.5, WIDTH - right - 4.0 * mm)
+        at = (MARGIN, bottom - (3.5 + 2.8 * index) * mm)
+        _draw_text(canvas, faces, text, at, SMALL - 0.5)
+    canvas.restoreState()
+
+
+def _flowables(document: Document, faces: Faces) -> list[Flowable]:
+    title = Text(faces.markup(document.title), style_of(17.0, textColor=ACCENT, spaceAfter=5.0))
+    result: list[Flowable] = [title]
+    blocks = document.blocks
+    index = 0
+    while index < len(blocks):
+        block = blocks[index]
+        following = blocks[index + 1] if index + 1 < len(blocks) else None
+        if isinstance(block, Heading) and isinstance(following, Figure | KeyValues):
+            result.append(KeepTogether([*_block(block, faces), *_block(following, faces)]))
+            index += 2
+            continue
+        result += _block(block, faces)
+        index += 1
+    return result
+
+
+def _block(block: Block, faces: Faces) -> list[Flowable]:
+    match block:
+        case Heading():
+            return _heading(block, faces)
+        case Paragraph():
+            return [_paragraph(block, faces)]
+        case KeyValues():
+            return [_key_values(block, faces), Spacer(0, 2.0 * mm)]
+        case Table():
+            return [table_flowable(block, faces), Spacer(0, 2.5 * mm)]
+        case Figure():
+            return [KeepTogether([*figure_flowables(block, faces), Spacer(0, 2.0 * mm)])]
+        case Signature():
+            return [KeepTogether([_signature(block, faces)])]
+        case PageBreak():
+            return [NewPage()]
+
+
+def _heading(block: Heading, faces: Faces) -> list[Flowable]:
+    if block.level == 1:
+        style = style_of(13.0, textColor=ACCENT, spaceBefore=6.0, spaceAfter=3.0)
+        need = 45.0 * mm
+    else:
+        style = style_of(10.0, textColor=ACCENT, spaceBefore=5.0, spaceAfter=2.0)
+        need = 30.0 * mm
+    return [CondPageBreak(need), Text(faces.markup(block.text), style)]
+
+
+def _paragraph(block: Paragraph, faces: Faces) -> Flowable:
+    size = SMALL if block.tone == "small" else BODY
+    style = style_of(size, spaceAfter=3.0)
+    if block.tone == "warning":
+        style = style_of(
+            size,
+            spaceAfter=4.0,
+            leftIndent=6.0,
+            borderColor=INK,
+            borderWidth=0.8,
+            borderPadding=(3.0, 4.0, 3.0, 4.0),
+            spaceBefore=5.0,
+            rightIndent=4.0,
+        )
+    return Text(faces.markup(block.text), style)
+
+
+def _key_values(block: KeyValues, faces: Faces) -> Flowable:
+    wanted = max((faces.width(key, CELL + 0.5) for key, _ in block.pairs), default=0.0)
+    first = min(wanted + 4.0 * mm, 0.4 * WIDTH)
+    key_style, value_style = style_of(CELL + 0.5, textColor=QUIET), style_of(CELL + 0.5)
+    rows = [
+        [Text(faces.markup(key), key_style), Text(faces.markup(value), value_style)]
+        for key, value in block.pairs
+    ]
+    grid = Grid(rows, colWidths=[first, WIDTH - first], hAlign="LEFT")
+    grid.setStyle(
+        [
+            ("VALIGN", (0, 0), (-1, -1), "TOP"),
+            ("LEFTPADDING", (0, 0), (-1, -1), 0),
+            ("RIGHTPADDING", (0, 0), (-1, -1), 2),
+            ("TOPPADDING", (0, 0), (-1, -1), 0.6),
+            ("BOTTOMPADDING", (0, 0), (-1, -1), 0.6),
+        ]
+    )
+    return grid
+
+
+def _signature(block: Signature, faces: Faces) -> Flowable:
+    style = style_of(CELL + 0.5)
+    labels = ("role", "name and signature", "place and date")
+    quiet = style_of(SMALL, textColor=QUIET)
+    rows: list[list[Flowable | str]] = [[Text(faces.markup(label), quiet) for label in labels]]
+    rows += [[Text(faces.markup(role), style), "", ""] for role in block.roles]
+    heights = [5.0 * mm, *[13.0 * mm] * len(block.roles)]
+    grid = Grid(rows, colWidths=[0.28 * WIDTH, 0.44 * WIDTH, 0.28 * WIDTH], rowHeights=heights)
+    grid.setStyle(
+        [
+            ("VALIGN", (0, 0), (-1, -1), "BOTTOM"),
+            ("LINEBELOW", (1, 1), (1, -1), 0.6, INK),
+            ("LINEBELOW", (2, 1), (2, -1), 0.6, INK),
+            ("LEFTPADDING", (0, 0), (-1, -1), 2),
+        ]
+    )
+    return grid

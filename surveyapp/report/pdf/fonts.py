@@ -1,0 +1,90 @@
+"""Faces registered for a page: which draws what, and how wide a text becomes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+from xml.sax.saxutils import escape
+
+from reportlab.pdfbase import pdfmetrics
+from reportlab.pdfbase.cidfonts import UnicodeCIDFont
+from reportlab.pdfbase.ttfonts import TTFError, TTFont
+
+from surveyapp.errors import Problem, SurveyError
+from surveyapp.report.faces import base_face, wide_face
+from surveyapp.report.typeface import Face, is_wide, language_of, runs
+
+BASE: Final = "SurveySans"
+_CID: Final = {"zh": "STSong-Light", "ja": "HeiseiKakuGo-W5", "ko": "HYGothic-Medium"}
+
+
+@dataclass(frozen=True, slots=True)
+class Faces:
+    """Faces in order of preference."""
+
+    embedded: tuple[Face, ...]
+
+    def of(self, text: str) -> tuple[Face, ...]:
+        """Faces for a text: the embedded ones, and a CID face where those lack a wide character."""
+        if all(face_has(self.embedded, ord(c)) or not is_wide(ord(c)) for c in text):
+            return self.embedded
+        name = _CID[language_of(text)]
+        if name not in pdfmetrics.getRegisteredFontNames():
+            pdfmetrics.registerFont(UnicodeCIDFont(name))
+        return (*self.embedded, Face(name, is_wide))
+
+    def markup(self, text: str) -> str:
+        """Text with a font tag for every run that the base face cannot draw."""
+        parts = []
+        for name, run in runs(text, self.of(text)):
+            safe = escape(run)
+            parts.append(safe if name == BASE else f'<font name="{name}">{safe}</font>')
+        return "".join(parts)
+
+    def width(self, text: str, size: float) -> float:
+        """Width of a text [points]."""
+        return float(
+            sum(pdfmetrics.stringWidth(run, name, size) for name, run in runs(text, self.of(text)))
+        )
+
+    def is_base(self, text: str) -> bool:
+        """Whether the base face alone draws a text."""
+        return all(self.embedded[0].has(ord(c)) for c in text)
+
+
+def face_has(faces: Sequence[Face], code: int) -> bool:
+    """Whether any of the faces draws a code point."""
+    return any(face.has(code) for face in faces)
+
+
+def _register(name: str, path: Path) -> Face:
+    try:
+        font = TTFont(name, str(path))
+    except (TTFError, OSError, ValueError, KeyError) as error:
+        raise SurveyError(
+            Problem(
+                "this type face cannot be embedded",
+                str(path),
+                str(error),
+                "a TrueType face (.ttf or .ttc) with glyf outlines",
+                "OpenType faces with PostScript outlines (.otf) cannot be used",
+            )
+        ) from None
+    pdfmetrics.registerFont(font)
+    glyphs = font.face.charToGlyph
+    return Face(name, glyphs.__contains__)
+
+
+def register_faces(named: Path | None) -> Faces:
+    """Register the faces: base, then the one named by the user, else the one found."""
+    faces = [_register(BASE, base_face())]
+    wide = named if named is not None else wide_face()
+    if wide is not None:
+        try:
+            faces.append(_register(f"Wide-{wide.stem}", wide))
+        except SurveyError:
+            if named is not None:
+                raise
+    return Faces(tuple(faces))

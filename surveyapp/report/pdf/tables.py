@@ -1,0 +1,125 @@
+"""Tables on paper: column widths, wrapping cells, struck rows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, Final
+
+from reportlab.lib.enums import TA_CENTER, TA_RIGHT
+from reportlab.lib.units import mm
+from reportlab.platypus import Flowable
+from reportlab.platypus import Paragraph as Text
+from reportlab.platypus import Table as Grid
+
+from surveyapp.report.blocks import Table
+from surveyapp.report.pdf.fonts import BASE, Faces
+from surveyapp.report.pdf.style import CELL, INK, QUIET, RULE, TINT, WIDTH, style_of
+
+
+def column_widths(natural: Sequence[float], smallest: Sequence[float], room: float) -> list[float]:
+    """Widths of columns: natural ones where they fit, else the widest give way first.
+
+    Parameters
+    ----------
+    natural, smallest : sequence of float
+        Width without wrapping, and width of the longest word.
+    room : float
+        What the page has.
+    """
+    widths = list(natural)
+    excess = sum(widths) - room
+    while excess > 0.01:
+        able = [i for i, width in enumerate(widths) if width > smallest[i] + 0.01]
+        if not able:
+            factor = room / sum(widths)
+            return [width * factor for width in widths]
+        widest = max(widths[i] for i in able)
+        top = [i for i in able if widths[i] > widest - 0.01]
+        others = [widths[i] for i in able if widths[i] <= widest - 0.01]
+        floor = max([*others, *(smallest[i] for i in top)])
+        cut = min(max(widest - floor, 0.5), excess / len(top))
+        for i in top:
+            widths[i] = max(widths[i] - cut, smallest[i])
+        excess = sum(widths) - room
+    return widths
+
+
+_PADDING: Final = 3.0
+
+
+def table_flowable(block: Table, faces: Faces) -> Flowable:
+    """A table: columns as wide as their text, the widest wrapped where the page is too narrow."""
+    size = CELL if len(block.head) < 9 else CELL - 0.7
+    align = block.align or "l" * len(block.head)
+    columns = list(zip(block.head, *block.rows, strict=True))
+    natural = [max(faces.width(c, size) for c in column) + 2 * _PADDING + 1 for column in columns]
+    smallest = [
+        min(
+            max((faces.width(w, size) for c in column for w in c.split()), default=4.0)
+            + 2 * _PADDING
+            + 1,
+            0.5 * WIDTH,
+        )
+        for column in columns
+    ]
+    widths = column_widths(natural, smallest, WIDTH)
+    if block.lined:
+        widths = [width * WIDTH / sum(widths) for width in widths]
+    cell = _cell_maker(faces, size, align, widths)
+    rows = [[cell(i, text, None) for i, text in enumerate(block.head)]]
+    for index, row in enumerate(block.rows):
+        mark = "strike" if index in block.struck else None
+        rows.append([cell(i, text, mark) for i, text in enumerate(row)])
+    heights = None
+    if block.row_height_mm is not None:
+        heights = [None, *[block.row_height_mm * mm] * len(block.rows)]
+    grid = Grid(rows, colWidths=widths, rowHeights=heights, repeatRows=1, hAlign="LEFT")
+    grid.setStyle(_table_style(block, align, size))
+    return grid
+
+
+def _cell_maker(
+    faces: Faces, size: float, align: str, widths: Sequence[float]
+) -> Callable[[int, str, str | None], object]:
+    """Cells: plain text where it fits and the base face draws it, else a wrapping paragraph."""
+    alignment = {"l": 0, "c": TA_CENTER, "r": TA_RIGHT}
+    styles = {letter: style_of(size, alignment=value) for letter, value in alignment.items()}
+    quiet = {
+        letter: style_of(size, alignment=value, textColor=QUIET)
+        for letter, value in alignment.items()
+    }
+
+    def cell(column: int, text: str, mark: str | None) -> object:
+        if mark is not None:
+            inner = faces.markup(text)
+            return Text(f"<strike>{inner}</strike>" if inner else "", quiet[align[column]])
+        fits = faces.width(text, size) + 2 * _PADDING <= widths[column]
+        if fits and faces.is_base(text):
+            return text
+        return Text(faces.markup(text), styles[align[column]])
+
+    return cell
+
+
+def _table_style(block: Table, align: str, size: float) -> list[Any]:
+    names = {"l": "LEFT", "c": "CENTER", "r": "RIGHT"}
+    style: list[Any] = [
+        ("FONT", (0, 0), (-1, -1), BASE, size),
+        ("TEXTCOLOR", (0, 0), (-1, -1), INK),
+        ("LEADING", (0, 0), (-1, -1), 1.25 * size),
+        ("VALIGN", (0, 0), (-1, -1), "TOP"),
+        ("LEFTPADDING", (0, 0), (-1, -1), _PADDING),
+        ("RIGHTPADDING", (0, 0), (-1, -1), _PADDING),
+        ("TOPPADDING", (0, 0), (-1, -1), 1.2),
+        ("BOTTOMPADDING", (0, 0), (-1, -1), 1.8),
+        ("BACKGROUND", (0, 0), (-1, 0), TINT),
+        ("LINEBELOW", (0, 0), (-1, 0), 0.6, INK),
+        ("LINEBELOW", (0, -1), (-1, -1), 0.4, RULE),
+    ]
+    style += [("ALIGN", (i, 0), (i, -1), names[letter]) for i, letter in enumerate(align)]
+    for index in sorted(block.strong):
+        style.append(("BACKGROUND", (0, index + 1), (-1, index + 1), TINT))
+        style.append(("LINEABOVE", (0, index + 1), (-1, index + 1), 0.6, INK))
+    if block.lined:
+        style.append(("GRID", (0, 0), (-1, -1), 0.4, RULE))
+    return style

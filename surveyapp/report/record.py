@@ -1,0 +1,119 @@
+"""The survey record: which sections it has, in which order, and what goes into its margins.
+
+A section is a function from the results to blocks. Other parts of the program hand in blocks of
+their own (a diagnosis, an adjustment), which stand before the checks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+from surveyapp.domain.project import Project
+from surveyapp.domain.results import OrientationResult
+from surveyapp.domain.rulebook import RuleBook
+from surveyapp.report.blocks import Block, Document
+from surveyapp.report.sections import (
+    azimuths,
+    checks,
+    constants,
+    fieldbook,
+    full_numbers,
+    head,
+    reduction,
+    seal,
+    signature,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class SealShown:
+    """The closing in force, as the record shows it.
+
+    Parameters
+    ----------
+    at, by : str
+        When and by whom it was closed.
+    seal : str
+        Head of the hash chain.
+    """
+
+    at: str
+    by: str
+    seal: str
+
+
+@dataclass(frozen=True, slots=True)
+class Extra:
+    """A section from elsewhere: its id and its blocks, the heading among them."""
+
+    id: str
+    blocks: tuple[Block, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """Everything that a record shows.
+
+    Parameters
+    ----------
+    project : Project
+    result : OrientationResult
+    rule_book : RuleBook or None
+    seal : SealShown or None
+        None while the project is open.
+    extras : tuple of Extra
+    """
+
+    project: Project
+    result: OrientationResult
+    rule_book: RuleBook | None = None
+    seal: SealShown | None = None
+    extras: tuple[Extra, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """One section: its id, and the function that makes its blocks; no blocks, no section."""
+
+    id: str
+    blocks: Callable[[Record], tuple[Block, ...]]
+
+
+def _extras(record: Record) -> tuple[Block, ...]:
+    return tuple(block for extra in record.extras for block in extra.blocks)
+
+
+SECTIONS: Final[tuple[Section, ...]] = (
+    Section("head", lambda r: head.blocks(r.project, r.result, r.rule_book)),
+    Section("azimuths", lambda r: azimuths.blocks(r.project, r.result)),
+    Section("constants", lambda r: constants.blocks(r.result)),
+    Section("reduction", lambda r: reduction.blocks(r.project, r.result)),
+    Section("fieldbook", lambda r: fieldbook.blocks(r.project)),
+    Section("extras", _extras),
+    Section("checks", lambda r: checks.blocks(r.result)),
+    Section(
+        "seal", lambda r: () if r.seal is None else seal.blocks(r.seal.at, r.seal.by, r.seal.seal)
+    ),
+    Section("signature", lambda _: signature.blocks()),
+    Section("full_numbers", lambda r: full_numbers.blocks(r.result)),
+)
+
+
+def record_document(record: Record) -> tuple[Document, tuple[str, ...]]:
+    """The record as a document, and the ids of the sections that it has."""
+    made = [(section.id, section.blocks(record)) for section in SECTIONS]
+    names: list[str] = []
+    for name, blocks in made:
+        if name == "extras":
+            names += [extra.id for extra in record.extras]
+        elif blocks:
+            names.append(name)
+    document = Document(
+        title=f"Survey record: {record.project.name}",
+        running_head=f"Survey record: {record.project.name}",
+        foot=(record.result.software, f"sha256 of the input {record.result.input_sha256}"),
+        blocks=tuple(block for _, blocks in made for block in blocks),
+    )
+    return document, tuple(names)

@@ -1,0 +1,1 @@
+"""Sections of the survey record, one a file: results in, plain blocks out."""

@@ -1,0 +1,119 @@
+"""The oriented lines: every correction on its own line with its origin, and the budget."""
+
+from __future__ import annotations
+
+from surveyapp.domain.project import Project
+from surveyapp.domain.results import AngleResult, LineResult, OrientationResult, to_degrees
+from surveyapp.report.blocks import Block, Heading, Paragraph, Table
+from surveyapp.report.numbers import (
+    NOTHING,
+    direction,
+    plain,
+    seconds,
+    signed_angle,
+    with_sigma,
+)
+from surveyapp_models.angles import AngleUnit
+
+
+def blocks(project: Project, result: OrientationResult) -> tuple[Block, ...]:
+    """Summary of all lines, then each line with its steps and its budget."""
+    found: list[Block] = [Heading("Azimuths")]
+    if not result.lines:
+        text = "No line was oriented: no survey session has sights of a target."
+        return (Heading("Azimuths"), Paragraph(text), *_norths(project, result))
+    found.append(_summary(project, result))
+    for line in result.lines:
+        found += _line(project, line)
+    return tuple(found)
+
+
+def _norths(project: Project, result: OrientationResult) -> tuple[Block, ...]:
+    rows = [
+        (session.id, session.station, *with_sigma(session.gyro_north, project.angle_unit))
+        for session in result.sessions
+        if session.gyro_north is not None
+    ]
+    if not rows:
+        return ()
+    head = ("session", "station", "gyro north on the circle", '±"', '95 % ±"')
+    return (Table(head, tuple(rows), "llrrr"),)
+
+
+def _summary(project: Project, result: OrientationResult) -> Table:
+    unit = project.angle_unit
+    rows = []
+    for line in result.lines:
+        final = line.grid_azimuth or line.true_azimuth or line.gyro_azimuth
+        kind = "grid" if line.grid_azimuth else "astronomic" if line.true_azimuth else "gyro"
+        rows.append(
+            (
+                f"{line.station} - {line.target}",
+                line.instrument,
+                str(line.rounds),
+                kind,
+                *with_sigma(final, unit),
+                plain(to_degrees(final.value), 6),
+            )
+        )
+    head = ("line", "instrument", "rounds", "azimuth", "value", '±"', '95 % ±"', "degrees")
+    return Table(head, tuple(rows), "llrlrrrr", strong=frozenset(range(len(rows))))
+
+
+def _line(project: Project, line: LineResult) -> list[Block]:
+    unit = project.angle_unit
+    rows, strong = _steps(project, line, unit)
+    head = ("step", "value", '±"', '95 % ±"', "where it comes from")
+    found: list[Block] = [
+        Heading(f"Line {line.station} - {line.target}", 2),
+        Table(head, tuple(rows), "lrrrl", strong=strong),
+    ]
+    if line.budget:
+        budget = [
+            (item.source, seconds(item.sigma), plain(100.0 * item.share, 1)) for item in line.budget
+        ]
+        found.append(Table(("source of error", '±"', "share of variance %"), tuple(budget), "lrr"))
+    return found
+
+
+def _steps(
+    project: Project, line: LineResult, unit: AngleUnit
+) -> tuple[list[tuple[str, ...]], frozenset[int]]:
+    rows: list[tuple[str, ...]] = []
+    strong: set[int] = set()
+
+    def result(label: str, item: AngleResult | None, origin: str) -> None:
+        if item is not None:
+            rows.append((label, *with_sigma(item, unit), origin))
+
+    def small(label: str, value: float | None, sigma: float | None, origin: str) -> None:
+        shown = signed_angle(value) if value is not None else "not known"
+        rows.append((label, shown, seconds(sigma), "", origin))
+
+    sessions = ", ".join(line.sessions)
+    result("gyro azimuth", line.gyro_azimuth, f"{line.rounds} rounds: {sessions}")
+    choice = line.constant_choice or ""
+    origin = f"{line.instrument}, {choice}" if choice else "no constant of this instrument is known"
+    small("+ instrument constant", line.constant, line.constant_sigma, origin)
+    if line.true_azimuth is not None:
+        strong.add(len(rows))
+    result("= true azimuth (astronomic)", line.true_azimuth, "")
+    station = project.station(line.station)
+    known = "of the station" if station.deflection.known else "not known, 0 assumed with its sigma"
+    small("- deflection of the vertical", line.deflection, None, known)
+    where = f"{line.station} in the grid" if project.crs else "no grid"
+    small("- meridian convergence", line.convergence, None, where)
+    ends = "both ends in the grid" if line.arc_to_chord is not None else "a position is missing"
+    small("- arc-to-chord", line.arc_to_chord, None, ends)
+    if line.grid_azimuth is not None:
+        strong.add(len(rows))
+    result("= grid azimuth", line.grid_azimuth, "from grid north, clockwise")
+    if line.direction_from_south is not None:
+        text = direction(line.direction_from_south, unit)
+        rows.append(("direction from south", text, "", "", "the axes of the grid ask for it"))
+    if line.existing_azimuth is not None:
+        text = direction(line.existing_azimuth, unit)
+        rows.append(("azimuth from coordinates", text, "", "", "for comparison only"))
+    if line.distance_m is not None:
+        rows.append(("length of the line m", plain(line.distance_m, 3), "", "", "grid"))
+    return [row if any(row) else (NOTHING,) * 5 for row in rows], frozenset(strong)

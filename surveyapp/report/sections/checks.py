@@ -1,0 +1,70 @@
+"""Checks with clause and verdict as words, and the warnings of the result."""
+
+from __future__ import annotations
+
+from surveyapp.domain.results import Check, OrientationResult
+from surveyapp.report.blocks import Block, Heading, Paragraph, Table
+from surveyapp.report.numbers import four_digits
+
+
+def verdict(check: Check) -> str:
+    """The verdict as a word."""
+    if check.passed is None:
+        return "open"
+    if check.passed:
+        return "met"
+    return "NOT MET" if check.confirmed else "warning"
+
+
+def blocks(result: OrientationResult) -> tuple[Block, ...]:
+    """Answered checks, open ones, warnings."""
+    found: list[Block] = [Heading("Checks")]
+    answered = [check for check in result.checks if check.passed is not None]
+    unanswered = [check for check in result.checks if check.passed is None]
+    if answered:
+        found.append(_answered(answered))
+    else:
+        found.append(Paragraph("Nothing in this project can be checked yet."))
+    if unanswered:
+        found += [
+            Heading("Limits that the data of this project cannot answer", 2),
+            _open(unanswered),
+        ]
+    if result.warnings:
+        found.append(Heading("Warnings", 2))
+        found += [Paragraph(f"{item.code}: {item.text}", "warning") for item in result.warnings]
+    return tuple(found)
+
+
+def _answered(checks: list[Check]) -> Table:
+    rows = tuple(
+        (
+            verdict(check),
+            check.rule + ("" if check.confirmed else " (limit not confirmed)"),
+            check.where,
+            four_digits(check.value),
+            four_digits(check.limit),
+            check.unit,
+            check.clause,
+            check.text,
+        )
+        for check in checks
+    )
+    head = ("verdict", "check", "where", "value", "limit", "unit", "clause", "what")
+    strong = frozenset(i for i, check in enumerate(checks) if check.passed is False)
+    return Table(head, rows, "lllrrlll", strong=strong)
+
+
+def _open(checks: list[Check]) -> Table:
+    rows = tuple(
+        (
+            check.rule,
+            check.where,
+            four_digits(check.limit),
+            check.unit,
+            check.clause,
+            check.text,
+        )
+        for check in checks
+    )
+    return Table(("check", "where", "limit", "unit", "clause", "what is missing"), rows, "llrlll")

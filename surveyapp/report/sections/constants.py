@@ -1,0 +1,137 @@
+"""The instrument constant: line by line, determination by determination, through time."""
+
+from __future__ import annotations
+
+import datetime as dt
+import math
+
+from surveyapp.domain.results import ConstantResult, Determination, OrientationResult, to_arcsec
+from surveyapp.report.blocks import Block, Figure, Heading, KeyValues, Table
+from surveyapp.report.numbers import NOTHING, plain, seconds
+from surveyapp.report.plots import Axis, Frame, axis
+
+_STABLE = {True: "stable", False: "NOT STABLE: lines or epochs disagree", None: "nothing can tell"}
+
+
+def blocks(result: OrientationResult) -> tuple[Block, ...]:
+    """Blocks of every instrument whose constant is known."""
+    found: list[Block] = []
+    for constant in result.constants:
+        if constant.value is not None:
+            found += _constant(constant)
+    return (Heading("Instrument constant"), *found) if found else ()
+
+
+def _constant(constant: ConstantResult) -> list[Block]:
+    found: list[Block] = [
+        Heading(f"{constant.instrument}: true minus gyro azimuth, astronomic terms", 2),
+        KeyValues(
+            (
+                ("constant", f'{seconds(constant.value, sign=True)}" ± {seconds(constant.sigma)}"'),
+                ("95 % interval", f'± {seconds(constant.interval95)}"'),
+                ("choice", constant.choice),
+                ("determinations", str(constant.count)),
+                ("stability", _STABLE[constant.stable]),
+            )
+        ),
+    ]
+    if constant.by_line:
+        rows = tuple(
+            (
+                f"{line.station} - {line.target}",
+                seconds(line.value, sign=True),
+                seconds(line.sigma),
+                str(line.count),
+                str(line.rounds),
+                plain(line.distance_m, 1),
+            )
+            for line in constant.by_line
+        )
+        head = ("known line", 'constant "', '±"', "determinations", "rounds", "length m")
+        found.append(Table(head, rows, "lrrrrr"))
+    if constant.determinations:
+        found += [_determinations(constant), _plot(constant)]
+    return found
+
+
+def _determinations(constant: ConstantResult) -> Table:
+    rows = []
+    for item in constant.determinations:
+        difference = None
+        if item.from_coordinates is not None:
+            difference = math.remainder(item.known_azimuth - item.from_coordinates, 2 * math.pi)
+        rows.append(
+            (
+                item.session,
+                f"{item.station} - {item.target}",
+                item.phase,
+                seconds(item.value, sign=True),
+                seconds(item.sigma),
+                NOTHING if difference is None else seconds(difference, sign=True),
+            )
+        )
+    head = ("session", "line", "phase", 'constant "', '±"', 'known minus coordinates "')
+    return Table(head, tuple(rows), "lllrrr")
+
+
+def _plot(constant: ConstantResult) -> Figure:
+    items = constant.determinations
+    values = [item.value for item in items]
+    centre = constant.value or 0.0
+    spread = [item.sigma for item in items if math.isfinite(item.sigma)]
+    bounds = [
+        bound
+        for item in items
+        for bound in (item.value - min(item.sigma, 1.0), item.value + min(item.sigma, 1.0))
+    ]
+    shown = [to_arcsec(v) or 0.0 for v in ([*bounds, centre] if spread else [*values, centre])]
+    frame = Frame(_moments(items), axis(shown), height_mm=52.0)
+    names = [_name(item) for item in items]
+    by_order = len(set(frame.x.ticks)) == len(items) and frame.x.decimals < 0
+    parts = frame.axes(
+        "session" if by_order else "date", "arcsec", names if by_order else _days(frame.x)
+    )
+    parts.append(frame.level(to_arcsec(centre) or 0.0, "mean"))
+    for place, item in zip(_places(items), items, strict=True):
+        value = to_arcsec(item.value) or 0.0
+        if math.isfinite(item.sigma):
+            sigma = to_arcsec(item.sigma) or 0.0
+            parts += frame.bar(place, low=value - sigma, high=value + sigma, cap_mm=1.0)
+        parts += frame.marks([(place, value)], "circle")
+    title = "Determinations of the constant with one sigma; dashed: the constant in force"
+    return frame.figure(title, parts)
+
+
+def _name(item: Determination) -> str:
+    return item.session if len(item.session) < 18 else item.session[:16] + "..."
+
+
+def _places(items: tuple[Determination, ...]) -> list[float]:
+    stamps = [item.moment_s for item in items]
+    if any(stamp is None for stamp in stamps) or len(set(stamps)) < 2:
+        return [float(index) for index in range(len(items))]
+    return [float(stamp) for stamp in stamps if stamp is not None]
+
+
+def _moments(items: tuple[Determination, ...]) -> Axis:
+    """Axis of time where there are moments, else of the order (marked by negative decimals)."""
+    places = _places(items)
+    if places == [float(index) for index in range(len(items))]:
+        return Axis(-0.5, len(items) - 0.5, tuple(places), -1)
+    return axis(places, count=4)
+
+
+def _days(x: Axis) -> list[str]:
+    """Labels of a time axis: dates where the numbers are plausible moments, else the numbers."""
+    day = 86400.0
+    if x.low < 1000.0 * day:
+        return [f"{tick:g}" for tick in x.ticks]
+    ordinal = x.low > 1e10
+    labels = []
+    for tick in x.ticks:
+        if ordinal:
+            labels.append(dt.date.fromordinal(int(tick // day)).isoformat())
+        else:
+            moment = dt.datetime.fromtimestamp(tick, tz=dt.UTC)
+            labels.append(moment.strftime("%Y-%m-%d %H:%M"))
+    return labels

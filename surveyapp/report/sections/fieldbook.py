@@ -1,0 +1,87 @@
+"""The field book as it was observed: every row, struck ones visible as struck."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from surveyapp.domain.project import OrientationSession, Project
+from surveyapp.domain.readings import Reading, ReadingKind
+from surveyapp.report.blocks import Block, Heading, KeyValues, Paragraph, Table
+from surveyapp.report.numbers import plain
+
+_COLUMNS: Final[tuple[tuple[str, str, Callable[[Reading], str]], ...]] = (
+    ("seq", "r", lambda row: str(row.seq)),
+    ("time", "l", lambda row: "" if row.time is None else row.time.isoformat(sep=" ")),
+    ("elapsed s", "r", lambda row: "" if row.elapsed_s is None else f"{row.elapsed_s:g}"),
+    ("kind", "l", lambda row: row.kind.value),
+    ("value", "r", lambda row: row.text),
+    ("unit", "l", lambda row: row.unit),
+    ("face", "c", lambda row: "" if row.face is None else row.face.value),
+    ("side", "c", lambda row: "" if row.side is None else row.side.value),
+    ("target", "l", lambda row: row.target),
+    (
+        "temp. C",
+        "r",
+        lambda row: plain(row.temperature_c, 1) if row.temperature_c is not None else "",
+    ),
+)
+_ALWAYS: Final = ("seq", "kind", "value")
+
+
+def blocks(project: Project) -> tuple[Block, ...]:
+    """Blocks of every session's book."""
+    found: list[Block] = []
+    for session in project.sessions:
+        found += _session(session)
+    return (Heading("Field book as observed"), *found) if found else ()
+
+
+def _session(session: OrientationSession) -> list[Block]:
+    line = session.station if session.target is None else f"{session.station} - {session.target}"
+    facts = [
+        ("line", line),
+        ("instrument, method", f"{session.instrument}, {session.method}"),
+        ("purpose", session.purpose),
+        ("book", session.book_path),
+    ]
+    if session.date is not None:
+        facts.append(("date", session.date.isoformat()))
+    if session.observer:
+        facts.append(("observer", session.observer))
+    facts += [
+        (key.replace("_", " "), str(value))
+        for key, value in session.override
+        if key in ("rounds", "sigma_arcsec", "note")
+    ]
+    found: list[Block] = [Heading(f"Session {session.id}", 2), KeyValues(tuple(facts))]
+    if session.book.torn_tail is not None:
+        text = f"The last line had no newline and does not count: {session.book.torn_tail}"
+        found.append(Paragraph(text, "warning"))
+    if not session.book.rows:
+        return [*found, Paragraph("The book is empty.")]
+    return [*found, _rows(session)]
+
+
+def _rows(session: OrientationSession) -> Table:
+    rows = session.book.rows
+    used = [
+        column for column in _COLUMNS if column[0] in _ALWAYS or any(column[2](row) for row in rows)
+    ]
+    reasons = {
+        row.strikes: f"struck by row {row.seq}" + (f": {row.note}" if row.note else "")
+        for row in rows
+        if row.kind is ReadingKind.STRIKE and row.strikes is not None
+    }
+    struck = frozenset(i for i, row in enumerate(rows) if row.seq in session.book.struck)
+    lines = []
+    for row in rows:
+        remark = row.note
+        if row.seq in session.book.struck:
+            remark = "; ".join(part for part in (row.note, reasons.get(row.seq, "struck")) if part)
+        lines.append((*(text(row) for _, _, text in used), remark or ""))
+    head = (*(name for name, _, _ in used), "note")
+    if not any(line[-1] for line in lines):
+        head, lines = head[:-1], [line[:-1] for line in lines]
+    align = "".join(letter for _, letter, _ in used) + "l"
+    return Table(head, tuple(lines), align[: len(head)], struck=struck)

@@ -1,0 +1,116 @@
+"""The head of the record: project, instruments, observers, dates, grid, stations."""
+
+from __future__ import annotations
+
+import math
+
+from surveyapp.domain.project import Project, Station
+from surveyapp.domain.results import OrientationResult
+from surveyapp.domain.rulebook import RuleBook
+from surveyapp.report.blocks import Block, Heading, KeyValues, Paragraph, Table
+from surveyapp.report.numbers import NOTHING, plain, seconds
+
+_LONGEST_CRS = 160
+
+
+def blocks(
+    project: Project, result: OrientationResult, rule_book: RuleBook | None
+) -> tuple[Block, ...]:
+    """Blocks of the head."""
+    facts = [("project", project.name)]
+    facts += [("instrument", _instrument(project, item.id)) for item in project.instruments]
+    facts += [
+        ("observer", ", ".join(observers(project)) or NOTHING),
+        ("date of observation", ", ".join(dates(project)) or NOTHING),
+        ("grid", _grid(project)),
+        ("unit of angles", str(project.angle_unit)),
+        ("rule book", NOTHING if rule_book is None else f"{rule_book.title} ({rule_book.id})"),
+        ("software", result.software),
+        ("sha256 of the input", result.input_sha256),
+    ]
+    met = sum(check.passed is True for check in result.checks)
+    warned = sum(c.passed is False and not c.confirmed for c in result.checks)
+    broken = sum(c.passed is False and c.confirmed for c in result.checks)
+    still = sum(check.passed is None for check in result.checks)
+    verdict = f"{met} met, {broken} NOT MET, {warned} warnings, {still} open for want of data"
+    facts.append(("checks", verdict))
+    return (
+        KeyValues(tuple(facts)),
+        *_stations(project),
+        Paragraph(
+            "Azimuths and circle readings are clockwise. A suspended gyro gives the astronomic "
+            "azimuth; grid azimuth = gyro azimuth + constant - deflection - convergence - "
+            "arc-to-chord. Sigmas are one standard deviation.",
+            "small",
+        ),
+    )
+
+
+def observers(project: Project) -> list[str]:
+    """Observers of all sessions, each once, in order."""
+    return list(dict.fromkeys(s.observer for s in project.sessions if s.observer))
+
+
+def dates(project: Project) -> list[str]:
+    """Days of all sessions, each once, in order: the stated date, else the first time."""
+    days = []
+    for session in project.sessions:
+        times = [row.time for row in session.book.rows if row.time is not None]
+        if session.date is not None:
+            days.append(session.date.isoformat())
+        elif times:
+            days.append(times[0].date().isoformat())
+    return sorted(set(days))
+
+
+def _instrument(project: Project, identity: str) -> str:
+    item = project.instrument(identity)
+    serial = f", no. {item.serial}" if item.serial else ""
+    return f"{identity}: {item.card.title}{serial} (card {item.card.id}, {item.card.kind})"
+
+
+def _grid(project: Project) -> str:
+    if project.crs is None:
+        return "none: no convergence and no grid azimuth"
+    text = " ".join(project.crs.split())
+    return text if len(text) <= _LONGEST_CRS else text[:_LONGEST_CRS] + "..."
+
+
+def _stations(project: Project) -> tuple[Block, ...]:
+    if not project.stations:
+        return ()
+    rows = tuple(_station(station) for station in project.stations)
+    columns = ("station", "E m", "N m", "lat deg", "lon deg", "h m", "fixed", 'xi "', 'eta "', '±"')
+    used = [
+        index
+        for index in range(len(columns))
+        if index == 0 or any(row[index] not in (NOTHING, "") for row in rows)
+    ]
+    return (
+        Heading("Stations", 2),
+        Table(
+            tuple(columns[i] for i in used),
+            tuple(tuple(row[i] for i in used) for row in rows),
+            "".join("lrrrrrcrrr"[i] for i in used),
+        ),
+    )
+
+
+def _station(station: Station) -> tuple[str, ...]:
+    def degrees(angle: float | None) -> str:
+        return NOTHING if angle is None else plain(math.degrees(angle), 7)
+
+    deflection = station.deflection
+    known = deflection.known
+    return (
+        station.name,
+        plain(station.e, 3),
+        plain(station.n, 3),
+        degrees(station.latitude),
+        degrees(station.longitude),
+        plain(station.h, 3),
+        "yes" if station.fixed else "",
+        seconds(deflection.xi) if known else NOTHING,
+        seconds(deflection.eta) if known else NOTHING,
+        seconds(deflection.sigma, 1),
+    )

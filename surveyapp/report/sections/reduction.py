@@ -1,0 +1,259 @@
+"""The reduction of every session: each correction on its own line, with its origin, and plots."""
+
+from __future__ import annotations
+
+import math
+
+from surveyapp.domain.project import OrientationSession, Project
+from surveyapp.domain.results import (
+    OrientationResult,
+    SessionResult,
+    TapeZeroResult,
+    TargetResult,
+)
+from surveyapp.report.blocks import Block, Figure, Heading, Paragraph, Table
+from surveyapp.report.numbers import (
+    NOTHING,
+    direction,
+    four_digits,
+    plain,
+    seconds,
+    signed_angle,
+    with_sigma,
+)
+from surveyapp.report.plots import Frame, axis, half_wave
+from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, wrap_pi
+
+Row = tuple[str, str, str, str, str]
+
+
+def blocks(project: Project, result: OrientationResult) -> tuple[Block, ...]:
+    """Blocks of every session."""
+    found: list[Block] = []
+    for item in result.sessions:
+        found += _session(project, item)
+    return (Heading("Reduction"), *found) if found else ()
+
+
+def _session(project: Project, item: SessionResult) -> list[Block]:
+    unit = project.angle_unit
+    session = project.session(item.id)
+    rows = [*_north(item, unit)]
+    strong = {len(rows) - 1} if item.gyro_north is not None else set()
+    for target in item.targets:
+        rows += _target(session, target, unit)
+        if target.gyro_azimuth is not None:
+            strong.add(len(rows) - 1)
+    line = item.station if item.target is None else f"{item.station} - {item.target}"
+    head = ("step", "value", '±"', '95 % ±"', "where it comes from")
+    found: list[Block] = [
+        Heading(f"Session {item.id}: {line}, {item.method}", 2),
+        Table(head, tuple(rows), "lrrrl", strong=frozenset(strong)),
+        *_effects(project, session),
+        _figures_of_merit(item),
+    ]
+    found += _points(item, unit)
+    found += [Paragraph(f"{w.code}: {w.text}", "warning") for w in item.warnings]
+    return found
+
+
+def _north(item: SessionResult, unit: AngleUnit) -> list[Row]:
+    north = item.gyro_north
+    if north is None:
+        return []
+    rows: list[Row] = []
+    how = f"{item.estimator}, {item.points_used} points, {item.dof} degrees of freedom"
+    correction = item.tape_zero_correction
+    if item.tape_zero is not None:
+        observed = direction((north.value - (correction or 0.0)) % (2.0 * math.pi), unit)
+        rows.append(("north as observed", observed, "", "", how))
+        rows += _tape_zero(item.tape_zero, correction)
+        how = ""
+    origin = f"sigma from {item.sigma_source}" if item.sigma_source else "no sigma: nothing tells"
+    text = f"{how}; {origin}" if how else origin
+    rows.append(("= gyro north", *with_sigma(north, unit), text))
+    return rows
+
+
+def _tape_zero(zero: TapeZeroResult, correction: float | None) -> list[Row]:
+    rows: list[Row] = []
+    for name, value, means in (
+        ("before", zero.before_div, zero.schuler_before_div),
+        ("after", zero.after_div, zero.schuler_after_div),
+    ):
+        if value is not None:
+            listing = ", ".join(plain(mean, 3, sign=True) for mean in means)
+            origin = f"Schuler means {listing} div" if means else "rest reading"
+            rows.append((f"tape zero {name}", f"{value:+.3f} div", "", "", origin))
+    how = {
+        "time": "interpolated in time to the middle of the run",
+        "mean": "mean of before and after",
+        "single": "the only one",
+    }.get(zero.interpolation, zero.interpolation)
+    rows.append(("tape zero in force", f"{zero.value_div:+.3f} div", "", "", how))
+    if correction is None or zero.coefficient is None:
+        text = "the card tells neither lambda nor a coefficient: not applied"
+        rows.append(("+ tape-zero correction", "not known", "", "", text))
+    else:
+        origin = f'{seconds(zero.coefficient)}" per division ({zero.coefficient_origin})'
+        rows.append(("+ tape-zero correction", signed_angle(correction), "", "", origin))
+    return rows
+
+
+def _target(session: OrientationSession, target: TargetResult, unit: AngleUnit) -> list[Row]:
+    rows: list[Row] = []
+    name = target.target or "target"
+    for place, value in (("before", target.before), ("after", target.after)):
+        if value is not None:
+            origin = f"mean of the sights of {name}, as face left"
+            rows.append((f"sights {place}", direction(value, unit), "", "", origin))
+    if target.collimation is not None:
+        origin = "half of face left minus face right; cancels in the mean of both"
+        rows.append(("collimation", signed_angle(target.collimation), "", "", origin))
+    if target.drift is not None:
+        origin = "sights after minus before; taken out linearly in time"
+        rows.append(("turning of the tripod", signed_angle(target.drift), "", "", origin))
+    if target.eccentric_correction or session.eccentric is not None:
+        shift = signed_angle(target.eccentric_correction)
+        rows.append(("+ eccentric set-up", shift, "", "", _eccentric(session, unit)))
+    if target.line_reading is not None:
+        shown = with_sigma(target.line_reading, unit)
+        rows.append(("= line reading", *shown, f"{target.pointings} pointings of {name}"))
+    if target.gyro_azimuth is not None:
+        origin = "line reading - gyro north"
+        if target.line_reading is None:
+            origin = "delivered by the instrument, mean of the rounds"
+        rows.append((f"= gyro azimuth to {name}", *with_sigma(target.gyro_azimuth, unit), origin))
+    return rows
+
+
+def _eccentric(session: OrientationSession, unit: AngleUnit) -> str:
+    item = session.eccentric
+    if item is None:
+        return ""
+    return (
+        f"{item.at} {item.distance_m:.3f} m beside its mark, "
+        f"mark in direction {direction(item.direction, unit)}"
+    )
+
+
+def _effects(project: Project, session: OrientationSession) -> list[Block]:
+    effects = [*project.instrument(session.instrument).effects, *session.effects]
+    if not effects:
+        return []
+    rows = tuple(
+        (effect.id, name, f"{value:.4g}", f"{sigma:.2g}", unit, effect.adopted_at)
+        for effect in effects
+        for name, value, sigma, unit in (effect.coefficients or (("", 0.0, 0.0, ""),))
+    )
+    head = ("adopted effect", "coefficient", "value", "±", "unit", "adopted")
+    return [Table(head, rows, "llrrll")]
+
+
+def _figures_of_merit(item: SessionResult) -> Table:
+    rows = [
+        ("points used", str(item.points_used), ""),
+        ("degrees of freedom", str(item.dof), ""),
+        ("rms of the residuals", seconds(item.residual_rms), "arcsec"),
+        ("95 % interval", seconds(item.interval95), "arcsec"),
+        ("amplitude, first point", seconds(item.amplitude), "arcsec"),
+        ("amplitude ratio of successive points", plain(item.damping_per_half_swing, 5), ""),
+        ("period", plain(item.period_s, 2), "s"),
+    ]
+    if item.reading_sigma is not None and item.method in ("tracking", "automatic"):
+        rows.append(("sigma of one reading", seconds(item.reading_sigma), "arcsec"))
+    rows += [(name.replace("_", " "), four_digits(v), unit) for name, v, unit in item.quantities]
+    known = tuple(row for row in rows if row[1] != NOTHING)
+    return Table(("quantity", "value", "unit"), known, "lrl")
+
+
+def _points(item: SessionResult, unit: AngleUnit) -> list[Block]:
+    if not item.points:
+        return []
+    scale = item.method in ("amplitude", "transit")
+
+    def value(reading: float | None) -> str:
+        return plain(reading, 3) if scale else direction(reading, unit)
+
+    rows = []
+    for index, point in enumerate(item.points):
+        schuler = ""
+        if 1 <= index <= len(item.schuler_means):
+            schuler = direction(item.schuler_means[index - 1], unit)
+        residual = (
+            plain(point.residual, 3, sign=True) if scale else seconds(point.residual, 1, sign=True)
+        )
+        rows.append(
+            (
+                str(point.index + 1),
+                str(point.seq),
+                point.side,
+                plain(point.elapsed_s, 1) if point.elapsed_s is not None else "",
+                value(point.observed),
+                value(point.fitted),
+                residual,
+                schuler,
+            )
+        )
+    columns = ["point", "seq", "side", "elapsed s", "observed", "fitted"]
+    columns += ["residual div" if scale else 'residual "', "Schuler mean"]
+    used = [i for i in range(len(columns)) if any(row[i] not in ("", NOTHING) for row in rows)]
+    table = Table(
+        tuple(columns[i] for i in used),
+        tuple(tuple(row[i] for i in used) for row in rows),
+        "".join("rrcrrrrr"[i] for i in used),
+    )
+    return [table, *_plots(item)]
+
+
+def _plots(item: SessionResult) -> list[Figure]:
+    residuals = [(float(p.index + 1), p.residual) for p in item.points if p.residual is not None]
+    scale = item.method in ("amplitude", "transit")
+    figures = []
+    if item.method == "tracking" and len(item.points) > 2:
+        figures.append(_swing(item))
+    if len(residuals) > 1:
+        factor, unit = (1.0, "div") if scale else (RHO_ARCSEC, "arcsec")
+        points = [(x, y * factor) for x, y in residuals]
+        figures.append(_residuals(item, points, unit))
+    return figures
+
+
+def _swing(item: SessionResult) -> Figure:
+    """Turning points about gyro north in arc-minutes, the fitted swing between them."""
+    reference = item.gyro_north.value if item.gyro_north is not None else item.points[0].observed
+    reference -= item.tape_zero_correction or 0.0
+
+    def minutes(angle: float) -> float:
+        return wrap_pi(angle - reference) * RHO_ARCSEC / 60.0
+
+    observed = [(float(p.index + 1), minutes(p.observed)) for p in item.points]
+    fitted = [(float(p.index + 1), minutes(p.fitted)) for p in item.points if p.fitted is not None]
+    frame = Frame(
+        axis([x for x, _ in observed], count=10), axis([y for _, y in observed], about_zero=True)
+    )
+    parts = frame.axes("turning point", "arcmin from gyro north as observed")
+    parts.append(frame.level(0.0, "mean"))
+    if len(fitted) > 1:
+        parts.append(frame.curve(half_wave(fitted), "data"))
+    parts += frame.marks(observed, "circle")
+    return frame.figure("Swing: circles observed, line fitted", parts)
+
+
+def _residuals(item: SessionResult, points: list[tuple[float, float]], unit: str) -> Figure:
+    sigma = None
+    if item.reading_sigma is not None and math.isfinite(item.reading_sigma):
+        sigma = item.reading_sigma * (RHO_ARCSEC if unit == "arcsec" else 1.0)
+    values = [y for _, y in points] + ([2.0 * sigma] if sigma else [])
+    frame = Frame(
+        axis([x for x, _ in points], count=10), axis(values, about_zero=True), height_mm=45.0
+    )
+    parts = frame.axes("point", unit)
+    parts.append(frame.level(0.0, "axis"))
+    if sigma:
+        parts += [frame.level(2.0 * sigma, "limit"), frame.level(-2.0 * sigma, "limit")]
+    for x, y in points:
+        parts += frame.bar(x, low=min(0.0, y), high=max(0.0, y))
+    parts += frame.marks(points, "dot")
+    title = "Residuals; dashed: twice the sigma of one reading" if sigma else "Residuals"
+    return frame.figure(title, parts)
