@@ -11,6 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from surveyapp import __version__
+from surveyapp.api_office import blank_form as blank_form
+from surveyapp.api_office import report as report
+from surveyapp.api_office import report_text as report_text
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import Project

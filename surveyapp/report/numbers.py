@@ -28,7 +28,7 @@ def signed_angle(angle: float | None) -> str:
     if angle is None or not math.isfinite(angle):
         return NOTHING
     total = round(abs(angle) * RHO_ARCSEC, 2)
-    sign = "-" if angle < 0.0 else "+"
+    sign = "-" if angle < 0.0 and total > 0.0 else "+"
     minutes, rest = divmod(total, 60.0)
     if not minutes:
         return f'{sign}{rest:.2f}"'

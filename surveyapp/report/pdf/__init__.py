@@ -54,7 +54,6 @@ from surveyapp.report.pdf.style import (
     style_of,
 )
 from surveyapp.report.pdf.tables import table_flowable
-from surveyapp.report.typeface import runs
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +124,7 @@ def _draw_text(
     canvas: Canvas, faces: Faces, text: str, at: tuple[float, float], size: float
 ) -> None:
     x, y = at
-    for name, run in runs(text, faces.of(text)):
+    for name, run in faces.split(text):
         canvas.setFont(name, size)
         canvas.drawString(x, y, run)
         x += pdfmetrics.stringWidth(run, name, size)
@@ -134,9 +133,12 @@ def _draw_text(
 def _fitted(faces: Faces, text: str, size: float, room: float) -> str:
     if faces.width(text, size) <= room:
         return text
-    while text and faces.width(text + "...", size) > room:
-        text = text[:-1]
-    return text + "..."
+    least, most = 0, len(text)
+    while least < most:
+        middle = (least + most + 1) // 2
+        fits = faces.width(text[:middle] + "...", size) <= room
+        least, most = (middle, most) if fits else (least, middle - 1)
+    return text[:least] + "..."
 
 
 def _draw_furniture(canvas: Canvas, document: Document, faces: Faces, *, total: int) -> None:
@@ -210,12 +212,12 @@ def _paragraph(block: Paragraph, faces: Faces) -> Flowable:
     if block.tone == "warning":
         style = style_of(
             size,
-            spaceAfter=4.0,
+            spaceAfter=7.0,
             leftIndent=6.0,
             borderColor=INK,
             borderWidth=0.8,
             borderPadding=(3.0, 4.0, 3.0, 4.0),
-            spaceBefore=5.0,
+            spaceBefore=7.0,
             rightIndent=4.0,
         )
     return Text(faces.markup(block.text), style)

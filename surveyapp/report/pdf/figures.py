@@ -15,7 +15,6 @@ from reportlab.platypus import Paragraph as Text
 from surveyapp.report.blocks import Figure, Label, Line, Marker, Polyline, Primitive
 from surveyapp.report.pdf.fonts import Faces
 from surveyapp.report.pdf.style import ACCENT, CELL, INK, PALE, QUIET, style_of
-from surveyapp.report.typeface import runs
 
 STROKES: Final[dict[str, tuple[colors.Color, float, Any]]] = {
     "axis": (INK, 0.5, ()),
@@ -75,7 +74,7 @@ def _label(item: Label, faces: Faces) -> list[Shape]:
     size = 6.5
     parts: list[Shape] = []
     x = -faces.width(item.text, size) * {"start": 0.0, "middle": 0.5, "end": 1.0}[item.anchor]
-    for name, run in runs(item.text, faces.of(item.text)):
+    for name, run in faces.split(item.text):
         parts.append(String(x, 0, run, fontName=name, fontSize=size, fillColor=INK))
         x += pdfmetrics.stringWidth(run, name, size)
     group = Group(*parts)

@@ -35,19 +35,23 @@ class Faces:
             pdfmetrics.registerFont(UnicodeCIDFont(name))
         return (*self.embedded, Face(name, is_wide))
 
+    def split(self, text: str) -> list[tuple[str, str]]:
+        """Runs of a text, each with the name of the face that draws it."""
+        if self.is_base(text) and text.isprintable():
+            return [(BASE, text)]
+        return runs(text, self.of(text))
+
     def markup(self, text: str) -> str:
         """Text with a font tag for every run that the base face cannot draw."""
         parts = []
-        for name, run in runs(text, self.of(text)):
+        for name, run in self.split(text):
             safe = escape(run)
             parts.append(safe if name == BASE else f'<font name="{name}">{safe}</font>')
         return "".join(parts)
 
     def width(self, text: str, size: float) -> float:
         """Width of a text [points]."""
-        return float(
-            sum(pdfmetrics.stringWidth(run, name, size) for name, run in runs(text, self.of(text)))
-        )
+        return float(sum(pdfmetrics.stringWidth(run, name, size) for name, run in self.split(text)))
 
     def is_base(self, text: str) -> bool:
         """Whether the base face alone draws a text."""

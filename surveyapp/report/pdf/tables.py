@@ -17,33 +17,35 @@ from surveyapp.report.pdf.style import CELL, INK, QUIET, RULE, TINT, WIDTH, styl
 
 
 def column_widths(natural: Sequence[float], smallest: Sequence[float], room: float) -> list[float]:
-    """Widths of columns: natural ones where they fit, else the widest give way first.
+    """Widths of columns: natural ones where they fit, else all give way in proportion.
 
     Parameters
     ----------
     natural, smallest : sequence of float
-        Width without wrapping, and width of the longest word.
+        Width without wrapping, and width of the longest word, below which no column goes while
+        there is room.
     room : float
         What the page has.
     """
-    widths = list(natural)
-    excess = sum(widths) - room
-    while excess > 0.01:
-        able = [i for i, width in enumerate(widths) if width > smallest[i] + 0.01]
-        if not able:
-            factor = room / sum(widths)
-            return [width * factor for width in widths]
-        widest = max(widths[i] for i in able)
-        top = [i for i in able if widths[i] > widest - 0.01]
-        others = [widths[i] for i in able if widths[i] <= widest - 0.01]
-        floor = max([*others, *(smallest[i] for i in top)])
-        cut = min(max(widest - floor, 0.5), excess / len(top))
-        for i in top:
-            widths[i] = max(widths[i] - cut, smallest[i])
-        excess = sum(widths) - room
-    return widths
+    if sum(natural) <= room:
+        return list(natural)
+    if sum(smallest) >= room:
+        return [width * room / sum(smallest) for width in smallest]
+    floors = [
+        min(width, max(least, _COMFORT)) for width, least in zip(natural, smallest, strict=True)
+    ]
+    if sum(floors) >= room:
+        floors = list(smallest)
+    low, high = 0.0, 1.0
+    for _ in range(50):  # the factor at which the scaled columns just fill the room
+        middle = 0.5 * (low + high)
+        total = sum(max(f, middle * w) for f, w in zip(floors, natural, strict=True))
+        low, high = (middle, high) if total <= room else (low, middle)
+    return [max(f, low * w) for f, w in zip(floors, natural, strict=True)]
 
 
+_COMFORT: Final = 75.0
+"""A column of text [points] is not made narrower than this while there is room."""
 _PADDING: Final = 3.0
 
 
@@ -66,15 +68,16 @@ def table_flowable(block: Table, faces: Faces) -> Flowable:
     if block.lined:
         widths = [width * WIDTH / sum(widths) for width in widths]
     cell = _cell_maker(faces, size, align, widths)
-    rows = [[cell(i, text, None) for i, text in enumerate(block.head)]]
+    headed = any(text.strip() for text in block.head)
+    rows = [[cell(i, text, None) for i, text in enumerate(block.head)]] if headed else []
     for index, row in enumerate(block.rows):
         mark = "strike" if index in block.struck else None
         rows.append([cell(i, text, mark) for i, text in enumerate(row)])
     heights = None
     if block.row_height_mm is not None:
-        heights = [None, *[block.row_height_mm * mm] * len(block.rows)]
-    grid = Grid(rows, colWidths=widths, rowHeights=heights, repeatRows=1, hAlign="LEFT")
-    grid.setStyle(_table_style(block, align, size))
+        heights = [*([None] if headed else []), *[block.row_height_mm * mm] * len(block.rows)]
+    grid = Grid(rows, colWidths=widths, rowHeights=heights, repeatRows=int(headed), hAlign="LEFT")
+    grid.setStyle(_table_style(block, align, size, headed=headed))
     return grid
 
 
@@ -101,7 +104,7 @@ def _cell_maker(
     return cell
 
 
-def _table_style(block: Table, align: str, size: float) -> list[Any]:
+def _table_style(block: Table, align: str, size: float, *, headed: bool) -> list[Any]:
     names = {"l": "LEFT", "c": "CENTER", "r": "RIGHT"}
     style: list[Any] = [
         ("FONT", (0, 0), (-1, -1), BASE, size),
@@ -112,10 +115,11 @@ def _table_style(block: Table, align: str, size: float) -> list[Any]:
         ("RIGHTPADDING", (0, 0), (-1, -1), _PADDING),
         ("TOPPADDING", (0, 0), (-1, -1), 1.2),
         ("BOTTOMPADDING", (0, 0), (-1, -1), 1.8),
-        ("BACKGROUND", (0, 0), (-1, 0), TINT),
-        ("LINEBELOW", (0, 0), (-1, 0), 0.6, INK),
         ("LINEBELOW", (0, -1), (-1, -1), 0.4, RULE),
     ]
+    if headed:
+        style.append(("BACKGROUND", (0, 0), (-1, 0), TINT))
+        style.append(("LINEBELOW", (0, 0), (-1, 0), 0.6, INK))
     style += [("ALIGN", (i, 0), (i, -1), names[letter]) for i, letter in enumerate(align)]
     for index in sorted(block.strong):
         style.append(("BACKGROUND", (0, index + 1), (-1, index + 1), TINT))

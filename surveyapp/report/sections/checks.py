@@ -36,35 +36,43 @@ def blocks(result: OrientationResult) -> tuple[Block, ...]:
     return tuple(found)
 
 
+def _rule(check: Check) -> str:
+    """Id of the limit; a space lets a long one wrap behind the name of its book."""
+    book, dot, name = check.rule.partition(".")
+    text = f"{book}{dot} {name}" if dot else book
+    return text + ("" if check.confirmed else " (not confirmed)")
+
+
 def _answered(checks: list[Check]) -> Table:
     rows = tuple(
         (
             verdict(check),
-            check.rule + ("" if check.confirmed else " (limit not confirmed)"),
             check.where,
             four_digits(check.value),
             four_digits(check.limit),
             check.unit,
-            check.clause,
             check.text,
+            _rule(check),
+            check.clause,
         )
         for check in checks
     )
-    head = ("verdict", "check", "where", "value", "limit", "unit", "clause", "what")
+    head = ("verdict", "where", "value", "limit", "unit", "what", "limit or test", "clause")
     strong = frozenset(i for i, check in enumerate(checks) if check.passed is False)
-    return Table(head, rows, "lllrrlll", strong=strong)
+    return Table(head, rows, "llrrllll", strong=strong)
 
 
 def _open(checks: list[Check]) -> Table:
     rows = tuple(
         (
-            check.rule,
             check.where,
             four_digits(check.limit),
             check.unit,
-            check.clause,
             check.text,
+            _rule(check),
+            check.clause,
         )
         for check in checks
     )
-    return Table(("check", "where", "limit", "unit", "clause", "what is missing"), rows, "llrlll")
+    head = ("where", "limit", "unit", "what is missing", "limit or test", "clause")
+    return Table(head, rows, "lrllll")

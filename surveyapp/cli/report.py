@@ -1,0 +1,46 @@
+"""``surveyapp report``: the survey record as PDF or text, and blank field-book forms."""
+
+from __future__ import annotations
+
+import argparse
+
+from surveyapp.cli.output import print_json
+from surveyapp.errors import Problem, SurveyError
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    parser.add_argument("folder", metavar="DIR", nargs="?", help="project folder")
+    parser.add_argument("-o", "--output", metavar="FILE.pdf", help="PDF to be written")
+    parser.add_argument("--blank", metavar="METHOD", help="a blank form instead of a record")
+    parser.add_argument("--font", metavar="FILE.ttf", help="face for Chinese, Japanese, Korean")
+    parser.add_argument("--text", action="store_true", help="print the record, write no PDF")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Write the record or the form; 0 whatever the checks say, they stand in it."""
+    from surveyapp import api
+
+    if (options.folder is None) == (options.blank is None):
+        raise _usage("either a project folder or --blank METHOD")
+    if options.text and options.folder is not None:
+        print(api.report_text(options.folder), end="")
+        return 0
+    if options.output is None:
+        raise _usage("-o FILE.pdf")
+    if options.blank is not None:
+        written = api.blank_form(options.blank, options.output, font=options.font)
+    else:
+        written = api.report(options.folder, options.output, font=options.font)
+    if options.json:
+        print_json(written.to_dict())
+    else:
+        print(f"{written.path}: {written.pages} pages, sha256 {written.sha256}")
+    return 0
+
+
+def _usage(expected: str) -> SurveyError:
+    return SurveyError(
+        Problem("the command is incomplete", "surveyapp report", "", expected, "See --help.")
+    )
