@@ -14,10 +14,13 @@ from surveyapp.domain.readings import Reading
 from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, TWO_PI
 
 ARCSEC_STEPS: Final = (60.0, 30.0, 20.0, 10.0, 6.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1)
-_DECADES: Final = range(1, -8, -1)
+PLAIN_STEPS: Final = tuple(m * 10.0**k for k in range(0, -8, -1) for m in (5.0, 2.0, 1.0))
+COARSEST: Final = {"gon": 0.02, "deg": 0.02, "div": 1.0}
+"""No circle is read more coarsely than by about a minute, no scale more coarsely than by whole
+divisions: a few readings that are round by chance must not count as a coarse reading."""
 _TOLERANCE: Final = 1e-3
-"""Share of a step within which a reading counts as a multiple: far above the rounding of a float
-(2e-9 of 0.1" at 360 degrees), far below half a step."""
+"""Share of the finest step within which a reading counts as a multiple of any step. A share of
+the step itself would take 220.0011 for a multiple of 20."""
 
 
 def infer_resolution(readings: Sequence[float], unit: str) -> float:
@@ -40,20 +43,22 @@ def infer_resolution(readings: Sequence[float], unit: str) -> float:
     if unit == "dms":
         return _coarsest([value * RHO_ARCSEC for value in readings], ARCSEC_STEPS) * ARCSEC
     factor = {"gon": 400.0 / TWO_PI, "deg": 360.0 / TWO_PI}.get(unit, 1.0)
-    steps = tuple(m * 10.0**k for k in _DECADES for m in (5.0, 2.0, 1.0))
+    coarsest = COARSEST.get(unit, math.inf)
+    steps = tuple(step for step in PLAIN_STEPS if step <= coarsest)
     return _coarsest([value * factor for value in readings], steps) / factor
 
 
 def _coarsest(values: Sequence[float], steps: Sequence[float]) -> float:
     if not values:
         return steps[-1]
-    return next((step for step in steps if all(_divides(step, v) for v in values)), steps[-1])
+    finest = steps[-1]
+    return next((step for step in steps if all(_divides(step, v, finest) for v in values)), finest)
 
 
-def _divides(step: float, value: float) -> bool:
-    quotient = value / step
-    floor = 1e-12 * abs(value) / step
-    return abs(quotient - round(quotient)) <= max(_TOLERANCE, floor)
+def _divides(step: float, value: float, finest: float) -> bool:
+    rounding_of_floats = 1e-12 * abs(value)
+    rest = abs(value - round(value / step) * step)
+    return rest <= max(_TOLERANCE * finest, rounding_of_floats)
 
 
 def reading_resolution(readings: Sequence[Reading]) -> float:

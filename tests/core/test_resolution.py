@@ -37,3 +37,20 @@ def test_gon_in_steps_of_its_own() -> None:
 
 def test_without_readings_nothing_is_coarse() -> None:
     assert infer_resolution([], "dms") == pytest.approx(0.1 * ARCSEC)
+
+
+def test_a_reading_that_is_nearly_a_multiple_of_a_coarse_step_is_none() -> None:
+    # 220.0011 is no multiple of 20: 4 seconds of arc are not nothing
+    for unit, full in (("deg", 360.0), ("gon", 400.0)):
+        values = [text * 2.0 * math.pi / full for text in (40.0, 220.0011)]
+        assert infer_resolution(values, unit) == pytest.approx(0.0001 * 2.0 * math.pi / full)
+    assert infer_resolution([10.0, 10.01], "div") == pytest.approx(0.01)
+
+
+def test_readings_that_are_round_by_chance_are_not_coarse() -> None:
+    for unit, full in (("deg", 360.0), ("gon", 400.0)):
+        values = [text * 2.0 * math.pi / full for text in (40.0, 220.0)]
+        step = infer_resolution(values, unit)
+        assert step == pytest.approx(0.02 * 2.0 * math.pi / full)
+        assert step < 75.0 * ARCSEC
+    assert infer_resolution([10.0, -10.0, 5.0], "div") == pytest.approx(1.0)
