@@ -42,6 +42,10 @@ CARD_KEYS: Final = (
 )
 """Every key of a card that a project may override; ``id`` is the card's own."""
 
+_POLAR_DEG: Final = 85.0
+"""Beyond this latitude nobody measures the period or the tape zero of a suspended gyro: it finds no
+north there, and values carried from there to another latitude would be beyond all bounds."""
+
 _AGREEMENT: Final = 0.05
 """Two statements of one quantity that differ by more contradict each other (physics.md 1.4)."""
 
@@ -180,7 +184,7 @@ def _scaled(
 
 
 def _latitude(table: Table, key: str = "latitude_deg", *, required: bool = False) -> float | None:
-    value = table.number(key, low=-90.0, high=90.0, required=required)
+    value = table.number(key, low=-_POLAR_DEG, high=_POLAR_DEG, required=required)
     return None if value is None else math.radians(value)
 
 

@@ -20,6 +20,7 @@ from surveyapp.io.files import has_control, shown
 from surveyapp_models.angles import TWO_PI, AngleError, AngleUnit, parse_angle
 
 _LONGEST_NAME: Final = 200
+_SMALLEST: Final = 1e-9
 
 
 @dataclass(slots=True)
@@ -133,7 +134,10 @@ class Table:
         required: bool = False,
         positive: bool = False,
     ) -> float | None:
-        """Finite number within [low, high], or None; ``positive`` excludes zero as well."""
+        """Finite number within [low, high], or None.
+
+        ``positive`` excludes zero as well, and what is so small that no measurement can be meant.
+        """
         value = self.get(key)
         if value is None:
             if required:
@@ -143,8 +147,9 @@ class Table:
         if number is None:
             self.problem(f"{key} is no number", value, "a finite number without quotes")
             return None
-        if not low <= number <= high or (positive and number <= 0.0):
-            expected = "more than 0" if positive and number <= 0.0 else f"{low:g} to {high:g}"
+        small = positive and number < _SMALLEST
+        if small or not low <= number <= high:
+            expected = "more than 0" if small else f"{low:g} to {high:g}"
             self.problem(f"{key} is out of range", value, expected)
             return None
         return number
