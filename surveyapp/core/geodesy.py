@@ -131,6 +131,44 @@ def open_grid(text: str) -> Grid:
     )
 
 
+def find_projected(
+    text: str, place: tuple[float, float] | None = None, *, limit: int = 30
+) -> tuple[tuple[str, str], ...]:
+    """EPSG codes and names of projected grids.
+
+    Parameters
+    ----------
+    text : str
+        Part of a name, or of a code; every word must be found.
+    place : tuple of float or None
+        Latitude and longitude [degrees] that the grid must be made for.
+    limit : int
+        Largest number returned; of more, those with the shortest names.
+
+    Returns
+    -------
+    tuple of (str, str)
+        Code such as ``EPSG:4546`` and official name.
+    """
+    from pyproj.aoi import AreaOfInterest
+    from pyproj.database import query_crs_info
+    from pyproj.enums import PJType
+
+    area = None
+    if place is not None:
+        latitude, longitude = place
+        area = AreaOfInterest(longitude, latitude, longitude, latitude)
+    words = text.lower().replace("epsg:", "").split()
+    found = [
+        (f"EPSG:{item.code}", item.name)
+        for item in query_crs_info(
+            auth_name="EPSG", pj_types=PJType.PROJECTED_CRS, area_of_interest=area
+        )
+        if all(word in item.name.lower() or word in item.code for word in words)
+    ]
+    return tuple(sorted(found, key=lambda item: (item[0] != f"EPSG:{text}", len(item[1])))[:limit])
+
+
 def _crs_problem(what: str, found: str, detail: str) -> SurveyError:
     return SurveyError(
         Problem(

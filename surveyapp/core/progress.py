@@ -13,6 +13,7 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from surveyapp.core.cardphysics import card_at
 from surveyapp.core.forecast import (
     PointForecast,
     Timing,
@@ -32,8 +33,6 @@ from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import Reading, ReadingKind, Side
 from surveyapp.errors import SurveyError
 from surveyapp_models.angles import wrap_two_pi
-from surveyapp_models.gyro.estimates import Estimate
-from surveyapp_models.gyro.periods import transfer_tracking_period
 
 Floats = NDArray[np.float64]
 
@@ -110,14 +109,8 @@ class Progress:
 
 def tracking_period(card: InstrumentCard, latitude: float | None) -> float | None:
     """T1 [s] of an instrument at a latitude [rad], None where its card states none."""
-    periods = card.periods
-    if periods is None or periods.tracking_s is None:
-        return None
-    if latitude is None:
-        return periods.tracking_s
-    known = Estimate(periods.tracking_s, periods.sigma_s or 0.0)
-    carried = transfer_tracking_period(known, latitude=periods.latitude, to_latitude=latitude)
-    return carried.value
+    period = card_at(card, latitude).tracking_s
+    return None if period is None else period.value
 
 
 def progress_of(

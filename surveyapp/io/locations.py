@@ -58,6 +58,13 @@ def copy_sample(name: str, folder: Path) -> Path:
     return target
 
 
+def user_documents_folder() -> Path:
+    """Folder in which copies of the samples are worked in; it need not exist."""
+    import platformdirs
+
+    return Path(platformdirs.user_documents_path()) / "surveyapp"
+
+
 def user_config_folder() -> Path:
     """Folder for the user's own settings; it need not exist."""
     import platformdirs

@@ -8,6 +8,7 @@ from typing import ClassVar
 from textual.app import App
 from textual.binding import Binding, BindingType
 
+from surveyapp import api_home
 from surveyapp.api_session import Observation
 from surveyapp.errors import SurveyError
 from surveyapp.io.settings import read_settings
@@ -46,7 +47,17 @@ class SurveyApp(App[int]):
         if self.folder is None:
             self.push_screen(HomeScreen())
         else:
-            self.push_screen(ProjectScreen(self.folder, Path(self.folder).resolve().name))
+            self.open_folder(self.folder)
+
+    def open_folder(self, folder: str) -> None:
+        """Open a project and remember it."""
+        self.folder = str(Path(folder).expanduser())
+        self.settings = api_home.remember(self.folder)
+        self.push_screen(ProjectScreen(self.folder, Path(self.folder).resolve().name))
+
+    def on_home_screen_folder_chosen(self, message: HomeScreen.FolderChosen) -> None:
+        """Open what was chosen."""
+        self.open_folder(message.folder)
 
     def open_session(self, session: str) -> None:
         """Open a session of the project for observing."""

@@ -83,7 +83,7 @@ D_SHARE: Final = "share"
 POOLED: Final = "{choice}"
 STABLE: Final = "stable"
 NOT_STABLE: Final = "NOT STABLE"
-PURPOSES: Final = {"calibration": "calibration", "survey": "survey"}
+PURPOSES: Final = {"survey": "survey", "calibration": "calibration"}
 
 # verdicts: words, never colour alone
 MET: Final = "met"
@@ -98,8 +98,73 @@ EXPECTED: Final = "expected: {text}"
 # home
 HOME_TITLE: Final = "surveyapp: gyro orientation"
 HOME_RECENT: Final = "Recent projects"
-HOME_SAMPLES: Final = "Samples (measured data, opened as a copy)"
-HOME_EMPTY: Final = "surveyapp open DIR opens a project; surveyapp new DIR makes one."
+HOME_NO_RECENT: Final = "  none yet"
+HOME_SAMPLES: Final = "Samples (measured data, opened as your own copy)"
+HOME_MORE: Final = "Begin"
+HOME_NEW: Final = "New project ..."
+HOME_OPEN: Final = "Open a folder ..."
+HOME_PRACTISE: Final = "Practise on a simulated instrument ..."
+HOME_FOLDER: Final = "project folder"
+HOME_FOLDER_TITLE: Final = "Which folder? Enter opens it."
+
+# new project
+NEW_TITLE: Final = "New project"
+NEW_STATE: Final = "F8 makes it"
+F_NAME: Final = "Name"
+F_FOLDER: Final = "Folder"
+F_FOLDER_HINT: Final = "a folder that does not exist yet"
+F_GRID: Final = "Grid"
+F_GRID_HINT: Final = "part of its name, or EPSG code; empty for none"
+F_GRIDS: Final = "{count} grids; Down and Enter choose"
+F_GRIDS_HERE: Final = "{count} grids where the stations lie; Down and Enter choose"
+F_UNIT: Final = "Angles"
+F_TYPING: Final = "Typing"
+F_RULES: Final = "Rule book"
+F_STATIONS: Final = "Stations"
+F_STATIONS_HINT: Final = (
+    "One a line: name, east, north, height. Or a first line that names the\n"
+    "columns: name, lat, lon, h. Or the path of a CSV file alone."
+)
+F_INSTRUMENT: Final = "Instrument"
+F_INSTRUMENT_ID: Final = "Its id"
+F_SERIAL: Final = "Serial no."
+UNITS: Final = {
+    "dms": "degrees, minutes, seconds",
+    "gon": "gon",
+    "deg": "decimal degrees",
+}
+TYPINGS: Final = {
+    "separated": "179-01-56 or 179 01 56",
+    "packed": "packed, 179.0156",
+}
+CARD_KNOWN: Final = "{title}: {known}"
+CARD_SIGMA: Final = 'one turning point ±{value}"'
+CARD_AZIMUTH: Final = 'one azimuth ±{value}"'
+CARD_PERIOD: Final = "period {value} s at latitude {latitude}"
+CARD_SCALE: Final = 'scale {value}" a division'
+CARD_NOTHING: Final = "no values known; what is missing is taken from the residuals"
+MADE: Final = "made: {folder}"
+
+# new session
+NEW_SESSION_TITLE: Final = "New session"
+F_ID: Final = "Id"
+F_STATION: Final = "Station"
+F_TARGET: Final = "Target"
+F_METHOD: Final = "Method"
+F_PURPOSE: Final = "Purpose"
+F_KNOWN: Final = "Known azimuth"
+F_KNOWN_HINT: Final = "grid azimuth, for a calibration; empty: from the coordinates"
+F_WANTED: Final = "Wanted 95 %"
+F_WANTED_HINT: Final = "arc-seconds of gyro north to stop at; may be empty"
+METHODS: Final = {
+    "tracking": "tracking: turning points on the circle",
+    "amplitude": "amplitude: turning points on the scale, clamped",
+    "transit": "transit: timed passages, clamped",
+    "automatic": "automatic gyro: delivered azimuths",
+}
+NO_TARGET: Final = "none: gyro north only"
+WANTED_NOT: Final = "the wanted interval is no positive number"
+MISSING_FIELD: Final = "{field} is missing"
 
 # keys
 KEY_QUIT: Final = "Quit"
@@ -241,3 +306,7 @@ KEY_OBSERVE: Final = "Observe"
 KEY_NEW: Final = "New session"
 PDF_WRITTEN: Final = "written: {path}"
 PDF_WRITING: Final = "writing the record ..."
+KEY_NEW_PROJECT: Final = "New project"
+KEY_FOLDER: Final = "Folder"
+KEY_MAKE: Final = "Make it"
+KEY_FIELD: Final = "Next field"

@@ -1,20 +1,117 @@
-"""Where one begins: recent projects and samples."""
+"""Where one begins: recent projects, samples, a folder, a new project, practice."""
 
 from __future__ import annotations
 
-from textual.app import ComposeResult
-from textual.screen import Screen
-from textual.widgets import Footer, Static
+from pathlib import Path
+from typing import ClassVar
 
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.message import Message
+from textual.screen import Screen
+from textual.widgets import Footer, OptionList, Static
+from textual.widgets.option_list import Option
+
+from surveyapp import api_home
+from surveyapp.errors import SurveyError
 from surveyapp.tui import texts
+from surveyapp.tui.screens.folder import FolderScreen
+from surveyapp.tui.screens.new_project import NewProjectScreen
+from surveyapp.tui.widgets.problems import problems_text
 from surveyapp.tui.widgets.titlebar import TitleBar
 
 
 class HomeScreen(Screen[None]):
     """The first screen without a project."""
 
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("enter", "choose", texts.KEY_OPEN),
+        Binding("n", "new", texts.KEY_NEW_PROJECT),
+        Binding("o", "folder", texts.KEY_FOLDER),
+    ]
+
+    class FolderChosen(Message):
+        """A project is to be opened."""
+
+        def __init__(self, folder: str) -> None:
+            super().__init__()
+            self.folder = folder
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.recent = api_home.recent_projects()
+        self.samples = api_home.samples()
+
     def compose(self) -> ComposeResult:
         """Title and what can be opened."""
         yield TitleBar(texts.HOME_TITLE)
-        yield Static(texts.HOME_EMPTY, classes="empty", markup=False)
+        yield OptionList(id="places")
+        yield Static(id="trouble", markup=False)
         yield Footer()
+
+    def on_mount(self) -> None:
+        """Fill the list."""
+        self.fill()
+
+    def on_screen_resume(self) -> None:
+        """A project may have been opened meanwhile."""
+        recent = api_home.recent_projects()
+        if recent != self.recent:
+            self.recent = recent
+            self.fill()
+
+    def fill(self) -> None:
+        """Show every place to begin."""
+        places = self.query_one("#places", OptionList)
+        places.clear_options()
+        options = [_heading(texts.HOME_RECENT)]
+        options += [Option(_place(path), id=f"recent:{path}") for path in self.recent]
+        if not self.recent:
+            options.append(_heading(texts.HOME_NO_RECENT))
+        options += [_heading(""), _heading(texts.HOME_SAMPLES)]
+        options += [Option(f"  {name}", id=f"sample:{name}") for name in self.samples]
+        options += [_heading(""), _heading(texts.HOME_MORE)]
+        options.append(Option(f"  {texts.HOME_NEW}", id="new:"))
+        options.append(Option(f"  {texts.HOME_OPEN}", id="folder:"))
+        places.add_options(options)
+        places.focus()
+        places.action_first()
+
+    def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
+        """Open what was chosen."""
+        kind, _, value = (event.option_id or "").partition(":")
+        if kind == "new":
+            self.action_new()
+        elif kind == "folder":
+            self.action_folder()
+        elif kind == "sample":
+            try:
+                self.post_message(self.FolderChosen(api_home.sample_copy(value)))
+            except SurveyError as error:
+                self.query_one("#trouble", Static).update(problems_text(error))
+        else:
+            self.post_message(self.FolderChosen(value))
+
+    def action_choose(self) -> None:
+        """Open what is under the cursor."""
+        self.query_one("#places", OptionList).action_select()
+
+    def action_new(self) -> None:
+        """Make a new project."""
+        self.app.push_screen(NewProjectScreen(), self._opened)
+
+    def action_folder(self) -> None:
+        """Type a folder."""
+        self.app.push_screen(FolderScreen(), self._opened)
+
+    def _opened(self, folder: str | None) -> None:
+        if folder:
+            self.post_message(self.FolderChosen(folder))
+
+
+def _heading(text: str) -> Option:
+    return Option(text, disabled=True)
+
+
+def _place(path: str) -> str:
+    return f"  {Path(path).name}  ({Path(path).parent})"

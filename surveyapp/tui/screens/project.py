@@ -21,6 +21,7 @@ from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import SurveyError
 from surveyapp.tui import texts
+from surveyapp.tui.screens.new_session import NewSessionScreen
 from surveyapp.tui.views.checks import CHECK_COLUMNS, check_rows, check_texts, summary
 from surveyapp.tui.views.constants import CONSTANT_COLUMNS, constant_rows
 from surveyapp.tui.views.lines import LINE_COLUMNS, budget_rows, chain_rows, line_rows
@@ -39,6 +40,7 @@ class ProjectScreen(Screen[None]):
         Binding("1", f"page('{PAGES[0]}')", texts.KEY_TABS, key_display="1-5"),
         *[Binding(str(i), f"page('{name}')", show=False) for i, name in enumerate(PAGES[1:], 2)],
         Binding("enter", "observe", texts.KEY_OBSERVE),
+        Binding("n", "new", texts.KEY_NEW),
         Binding("f5", "reload", texts.KEY_RELOAD),
         Binding("escape", "back", texts.KEY_BACK),
     ]
@@ -156,6 +158,15 @@ class ProjectScreen(Screen[None]):
         on_sessions = self.query_one(TabbedContent).active == "sessions"
         if on_sessions and self.project is not None and self.project.sessions:
             self.post_message(self.SessionChosen(self.project.sessions[row].id))
+
+    def action_new(self) -> None:
+        """Begin another session."""
+        if self.project is not None:
+            self.app.push_screen(NewSessionScreen(self.folder, self.project), self._made)
+
+    def _made(self, session: str | None) -> None:
+        if session is not None:
+            self.post_message(self.SessionChosen(session))
 
     async def action_back(self) -> None:
         """Leave the project; nothing is unsaved here."""

@@ -1,0 +1,33 @@
+"""Type the folder of a project."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Vertical
+from textual.screen import ModalScreen
+from textual.widgets import Input, Static
+
+from surveyapp.tui import texts
+
+
+class FolderScreen(ModalScreen[str | None]):
+    """Returns the folder, or None."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", texts.KEY_LEAVE)]
+
+    def compose(self) -> ComposeResult:
+        """One line."""
+        with Vertical(id="dialog"):
+            yield Static(texts.HOME_FOLDER_TITLE, classes="heading", markup=False)
+            yield Input(placeholder=texts.HOME_FOLDER, compact=True)
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        """Open it."""
+        self.dismiss(event.value.strip() or None)
+
+    def action_leave(self) -> None:
+        """Open nothing."""
+        self.dismiss(None)

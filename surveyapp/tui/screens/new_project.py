@@ -1,0 +1,153 @@
+"""The form for a new project: grid, stations, instrument, rule book, and how angles are typed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import ClassVar
+
+from textual import work
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import VerticalScroll
+from textual.message import Message
+from textual.screen import Screen
+from textual.widgets import Footer, Input, OptionList, Select, Static, TextArea
+from textual.widgets.option_list import Option
+
+from surveyapp import api, api_home
+from surveyapp.api_home import GridChoice, NewProject, NewStation
+from surveyapp.errors import SurveyError
+from surveyapp.tui import texts
+from surveyapp.tui.views.card import card_known
+from surveyapp.tui.widgets.field import ChoiceField, TextField, chosen, typed
+from surveyapp.tui.widgets.problems import problems_text
+from surveyapp.tui.widgets.titlebar import TitleBar
+
+
+class NewProjectScreen(Screen[str | None]):
+    """Returns the new folder, or None."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("tab", "app.focus_next", texts.KEY_FIELD),
+        Binding("f8", "make", texts.KEY_MAKE),
+        Binding("escape", "leave", texts.KEY_LEAVE),
+    ]
+
+    class GridsFound(Message):
+        """The search for a grid has ended."""
+
+        def __init__(self, grids: tuple[GridChoice, ...], *, here: bool) -> None:
+            super().__init__()
+            self.grids = grids
+            self.here = here
+
+    def compose(self) -> ComposeResult:
+        """All fields below each other."""
+        yield TitleBar(texts.NEW_TITLE)
+        with VerticalScroll(can_focus=False, classes="form"):
+            yield TextField(texts.F_NAME, "name")
+            yield TextField(texts.F_FOLDER, "folder", hint=texts.F_FOLDER_HINT)
+            yield ChoiceField(texts.F_UNIT, "unit", texts.UNITS)
+            yield ChoiceField(texts.F_TYPING, "typing", texts.TYPINGS)
+            yield TextField(texts.F_GRID, "grid", hint=texts.F_GRID_HINT)
+            yield Static(id="grids-told", classes="told", markup=False)
+            yield OptionList(id="grids", compact=True)
+            yield Static(texts.F_STATIONS, classes="label", markup=False)
+            yield TextArea(id="stations", compact=True, tab_behavior="focus")
+            yield Static(texts.F_STATIONS_HINT, classes="told", markup=False)
+            cards = {"": texts.NOT_DETERMINED, **{c.id: c.title for c in api.models()}}
+            yield ChoiceField(texts.F_INSTRUMENT, "card", cards)
+            yield Static(id="card-told", classes="told", markup=False)
+            yield TextField(texts.F_INSTRUMENT_ID, "instrument", value="G1")
+            yield TextField(texts.F_SERIAL, "serial")
+            books = {"": texts.NOT_DETERMINED, **{name: name for name in api_home.rule_books()}}
+            yield ChoiceField(texts.F_RULES, "rules", books)
+            yield Static(id="trouble", classes="told", markup=False)
+        yield Footer(show_command_palette=False)
+
+    def on_mount(self) -> None:
+        """Begin at the name."""
+        self.query_one("#grids").display = False
+        self.query_one(TitleBar).state = texts.NEW_STATE
+        self.query_one("#name").focus()
+
+    def on_input_changed(self, event: Input.Changed) -> None:
+        """Search the grid while it is typed."""
+        if event.input.id == "grid":
+            text = event.value.strip()
+            self.query_one("#grids").display = False
+            if len(text) >= 3:
+                self.search(text, self.placed())
+
+    def placed(self) -> tuple[NewStation, ...]:
+        """Stations typed so far, as far as they make sense."""
+        try:
+            return self.stations()
+        except SurveyError:
+            return ()
+
+    def stations(self) -> tuple[NewStation, ...]:
+        """Stations typed, pasted, or in the file that is named."""
+        return api_home.read_stations(self.query_one("#stations", TextArea).text)
+
+    @work(thread=True, exclusive=True)
+    def search(self, text: str, stations: tuple[NewStation, ...]) -> None:
+        """Look for grids in a thread."""
+        here = any(station.lat is not None for station in stations)
+        grids = api_home.find_grids(text, stations)
+        self.post_message(self.GridsFound(grids, here=here))
+
+    def on_new_project_screen_grids_found(self, message: GridsFound) -> None:
+        """Show the grids."""
+        options = self.query_one("#grids", OptionList)
+        options.clear_options()
+        options.add_options([Option(f"{g.code}  {g.name}", id=g.code) for g in message.grids])
+        exact = any(g.code == typed(self, "grid") for g in message.grids)
+        options.display = bool(message.grids) and not exact
+        pattern = texts.F_GRIDS_HERE if message.here else texts.F_GRIDS
+        told = message.grids[0].name if exact else pattern.format(count=len(message.grids))
+        self.query_one("#grids-told", Static).update(told)
+
+    def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
+        """Take a grid."""
+        self.query_one("#grid", Input).value = event.option_id or ""
+        self.query_one("#grid").focus()
+
+    def on_select_changed(self, event: Select.Changed) -> None:
+        """Show what is known of the instrument."""
+        if event.select.id == "card":
+            identity = event.value if isinstance(event.value, str) else ""
+            known = card_known(api.model(identity)) if identity else ""
+            self.query_one("#card-told", Static).update(known)
+
+    def form(self) -> NewProject:
+        """What stands in the fields."""
+        card = chosen(self, "card")
+        instrument = (typed(self, "instrument"), card, typed(self, "serial"))
+        return NewProject(
+            folder=typed(self, "folder") or typed(self, "name"),
+            name=typed(self, "name") or Path(typed(self, "folder")).name,
+            crs=typed(self, "grid"),
+            angle_unit=chosen(self, "unit"),
+            angle_typing=chosen(self, "typing"),
+            rule_book=chosen(self, "rules"),
+            stations=self.stations(),
+            instruments=(instrument,) if card and instrument[0] else (),
+        )
+
+    def action_make(self) -> None:
+        """Make the folder, or say what is wrong."""
+        trouble = self.query_one("#trouble", Static)
+        if not typed(self, "name") and not typed(self, "folder"):
+            trouble.update(texts.MISSING_FIELD.format(field=texts.F_NAME))
+            self.query_one("#name").focus()
+            return
+        try:
+            self.dismiss(api_home.create_project(self.form()))
+        except SurveyError as error:
+            trouble.update(problems_text(error))
+            trouble.scroll_visible(animate=False)
+
+    def action_leave(self) -> None:
+        """Make nothing."""
+        self.dismiss(None)

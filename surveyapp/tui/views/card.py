@@ -1,0 +1,26 @@
+"""What is known of an instrument, in a line."""
+
+from __future__ import annotations
+
+from surveyapp.domain.instrument import InstrumentCard
+from surveyapp.tui import texts
+from surveyapp.tui.views.form import arcsec_text, number_text
+from surveyapp_models.angles import AngleUnit, format_angle
+
+
+def card_known(card: InstrumentCard) -> str:
+    """The values of a card that a surveyor asks for first."""
+    parts = []
+    if card.sigma.reversal is not None:
+        parts.append(texts.CARD_SIGMA.format(value=arcsec_text(card.sigma.reversal)))
+    if card.sigma.azimuth is not None:
+        parts.append(texts.CARD_AZIMUTH.format(value=arcsec_text(card.sigma.azimuth)))
+    periods = card.periods
+    if periods is not None and periods.tracking_s is not None:
+        latitude = format_angle(periods.latitude, AngleUnit.DEG, 0).split(".")[0]
+        value = number_text(periods.tracking_s)
+        parts.append(texts.CARD_PERIOD.format(value=value, latitude=latitude))
+    if card.scale_value is not None:
+        parts.append(texts.CARD_SCALE.format(value=arcsec_text(card.scale_value)))
+    known = ", ".join(parts) if parts else texts.CARD_NOTHING
+    return texts.CARD_KNOWN.format(title=card.title, known=known)

@@ -1,0 +1,138 @@
+"""A project and a session made on the screen stand in project.toml and can be observed."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import pytest
+from helpers_tui import SMALL
+from textual.pilot import Pilot
+from textual.widgets import Input, OptionList, Select, Static, TextArea
+
+from surveyapp import api, api_home
+from surveyapp.errors import SurveyError
+from surveyapp.tui.app import SurveyApp
+from surveyapp.tui.screens.home import HomeScreen
+from surveyapp.tui.screens.new_project import NewProjectScreen
+from surveyapp.tui.screens.project import ProjectScreen
+from surveyapp.tui.screens.session import SessionScreen
+
+
+async def settle(pilot: Pilot[int]) -> None:
+    for _ in range(2):
+        await pilot.app.workers.wait_for_complete()
+        await pilot.pause()
+
+
+async def test_a_project_and_a_session_made_on_the_screen(tmp_path: Path) -> None:
+    folder = tmp_path / "ramp 3"
+    app = SurveyApp(None)
+    async with app.run_test(size=SMALL) as pilot:
+        await settle(pilot)
+        assert isinstance(app.screen, HomeScreen)
+        await pilot.press("n")
+        await settle(pilot)
+        form = app.screen
+        assert isinstance(form, NewProjectScreen)
+        await pilot.press(*"Ramp 3", "tab")
+        form.query_one("#folder", Input).value = str(folder)
+        form.query_one("#typing", Select).value = "packed"
+        form.query_one(
+            "#stations", TextArea
+        ).text = "name;lat;lon;h\n3083;34.4;110.3;812.4\n3082;34.41;110.31;"
+        form.query_one("#grid").focus()
+        await pilot.press(*"cm 111")
+        await settle(pilot)
+        grids = form.query_one("#grids", OptionList)
+        codes = [grids.get_option_at_index(i).id for i in range(grids.option_count)]
+        assert "EPSG:4546" in codes
+        form.query_one("#grid", Input).value = "EPSG:4546"
+        form.query_one("#card", Select).value = "wild-gak1"
+        await settle(pilot)
+        assert "32.4" in str(form.query_one("#card-told", Static).content)
+        await pilot.press("f8")
+        await settle(pilot)
+        assert isinstance(app.screen, ProjectScreen)
+        await pilot.press("n")
+        await settle(pilot)
+        app.screen.query_one("#id", Input).value = "r1"
+        app.screen.query_one("#target", Select).value = "3082"
+        app.screen.query_one("#wanted", Input).value = "15"
+        await pilot.press("f8")
+        await settle(pilot)
+        assert isinstance(app.screen, SessionScreen)
+        app.screen.query_one("#reading", Input).value = "5"
+        await pilot.press("enter")
+        await settle(pilot)
+    written = tomllib.loads((folder / "project.toml").read_text(encoding="utf-8"))
+    assert written["name"] == "Ramp 3"
+    assert written["crs"] == "EPSG:4546"
+    assert written["angle_typing"] == "packed"
+    assert [s["name"] for s in written["station"]] == ["3083", "3082"]
+    assert written["instrument"] == [{"id": "G1", "card": "wild-gak1"}]
+    assert written["orientation"][0]["wanted_interval_arcsec"] == 15.0
+    project = api.open_project(folder)
+    assert project.sessions[0].target == "3082"
+    assert [row.text for row in project.sessions[0].book.rows] == ["5"]
+    assert not project.warnings, project.warnings
+    assert api_home.recent_projects() == (str(folder.resolve()),)
+
+
+async def test_a_form_with_faults_makes_nothing_and_says_why(tmp_path: Path) -> None:
+    app = SurveyApp(None)
+    async with app.run_test(size=SMALL) as pilot:
+        await settle(pilot)
+        await pilot.press("n", "f8")
+        await settle(pilot)
+        form = app.screen
+        assert isinstance(form, NewProjectScreen)
+        form.query_one("#name", Input).value = "x"
+        form.query_one("#folder", Input).value = str(tmp_path / "x")
+        form.query_one("#stations", TextArea).text = "A 1\nA 1 2"
+        await pilot.press("f8")
+        await settle(pilot)
+        assert "line 1" in str(form.query_one("#trouble", Static).content)
+        await pilot.press("escape")
+        await settle(pilot)
+        assert isinstance(app.screen, HomeScreen)
+    assert not (tmp_path / "x").exists()
+
+
+def test_stations_are_read_as_surveyors_write_them(tmp_path: Path) -> None:
+    expected = (api_home.NewStation("A", e=1.5, n=2.5, h=3.0), api_home.NewStation("B"))
+    assert api_home.read_stations("A 1.5 2.5 3\nB") == expected
+    assert api_home.read_stations("A,1.5,2.5,3\nB,,,") == expected
+    assert api_home.read_stations("Name;N;E;H\nA;2.5;1.5;3\nB;;;") == expected
+    file = tmp_path / "points.csv"
+    file.write_text("A,1.5,2.5,3\nB\n", encoding="utf-8")
+    assert api_home.read_stations(str(file)) == expected
+    with pytest.raises(SurveyError, match="twice"):
+        api_home.read_stations("A 1 2\nA 1 2")
+
+
+def test_a_session_that_cannot_stand_leaves_the_project_as_it_was(tmp_path: Path) -> None:
+    folder = tmp_path / "p"
+    api_home.create_project(api_home.NewProject(folder=str(folder), name="p"))
+    before = (folder / "project.toml").read_bytes()
+    form = api_home.NewSession("r1", "X", "", "G1", "tracking", "survey")
+    with pytest.raises(SurveyError):
+        api_home.create_session(folder, form)
+    assert (folder / "project.toml").read_bytes() == before
+    assert list((folder / "observations").iterdir()) == []
+
+
+async def test_a_sample_is_opened_as_the_users_own_copy(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from surveyapp.io import locations
+
+    monkeypatch.setattr(locations, "user_documents_folder", lambda: tmp_path / "documents")
+    app = SurveyApp(None)
+    async with app.run_test(size=SMALL) as pilot:
+        await settle(pilot)
+        await pilot.press("enter")
+        await settle(pilot)
+        assert isinstance(app.screen, ProjectScreen)
+    copies = [p.name for p in (tmp_path / "documents").iterdir()]
+    assert copies == [api_home.samples()[0]]
