@@ -88,14 +88,19 @@ async def test_a_whole_tracking_session_typed_gives_what_orient_gives(tmp_path: 
     assert readings(rows_on_disk(folder)) == [(row["kind"], row["value"]) for row in typed]
     expected = api.orient(folder, session="r1").to_dict()
     assert shown == expected
-    # an independent route: the same readings as another hand would have written them
+    # another hand: the same readings and moments, without the screen's notes, sides written down
     other = make_project(tmp_path / "other")
-    plain = [{**row, "time": "", "elapsed_s": "", "seq": str(n)} for n, row in enumerate(typed, 1)]
+    kept = [row for row in rows_on_disk(folder) if row["kind"] != "note"]
+    plain = [
+        {**row, "side": source["side"], "seq": str(number)}
+        for number, (row, source) in enumerate(zip(kept, typed, strict=True), 1)
+    ]
     (other / "observations" / "r1.csv").write_text(book_text(tuple(plain)), encoding="utf-8")
     by_hand = api.orient(other, session="r1").to_dict()["sessions"][0]
-    assert shown["sessions"][0]["gyro_north"]["deg"] == pytest.approx(
-        by_hand["gyro_north"]["deg"], abs=0.2 / 3600.0
-    )
+    assert shown["sessions"][0]["gyro_north"] == by_hand["gyro_north"]
+    assert shown["sessions"][0]["gyro_azimuth"] == by_hand["gyro_azimuth"]
+    truth = 100.0  # degrees; what the simulated session was made with
+    assert by_hand["gyro_north"]["deg"] == pytest.approx(truth, abs=20.0 / 3600.0)
 
 
 async def test_short_forms_misses_strikes_and_undo(tmp_path: Path) -> None:
