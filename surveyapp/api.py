@@ -25,8 +25,10 @@ if TYPE_CHECKING:
     import numpy as np
 
     from surveyapp.core.comparison import DemonstratedSample
+    from surveyapp.core.orientation import Orientation
     from surveyapp.core.plan import StationPlan
     from surveyapp.io.simulated import SimulatedFiles
+    from surveyapp.workflows.diagnosing import Diagnosed
 
 Folder = str | os.PathLike[str]
 
@@ -81,7 +83,6 @@ def orient(
     """
     from dataclasses import replace
 
-    from surveyapp.core.orientation import orient_project
     from surveyapp.core.outcome import outcome
     from surveyapp.io.project_checks import project_checks
 
@@ -89,7 +90,7 @@ def orient(
         project = open_project(project)
     if session is not None:
         _require(session, [item.id for item in project.sessions], "session")
-    computed = orient_project(project, generator_of(project), estimator=estimator, only=session)
+    computed = _computed(project, estimator=estimator, only=session)
     checks = project_checks(project, computed)
     result = outcome(computed, software=SOFTWARE, only=session, more_checks=checks)
     if line is not None:
@@ -306,3 +307,65 @@ def simulate(
         raise SurveyError(Problem("the seed is negative", "--seed", str(seed), "0 or more"))
     files, truth = simulate_kind(kind, effects=effects, seed=seed)
     return write_simulated(Path(out), files, truth)
+
+
+def diagnose(
+    project: Project | Folder,
+    *,
+    session: str | None = None,
+    campaign: str | None = None,
+    confirm: str | None = None,
+    effects: Folder | None = None,
+    adopt: bool = False,
+) -> Diagnosed:
+    """Find which effect the model lacks, how sure that is, and prove it.
+
+    Parameters
+    ----------
+    project : Project or path
+    session : str or None
+        Diagnose the turning points of this session.
+    campaign : str or None
+        Diagnose the determinations of this instrument.
+    confirm : str or None
+        A second session that chose nothing; for a campaign the session from which on the
+        determinations only confirm.
+    effects : path or None
+        A Python file with a tuple ``EFFECTS`` of the user's own effects.
+    adopt : bool
+        Write the effects that the engine names into the project; the next ``orient`` uses them.
+
+    Raises
+    ------
+    SurveyError
+        For an unknown subject, too few observations, or a project that cannot be written.
+    """
+    from surveyapp.io.effects import load_effects
+    from surveyapp.workflows.diagnosing import Request, diagnose_project
+
+    if not isinstance(project, Project):
+        project = open_project(project)
+    own = () if effects is None else load_effects(Path(effects))
+    return diagnose_project(
+        _computed(project),
+        Request(session, campaign, confirm, own),
+        folder=Path(project.path) if project.path else None,
+        adopt=adopt,
+        software=SOFTWARE,
+    )
+
+
+def _computed(
+    project: Project, *, estimator: str | None = None, only: str | None = None
+) -> Orientation:
+    """Orient a project; runs with adopted effects are estimated with them in the model."""
+    from surveyapp.core.orientation import orient_project
+
+    run_model = None
+    if any(session.effects for session in project.sessions):
+        from surveyapp.diagnosis.subjects import modelled_run
+
+        run_model = modelled_run
+    return orient_project(
+        project, generator_of(project), estimator=estimator, only=only, run_model=run_model
+    )

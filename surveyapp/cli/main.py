@@ -38,6 +38,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("check", "check", "apply every limit and test that the data can answer"),
     Command("adjust", "adjust", "traverse or .gkf network to coordinates, sigmas and tests"),
     Command("report", "report", "the survey record as PDF, or a blank field-book form"),
+    Command("diagnose", "diagnose", "which effect does the model lack, and how sure is that"),
     Command("new", "new", "make a new project folder"),
     Command("models", "models", "instrument cards and what is known of them"),
     Command("plan", "plan", "method, points and minutes for a wanted interval at this latitude"),

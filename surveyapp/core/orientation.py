@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from surveyapp.core.adopted import apply_adopted
 from surveyapp.core.calibration_sessions import calibrations_of
 from surveyapp.core.geodesy import (
     MAX_LATITUDE_DEG,
@@ -44,6 +45,7 @@ from surveyapp.core.session import (
 )
 from surveyapp.core.sights import SightSet, zenith_angle
 from surveyapp.core.survey_lines import oriented_lines
+from surveyapp.core.tracking import RunModel
 from surveyapp.core.uncertain import Uncertain
 from surveyapp.domain.project import (
     OrientationSession,
@@ -76,6 +78,7 @@ def orient_project(
     *,
     estimator: str | None = None,
     only: str | None = None,
+    run_model: RunModel | None = None,
 ) -> Orientation:
     """Reduce every session, determine the constants, orient every line.
 
@@ -88,6 +91,8 @@ def orient_project(
         For all sessions; None for the default of each method.
     only : str or None
         Orient lines with this survey session alone; the constants come from all calibrations.
+    run_model : callable or None
+        Estimates runs with adopted effects.
 
     Raises
     ------
@@ -101,7 +106,12 @@ def orient_project(
         for station in project.stations
     }
     warnings = list(project.warnings)
-    reduced, sigmas = _reduce_all(project, rng, positions, stations, estimator)
+    setting = _Setting(project, positions, stations, rng, estimator, run_model)
+    reduced, sigmas = _reduce_all(setting)
+    measured = reduced
+    for instrument in project.instruments:
+        reduced, found = apply_adopted(instrument, reduced, positions)
+        warnings += found
     scatters = {
         instrument.id: _scatter_of(project, reduced, instrument.id)
         for instrument in project.instruments
@@ -109,18 +119,18 @@ def orient_project(
     geometry = _geometries(reduced, stations, grid, positions)
     constants = []
     for instrument in project.instruments:
-        found, more = calibrations_of(
+        calibrations, more = calibrations_of(
             project, reduced, instrument.id, geometry, scatters[instrument.id]
         )
         warnings += more
-        constants.append(determine(instrument, found))
+        constants.append(determine(instrument, calibrations))
     lines, more = oriented_lines(project, reduced, constants, geometry, scatters, stations, only)
     warnings += more
     return Orientation(
         project,
         grid,
         positions,
-        reduced,
+        measured,
         sigmas,
         scatters,
         tuple(constants),
@@ -133,30 +143,35 @@ def _with_position(station: Station, at: Position) -> Station:
     return replace(station, e=at.e, n=at.n, latitude=at.latitude, longitude=at.longitude)
 
 
-def _reduce_all(
-    project: Project,
-    rng: np.random.Generator,
-    positions: Mapping[str, Position],
-    stations: Mapping[str, Station],
-    estimator: str | None,
-) -> tuple[tuple[ReducedSession, ...], dict[str, SightSigma]]:
+@dataclass(frozen=True, slots=True)
+class _Setting:
+    """What the reduction of every session needs."""
+
+    project: Project
+    positions: Mapping[str, Position]
+    stations: Mapping[str, Station]
+    rng: np.random.Generator
+    estimator: str | None
+    run_model: RunModel | None
+
+
+def _reduce_all(setting: _Setting) -> tuple[tuple[ReducedSession, ...], dict[str, SightSigma]]:
     problems: list[Problem] = []
     sights: dict[str, dict[str, SightSet]] = {}
-    for session in project.sessions:
+    for session in setting.project.sessions:
         try:
-            known_target(session, stations)
+            known_target(session, setting.stations)
             sights[session.id] = collect_sights(session)
         except SurveyError as error:
             problems += error.problems
-    sigmas = _sight_sigmas(project, sights)
+    sigmas = _sight_sigmas(setting.project, sights)
     reduced = []
-    for session in project.sessions:
+    for session in setting.project.sessions:
         if session.id not in sights:
             continue
         try:
-            reduced.append(
-                _reduce_one(project, session, rng, positions, stations, estimator, sights, sigmas)
-            )
+            sigma = sigmas[session.instrument]
+            reduced.append(_reduce_one(setting, session, sights[session.id], sigma))
         except SurveyError as error:
             problems += error.problems
     if problems:
@@ -181,26 +196,24 @@ def _sight_sigmas(
 
 
 def _reduce_one(
-    project: Project,
+    setting: _Setting,
     session: OrientationSession,
-    rng: np.random.Generator,
-    positions: Mapping[str, Position],
-    stations: Mapping[str, Station],
-    estimator: str | None,
-    sights: Mapping[str, Mapping[str, SightSet]],
-    sigmas: Mapping[str, SightSigma],
+    sights: Mapping[str, SightSet],
+    sigma: SightSigma,
 ) -> ReducedSession:
-    card = project.instrument(session.instrument).card
-    latitude = positions[session.station].latitude
+    card = setting.project.instrument(session.instrument).card
+    latitude = setting.positions[session.station].latitude
     warnings = _latitude_warnings(session, latitude, card.valid.latitude_max)
-    reduction = reduce_swing(session, card, rng, latitude=latitude, estimator=estimator)
-    targets = reduce_targets(
+    reduction = reduce_swing(
         session,
-        reduction,
-        sights[session.id],
-        sigma=sigmas[session.instrument],
-        stations=stations,
-        card=card,
+        card,
+        setting.rng,
+        latitude=latitude,
+        estimator=setting.estimator,
+        run_model=setting.run_model,
+    )
+    targets = reduce_targets(
+        session, reduction, sights, sigma=sigma, stations=setting.stations, card=card
     )
     if not targets:
         text = f"session {session.id}: no sight of a target: gyro north only, no line"

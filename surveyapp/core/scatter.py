@@ -17,7 +17,14 @@ from dataclasses import dataclass
 from surveyapp.core.statistics.distributions import f_tail
 from surveyapp.core.uncertain import Source, Uncertain, combine
 
-SHARED = ("centring", "deflection", "known azimuth", "torsion ratio", "known constant")
+SHARED = (
+    "centring",
+    "deflection",
+    "known azimuth",
+    "torsion ratio",
+    "known constant",
+    "adopted effect",
+)
 """Sources that repeated determinations of one line share: they do not average down."""
 
 SCATTER_GATE = 0.05

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from surveyapp.core.instrument_constant import Phase
-from surveyapp.core.sights import moments
 from surveyapp.domain.project import OrientationSession, Project
 from surveyapp.domain.readings import SWING_KINDS
 
@@ -16,7 +15,7 @@ def session_moments(project: Project, instrument: str) -> dict[str, tuple[float,
     Times if every session has them, else dates, else ``order``, else the order of the file.
     """
     own = [session for session in project.sessions if session.instrument == instrument]
-    stamps = {session.id: _timestamp(session) for session in own}
+    stamps = {session.id: session_timestamp(session) for session in own}
     if any(stamp is None for stamp in stamps.values()):
         stamps = {s.id: None if s.date is None else s.date.toordinal() * 86400.0 for s in own}
         if len(set(stamps.values())) == 1 and all(s.order is not None for s in own):
@@ -31,12 +30,10 @@ def session_moments(project: Project, instrument: str) -> dict[str, tuple[float,
     }
 
 
-def _timestamp(session: OrientationSession) -> float | None:
-    rows = [row for row in session.book.live if row.kind in SWING_KINDS and row.time is not None]
-    times = moments(rows) if rows and all(row.elapsed_s is None for row in rows) else None
-    if times is not None:
-        return float(times.mean())
-    stamps = [row.time.timestamp() for row in rows if row.time is not None]
+def session_timestamp(session: OrientationSession) -> float | None:
+    """Mean moment of the observation [s since 1970 UTC], None where its rows carry no time."""
+    rows = session.book.live
+    stamps = [row.time.timestamp() for row in rows if row.kind in SWING_KINDS and row.time]
     return sum(stamps) / len(stamps) if stamps else None
 
 

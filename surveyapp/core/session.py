@@ -13,7 +13,7 @@ from surveyapp.core.nontracking import reduce_nontracking
 from surveyapp.core.reduction import Reduction
 from surveyapp.core.resolution import reading_resolution, rounding_sigma
 from surveyapp.core.sights import SightSet, eccentric_correction, reduce_sights
-from surveyapp.core.tracking import reduce_tracking
+from surveyapp.core.tracking import RunModel, reduce_tracking
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession, ResultWarning, Station, grid_distance_m
@@ -104,13 +104,17 @@ def reduce_swing(
     *,
     latitude: float | None,
     estimator: str | None,
+    run_model: RunModel | None = None,
 ) -> Reduction:
     """Reduce the observation itself by the session's method."""
     chosen = estimator_for(session, estimator)
     if session.method == "automatic":
         return reduce_automatic(session, card)
-    reduce = reduce_tracking if session.method == "tracking" else reduce_nontracking
-    return reduce(session, card, rng, latitude=latitude, estimator=chosen)
+    if session.method != "tracking":
+        return reduce_nontracking(session, card, rng, latitude=latitude, estimator=chosen)
+    return reduce_tracking(
+        session, card, rng, latitude=latitude, estimator=chosen, run_model=run_model
+    )
 
 
 def sight_targets(session: OrientationSession) -> tuple[str, ...]:

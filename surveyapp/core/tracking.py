@@ -6,7 +6,7 @@ Source: physics.md 1.4 (tracking: N = N_obs - lambda mu d) and 2.1.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -36,12 +36,25 @@ from surveyapp.domain.project import OrientationSession, ResultWarning
 from surveyapp.domain.readings import Reading, ReadingKind, Side
 from surveyapp.domain.results import PointResult
 from surveyapp.errors import Problem, SurveyError
-from surveyapp_models.angles import RHO_ARCSEC, wrap_two_pi
+from surveyapp_models.angles import RHO_ARCSEC, wrap_pi, wrap_two_pi
 
 Floats = NDArray[np.float64]
 
 MIN_POINTS = 3
 LEAST_SQUARES_FROM = 6
+
+
+@dataclass(frozen=True, slots=True)
+class ModelledNorth:
+    """North averaged over a run by a model with adopted effects: value and sigma [rad], dof."""
+
+    value: float
+    sigma: float
+    dof: float
+
+
+RunModel = Callable[[OrientationSession, InstrumentCard, float | None], ModelledNorth]
+"""Estimates a run with its adopted effects; handed in from above, where the effects are known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,6 +137,7 @@ def reduce_tracking(
     *,
     latitude: float | None,
     estimator: str | None,
+    run_model: RunModel | None = None,
 ) -> Reduction:
     """Reduce one session of turning points.
 
@@ -171,6 +185,14 @@ def reduce_tracking(
         points.origin + observed,
         {Source("turning points", session.id, sigma.dof): norm * sigma.value},
     )
+    if session.effects and run_model is not None:
+        modelled = run_model(session, card, latitude)
+        names = ", ".join(effect.id for effect in session.effects)
+        chosen = f"least-squares with {names}"
+        north = Uncertain(
+            points.origin + observed + wrap_pi(modelled.value - points.origin - observed),
+            {Source("turning points", session.id, modelled.dof): modelled.sigma},
+        )
     return Reduction(
         estimator=chosen,
         north=north if correction is None else north + correction,

@@ -144,7 +144,7 @@ class AdoptedEffect:
         Id in the catalogue of its subject.
     coefficients : tuple of (name, value, sigma, unit)
     grid : tuple of (name, value)
-        Non-linear parameters.
+        Non-linear parameters; a line or block by its name.
     covariance : tuple of tuple of float
         Covariance of the coefficients, in their units, shape (p, p).
     valid : tuple of (column, low, high)
@@ -161,7 +161,7 @@ class AdoptedEffect:
 
     id: str
     coefficients: tuple[tuple[str, float, float, str], ...] = ()
-    grid: tuple[tuple[str, float], ...] = ()
+    grid: tuple[tuple[str, float | str], ...] = ()
     covariance: tuple[tuple[float, ...], ...] = ()
     valid: tuple[tuple[str, float, float], ...] = ()
     data_sha256: str = ""

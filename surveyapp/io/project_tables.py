@@ -354,11 +354,14 @@ def read_effect(table: Table) -> AdoptedEffect:
     return effect
 
 
-def _grid(effect: Table) -> tuple[tuple[str, float], ...]:
+def _grid(effect: Table) -> tuple[tuple[str, float | str], ...]:
     table = effect.table("grid")
     if table is None:
         return ()
-    pairs = [(name, table.number(name)) for name in table.data]
+    pairs: list[tuple[str, float | str | None]] = [
+        (name, table.text(name) if isinstance(value, str) else table.number(name))
+        for name, value in table.data.items()
+    ]
     return tuple((name, value) for name, value in pairs if value is not None)
 
 

@@ -1,0 +1,121 @@
+"""``surveyapp diagnose``: find the residual, name the effect, prove it."""
+
+from __future__ import annotations
+
+import argparse
+import textwrap
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from surveyapp.cli.output import heading, number, print_json, table
+
+if TYPE_CHECKING:
+    from surveyapp.diagnosis.result import Diagnosis, ModelResult, Quantity
+    from surveyapp.workflows.diagnosing import Diagnosed
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    parser.add_argument("folder", metavar="DIR", help="project folder")
+    parser.add_argument("--session", metavar="ID", help="the turning points of this session")
+    parser.add_argument("--campaign", metavar="INSTRUMENT", help="its repeated determinations")
+    parser.add_argument(
+        "--confirm",
+        metavar="ID",
+        help="a second session that chose nothing; for a campaign, from which session on "
+        "determinations only confirm",
+    )
+    parser.add_argument("--effects", metavar="FILE.py", help="your own effects")
+    parser.add_argument("--adopt", action="store_true", help="write named effects to the project")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Diagnose and print; 0 with any verdict reached."""
+    from surveyapp import api
+
+    found = api.diagnose(
+        options.folder,
+        session=options.session,
+        campaign=options.campaign,
+        confirm=options.confirm,
+        effects=options.effects,
+        adopt=options.adopt,
+    )
+    if options.json:
+        print_json(found.to_dict())
+    elif found.diagnosis is None:
+        print(subjects_text(found))
+    else:
+        print(diagnosis_text(found.diagnosis, found.words))
+        for place in found.written:
+            print(f"written: {place}")
+    return 0
+
+
+def subjects_text(found: Diagnosed) -> str:
+    """What could be diagnosed."""
+    if not found.subjects:
+        return "Nothing in this project can be diagnosed by itself."
+    rows = [[s.option, s.id, str(s.observations)] for s in found.subjects]
+    return "Choose one:\n" + table(["option", "", "rows"], rows)
+
+
+def diagnosis_text(diagnosis: Diagnosis, words: Sequence[str]) -> str:
+    """The whole diagnosis in words and tables."""
+    name = {"reversal_run": "run", "campaign": "campaign"}.get(diagnosis.subject, diagnosis.subject)
+    parts = [heading(f"{name} {diagnosis.identity}: {diagnosis.verdict.replace('_', ' ')}")]
+    parts.append("\n".join(textwrap.fill(text, 79) for text in words))
+    parts.append(_models(diagnosis))
+    parts.append(_candidates(diagnosis))
+    return "\n\n".join(part for part in parts if part)
+
+
+def _models(diagnosis: Diagnosis) -> str:
+    unit = diagnosis.unit
+
+    def small(value: float | None) -> str:
+        return number(None if value is None else value / diagnosis.scale)
+
+    def row(name: str, model: ModelResult) -> list[str]:
+        return [
+            name,
+            " + ".join(model.effects) or "base model",
+            str(model.parameters),
+            small(model.rms),
+            small(model.loo_rms),
+            small(model.confirm_rms),
+            value_text(diagnosis, model.value),
+        ]
+
+    rows = [row("before", diagnosis.before), row("after", diagnosis.after)]
+    if diagnosis.ambiguous:
+        rows.append(row("after, best", diagnosis.after_best))
+    rows.append(["averaged", "", "", "", "", "", value_text(diagnosis, diagnosis.averaged)])
+    head = ["model", "effects", "par.", f"rms {unit}", "left out", "confirm", "value +- sigma"]
+    return table(head, rows, indent=0)
+
+
+def value_text(diagnosis: Diagnosis, quantity: Quantity) -> str:
+    """A value with its sigma, a direction in degrees-minutes-seconds."""
+    from surveyapp_models.angles import AngleUnit, format_angle, wrap_two_pi
+
+    sigma = number(quantity.sigma / diagnosis.scale if quantity.sigma is not None else None)
+    if diagnosis.direction:
+        return f"{format_angle(wrap_two_pi(quantity.value), AngleUnit.DMS)} +-{sigma}"
+    return f"{quantity.value / diagnosis.scale:+.2f} +-{sigma}"
+
+
+def _candidates(diagnosis: Diagnosis) -> str:
+    rows = [
+        [
+            item.effect,
+            item.verdict.replace("_", " "),
+            number(item.p, 4),
+            number(item.p_family, 4),
+            number(item.delta_bic),
+        ]
+        for item in diagnosis.candidates
+    ]
+    head = ["candidate", "verdict", "p", "p family", "delta BIC"]
+    return table(head, rows, indent=0) if rows else ""

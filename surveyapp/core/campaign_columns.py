@@ -1,0 +1,129 @@
+"""What a campaign effect may depend on: the circumstances of each determination.
+
+One place collects them from the reduced sessions, for the diagnosis that finds an effect and for
+the orientation that applies it: both must mean the same by a temperature, a line or a day.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surveyapp.core.sequence import session_timestamp
+from surveyapp.core.session import ReducedSession, TargetReduction
+from surveyapp.domain.project import OrientationSession
+from surveyapp.domain.readings import SWING_KINDS, ReadingKind
+
+Floats = NDArray[np.float64]
+
+SECONDS_PER_DAY = 86400.0
+NUMBERS = ("temperature_c", "latitude", "line_reading", "north_reading", "running_s")
+
+
+@dataclass(frozen=True, slots=True)
+class Circumstances:
+    """Circumstances of one determination; None where the project does not tell.
+
+    Parameters
+    ----------
+    elapsed_days : float or None
+        Days since 1970-01-01 UTC, from the times of the book or the date of the session.
+    order : float or None
+        As stated.
+    line : str
+        ``station-target``.
+    block : str
+        The day, empty without one.
+    temperature_c : float or None
+        Mean of the temperatures read.
+    latitude : float or None
+        [rad].
+    line_reading, north_reading : float or None
+        Circle readings [rad].
+    running_s : float or None
+        Mean elapsed_s of the observation: seconds since spin-up where the book counts from it.
+    """
+
+    elapsed_days: float | None
+    order: float | None
+    line: str
+    block: str
+    temperature_c: float | None
+    latitude: float | None
+    line_reading: float | None
+    north_reading: float | None
+    running_s: float | None
+
+
+def circumstances(
+    item: ReducedSession, target: TargetReduction, *, latitude: float | None
+) -> Circumstances:
+    """Collect the circumstances of one target of a reduced session."""
+    session = item.session
+    stamp = session_timestamp(session)
+    if stamp is None and session.date is not None:
+        stamp = (session.date.toordinal() - 719163) * SECONDS_PER_DAY + 0.5 * SECONDS_PER_DAY
+    days = None if stamp is None else stamp / SECONDS_PER_DAY
+    north = item.reduction.north
+    return Circumstances(
+        elapsed_days=days,
+        order=session.order,
+        line=f"{session.station}-{target.target}",
+        block="" if days is None else f"day {math.floor(days)}",
+        temperature_c=session_temperature(session),
+        latitude=latitude,
+        line_reading=None if target.line_reading is None else target.line_reading.value,
+        north_reading=None if north is None else north.value,
+        running_s=_running(session),
+    )
+
+
+def session_temperature(session: OrientationSession) -> float | None:
+    """Mean temperature of a session [degree Celsius], None where none was read."""
+    rows = session.book.live
+    values = [row.temperature_c for row in rows if row.temperature_c is not None]
+    if not values:
+        temperatures = session.book.of_kind(ReadingKind.TEMPERATURE)
+        values = [row.value for row in temperatures if row.value is not None]
+    return sum(values) / len(values) if values else None
+
+
+def _running(session: OrientationSession) -> float | None:
+    rows = [row for row in session.book.live if row.kind in SWING_KINDS]
+    values = [row.elapsed_s for row in rows if row.elapsed_s is not None]
+    return sum(values) / len(values) if values and len(values) == len(rows) else None
+
+
+def columns_of(
+    items: Sequence[Circumstances], *, lines: Sequence[str] = (), blocks: Sequence[str] = ()
+) -> dict[str, Floats]:
+    """Columns of a basis, one row for each determination; a gap is NaN.
+
+    Parameters
+    ----------
+    items : sequence of Circumstances
+    lines, blocks : sequence of str
+        Names in the order in which they are numbered; further ones follow as they come.
+    """
+    columns = {
+        name: np.array(
+            [math.nan if (v := getattr(item, name)) is None else v for item in items],
+            dtype=np.float64,
+        )
+        for name in NUMBERS
+    }
+    days = [item.elapsed_days for item in items]
+    if any(day is None for day in days):
+        days = [item.order for item in items]
+    columns["elapsed_days"] = np.array(
+        [math.nan if day is None else day for day in days], dtype=np.float64
+    )
+    for name, known in (("line", lines), ("block", blocks)):
+        values = [str(getattr(item, name)) for item in items]
+        order = list(dict.fromkeys([*known, *values]))
+        columns[name] = np.array([float(order.index(value)) for value in values])
+    return columns

@@ -1,0 +1,271 @@
+"""From a project to what the engine diagnoses: a reversal run, or the campaign of an instrument.
+
+A campaign consists of the determinations of the instrument constant; where an instrument was
+never calibrated, of its repeated azimuths of one line.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from surveyapp.core.adopted import SOURCE
+from surveyapp.core.campaign_columns import Circumstances, circumstances
+from surveyapp.core.orientation import Orientation
+from surveyapp.core.scatter import SHARED
+from surveyapp.core.sights import moments
+from surveyapp.core.tracking import (
+    ModelledNorth,
+    tape_zero_of,
+    turning_points,
+    without_tape_drift,
+)
+from surveyapp.core.uncertain import Uncertain
+from surveyapp.diagnosis.campaign import Determination, campaign
+from surveyapp.diagnosis.candidates import all_candidates
+from surveyapp.diagnosis.fits import Member, fit_members
+from surveyapp.diagnosis.problem import Problem
+from surveyapp.diagnosis.reversal_run import TurningPoints, reversal_run
+from surveyapp.diagnosis.value import Value, value_of
+from surveyapp.domain.instrument import AdoptedEffect, InstrumentCard
+from surveyapp.domain.project import OrientationSession
+from surveyapp.domain.readings import ReadingKind
+from surveyapp.errors import Problem as InputProblem
+from surveyapp.errors import SurveyError, nearest_names
+from surveyapp_models.angles import wrap_pi
+from surveyapp_models.effects.effect import Effect
+
+LEAST_CAMPAIGN = 3
+"""Sessions from which an instrument counts as a campaign by itself (design.md section 5)."""
+
+
+def is_run(session: OrientationSession) -> bool:
+    """Whether a session is a reversal run."""
+    return bool(session.book.of_kind(ReadingKind.REVERSAL))
+
+
+def run_problem(
+    session: OrientationSession,
+    card: InstrumentCard,
+    *,
+    latitude: float | None,
+    extra: tuple[Effect, ...] = (),
+) -> Problem:
+    """The turning points of one session as a problem.
+
+    Parameters
+    ----------
+    session : OrientationSession
+    card : InstrumentCard
+    latitude : float or None
+        [rad], for the drift of the tape zero, which is known and taken out first.
+    extra : tuple of Effect
+        The user's own.
+
+    Raises
+    ------
+    SurveyError
+        If the session has no turning points on the circle, or too few.
+    """
+    if not is_run(session):
+        raise SurveyError(
+            InputProblem(
+                "only a reversal run can be diagnosed by itself",
+                f"session {session.id}",
+                f"method {session.method} without reversal rows",
+                "turning points on the circle",
+                "Diagnose the instrument's campaign with --campaign instead.",
+            )
+        )
+    points = turning_points(session)
+    zero, coefficient, _, _ = tape_zero_of(session, card, points.rows, latitude)
+    points = without_tape_drift(points, zero, coefficient)
+    times = moments(points.rows)
+    temperature = [
+        math.nan if row.temperature_c is None else row.temperature_c for row in points.rows
+    ]
+    known = not all(math.isnan(value) for value in temperature)
+    return reversal_run(
+        TurningPoints(
+            readings=(points.origin + points.values).tolist(),
+            count=points.index.tolist(),
+            right=(points.sides > 0).tolist(),
+            elapsed_s=None if times is None else (times - times[0]).tolist(),
+            covariates={"temperature_c": temperature} if known else {},
+            resolution=points.resolution,
+            sigma=card.sigma.reversal,
+            reference_temperature_c=session.reference_temperature_c,
+            instrument=session.instrument,
+            identity=session.id,
+        ),
+        extra,
+    )
+
+
+def adopted_run(problem: Problem, effects: Sequence[AdoptedEffect]) -> Value:
+    """North averaged over a run with its adopted effects in the model, all estimated anew.
+
+    Raises
+    ------
+    SurveyError
+        If an adopted effect is none of the subject's, or its columns are missing.
+    """
+    base = fit_members(problem, ())
+    known = {
+        candidate.id: candidate
+        for candidate in all_candidates(problem, base.theta)
+        if candidate.kind == "named" and candidate.count == 1
+    }
+    members = []
+    for adopted in effects:
+        candidate = known.get(adopted.id)
+        if candidate is None or candidate.missing:
+            raise SurveyError(
+                InputProblem(
+                    "an adopted effect cannot be applied to this run",
+                    problem.identity,
+                    adopted.id if candidate is None else f"{adopted.id}: {candidate.missing}",
+                    hint=nearest_names(adopted.id, known),
+                )
+            )
+        wanted = {name: value for name, value in adopted.grid if not isinstance(value, str)}
+        distances = [
+            sum(abs(point.get(name, value) - value) for name, value in wanted.items())
+            for point in candidate.points
+        ]
+        members.append(Member(candidate, int(np.argmin(distances))))
+    value = value_of(problem, fit_members(problem, members, base.theta))
+    return Value(value.value + problem.offset, value.sigma, value.dof)
+
+
+def modelled_run(
+    session: OrientationSession, card: InstrumentCard, latitude: float | None
+) -> ModelledNorth:
+    """Observed north of a session with its adopted effects, before the tape-zero correction."""
+    value = adopted_run(run_problem(session, card, latitude=latitude), session.effects)
+    return ModelledNorth(value.value, value.sigma, value.dof)
+
+
+def determinations(orientation: Orientation, instrument: str) -> tuple[Determination, ...]:
+    """Every determination of the constant of one instrument, in the order of the project.
+
+    The sigma is that of what belongs to one determination alone: centring, deflection and the
+    known azimuth are the line's own, and whether a line stands off is to be found, not assumed.
+    """
+    by_key = {
+        (item.session.id, target.target): circumstances(
+            item, target, latitude=orientation.positions[item.session.station].latitude
+        )
+        for item in orientation.sessions
+        for target in item.targets
+    }
+    constant = next(c for c in orientation.constants if c.instrument.id == instrument)
+    found = []
+    for calibration in constant.calibrations:
+        facts = by_key[calibration.session, calibration.target]
+        own = calibration.value.without(
+            *SHARED, "run-to-run scatter", f"{SOURCE} outside its range"
+        )
+        label = f"{calibration.session} ({calibration.line})"
+        found.append(_determination(calibration.value.value, own, facts, label))
+    return tuple(found) if found else _azimuths(orientation, instrument, by_key)
+
+
+def _azimuths(
+    orientation: Orientation,
+    instrument: str,
+    by_key: dict[tuple[str, str], Circumstances],
+) -> tuple[Determination, ...]:
+    """Repeated gyro azimuths of the most often observed line of an uncalibrated instrument."""
+    lines: dict[str, list[Determination]] = {}
+    for item in orientation.sessions:
+        if item.session.instrument != instrument:
+            continue
+        for target in item.targets:
+            if target.gyro_azimuth is None:
+                continue
+            facts = by_key[item.session.id, target.target]
+            members = lines.setdefault(facts.line, [])
+            value = target.gyro_azimuth.value
+            if members:
+                first = -members[0].value
+                value = first + wrap_pi(value - first)
+            # a larger gyro azimuth is a smaller constant
+            members.append(_determination(-value, target.gyro_azimuth, facts, item.session.id))
+    longest: list[Determination] = []
+    for members in lines.values():
+        longest = members if len(members) > len(longest) else longest
+    return tuple(longest)
+
+
+def _determination(value: float, own: Uncertain, facts: Circumstances, label: str) -> Determination:
+    sigma = own.sigma
+    return Determination(
+        value=value,
+        sigma=sigma if 0.0 < sigma < math.inf else None,
+        elapsed_days=facts.elapsed_days,
+        order=facts.order,
+        line=facts.line,
+        block=facts.block,
+        temperature_c=facts.temperature_c,
+        latitude=facts.latitude,
+        line_reading=facts.line_reading,
+        north_reading=facts.north_reading,
+        running_s=facts.running_s,
+        label=label,
+    )
+
+
+def campaign_problem(
+    orientation: Orientation,
+    instrument: str,
+    *,
+    extra: tuple[Effect, ...] = (),
+    confirm_from: str | None = None,
+) -> tuple[Problem, Problem | None]:
+    """The campaign of one instrument, and the part of it that is held back to confirm.
+
+    Parameters
+    ----------
+    confirm_from : str or None
+        Session from which on the determinations choose nothing and only confirm.
+
+    Raises
+    ------
+    SurveyError
+        If there are too few determinations, or no such session among them.
+    """
+    items = determinations(orientation, instrument)
+    reference = next(
+        (
+            session.reference_temperature_c
+            for session in orientation.project.sessions
+            if session.instrument == instrument and session.reference_temperature_c is not None
+        ),
+        None,
+    )
+    cut = len(items)
+    if confirm_from is not None:
+        labels = [item.label.split(" (")[0] for item in items]
+        if confirm_from not in labels:
+            raise SurveyError(
+                InputProblem(
+                    "the confirming session is no determination of this instrument",
+                    "--confirm",
+                    confirm_from,
+                    f"a calibration session of {instrument}",
+                    nearest_names(confirm_from, labels),
+                )
+            )
+        cut = labels.index(confirm_from)
+    first = campaign(
+        items[:cut], instrument=instrument, reference_temperature_c=reference, extra=extra
+    )
+    if cut == len(items):
+        return first, None
+    second = campaign(
+        items[cut:], instrument=instrument, reference_temperature_c=reference, extra=extra
+    )
+    return first, second

@@ -1,0 +1,1 @@
+"""What needs several steps below one command: read, compute, write. The API calls them."""

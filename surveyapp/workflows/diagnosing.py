@@ -1,0 +1,294 @@
+"""Diagnose a project: choose the subject, run the engine, write what was adopted.
+
+Every diagnosis is appended to the ledger; an adoption is written to the session (a run) or to the
+instrument (a campaign), with the digest of the data that chose it, and the next ``orient`` uses it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from surveyapp.core.orientation import Orientation
+from surveyapp.diagnosis.engine import diagnose as run_engine
+from surveyapp.diagnosis.problem import Problem
+from surveyapp.diagnosis.result import Adoption, Diagnosis
+from surveyapp.diagnosis.subjects import (
+    LEAST_CAMPAIGN,
+    campaign_problem,
+    is_run,
+    run_problem,
+)
+from surveyapp.diagnosis.words import words_of
+from surveyapp.domain.project import Project
+from surveyapp.errors import Problem as InputProblem
+from surveyapp.errors import SurveyError, nearest_names
+from surveyapp_models.effects.effect import Effect
+
+RANGE_COLUMNS = ("temperature_c", "latitude", "elapsed_days", "running_s")
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """Something in a project that can be diagnosed.
+
+    Parameters
+    ----------
+    option : str
+        ``--session`` or ``--campaign``.
+    id : str
+    observations : int
+    """
+
+    option: str
+    id: str
+    observations: int
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON."""
+        return {"option": self.option, "id": self.id, "observations": self.observations}
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnosed:
+    """A diagnosis and what was written of it, or the subjects to choose from.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis or None
+        None where a subject must be chosen first.
+    subjects : tuple of Subject
+    written : tuple of str
+        Where adopted effects were written.
+    words : tuple of str
+        The diagnosis in plain sentences.
+    """
+
+    diagnosis: Diagnosis | None
+    subjects: tuple[Subject, ...] = ()
+    written: tuple[str, ...] = ()
+    words: tuple[str, ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON, schema ``surveyapp.diagnose/1``."""
+        if self.diagnosis is None:
+            subjects = [subject.to_dict() for subject in self.subjects]
+            return {"schema": "surveyapp.diagnose/1", "subjects": subjects}
+        return {
+            **self.diagnosis.to_dict(),
+            "written": list(self.written),
+            "words": list(self.words),
+        }
+
+
+def subjects_of(project: Project) -> tuple[Subject, ...]:
+    """Everything in a project that can be diagnosed by itself."""
+    found = [
+        Subject("--session", session.id, len(session.book.live))
+        for session in project.sessions
+        if is_run(session)
+    ]
+    for instrument in project.instruments:
+        count = sum(session.instrument == instrument.id for session in project.sessions)
+        if count >= LEAST_CAMPAIGN:
+            found.append(Subject("--campaign", instrument.id, count))
+    return tuple(found)
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What is to be diagnosed.
+
+    Parameters
+    ----------
+    session, campaign : str or None
+        At most one of them.
+    confirm : str or None
+        A second run; for a campaign the session from which on determinations only confirm.
+    effects : tuple of Effect
+        The user's own.
+    """
+
+    session: str | None = None
+    campaign: str | None = None
+    confirm: str | None = None
+    effects: tuple[Effect, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """The problem and its confirming set, or the subjects where one must be chosen."""
+
+    problem: Problem | None
+    confirm: Problem | None = None
+    subjects: tuple[Subject, ...] = ()
+
+
+def choose(orientation: Orientation, request: Request) -> Chosen:
+    """Find what a request means in a project."""
+    project = orientation.project
+    if request.session is None and request.campaign is None:
+        subjects = subjects_of(project)
+        if len(subjects) != 1:
+            return Chosen(None, subjects=subjects)
+        only = subjects[0]
+        chosen = {"session" if only.option == "--session" else "campaign": only.id}
+        request = Request(**chosen, confirm=request.confirm, effects=request.effects)
+    if request.session is not None and request.campaign is not None:
+        raise SurveyError(
+            InputProblem("one subject at a time", "diagnose", "--session and --campaign", "one")
+        )
+    if request.campaign is not None:
+        names = [instrument.id for instrument in project.instruments]
+        _require(request.campaign, names, "--campaign", "instrument")
+        return Chosen(
+            *campaign_problem(
+                orientation,
+                request.campaign,
+                extra=request.effects,
+                confirm_from=request.confirm,
+            )
+        )
+    problem = _run(orientation, request.session or "", "--session", request.effects)
+    if request.confirm is None:
+        return Chosen(problem)
+    return Chosen(problem, _run(orientation, request.confirm, "--confirm", request.effects))
+
+
+def _run(
+    orientation: Orientation, identity: str, option: str, effects: tuple[Effect, ...]
+) -> Problem:
+    project = orientation.project
+    _require(identity, [session.id for session in project.sessions], option, "session")
+    session = project.session(identity)
+    return run_problem(
+        session,
+        project.instrument(session.instrument).card,
+        latitude=orientation.positions[session.station].latitude,
+        extra=effects,
+    )
+
+
+def _require(name: str, known: list[str], where: str, kind: str) -> None:
+    if name not in known:
+        hint = nearest_names(name, known)
+        raise SurveyError(
+            InputProblem(f"there is no {kind} of this name", where, name, f"an {kind}", hint)
+        )
+
+
+def diagnose_project(
+    orientation: Orientation,
+    request: Request,
+    *,
+    folder: Path | None,
+    adopt: bool,
+    software: str,
+    now: datetime | None = None,
+) -> Diagnosed:
+    """Diagnose, log, and adopt where asked.
+
+    Parameters
+    ----------
+    orientation : Orientation
+        The computed project.
+    request : Request
+    folder : Path or None
+        The project folder; None writes nothing.
+    adopt : bool
+        Whether the effects that the engine names are written into the project.
+    software : str
+    now : datetime, optional
+        Moment of the adoption; the wall clock if absent.
+
+    Raises
+    ------
+    SurveyError
+        For an unknown subject, too few observations, or a folder that cannot be written.
+    """
+    chosen = choose(orientation, request)
+    if chosen.problem is None:
+        if adopt:
+            raise SurveyError(
+                InputProblem(
+                    "adopting needs one subject",
+                    "diagnose --adopt",
+                    "no --session or --campaign",
+                    "one subject",
+                    "Name it.",
+                )
+            )
+        return Diagnosed(None, chosen.subjects)
+    diagnosis = run_engine(chosen.problem, confirm=chosen.confirm)
+    moment = (now or datetime.now(UTC)).isoformat(timespec="seconds")
+    written: tuple[str, ...] = ()
+    if adopt and folder is not None:
+        written = _adopt(folder, diagnosis, chosen.problem, moment=moment, software=software)
+    words = tuple(words_of(diagnosis, chosen.problem))
+    return Diagnosed(diagnosis, (), written, words)
+
+
+def _adopt(
+    folder: Path, diagnosis: Diagnosis, problem: Problem, *, moment: str, software: str
+) -> tuple[str, ...]:
+    from surveyapp.io.lock import ProjectLock
+    from surveyapp.io.writing import append_subtable
+
+    if not diagnosis.adopted:
+        return ()
+    if diagnosis.subject == "reversal_run":
+        parent = ("orientation", diagnosis.identity)
+    else:
+        parent = ("instrument", diagnosis.instrument)
+    written = []
+    with ProjectLock(folder) as lock:
+        if not lock.writable:
+            raise SurveyError(
+                InputProblem(
+                    "the project is open elsewhere or cannot be written",
+                    str(folder),
+                    "a locked or read-only folder",
+                    "a folder that this program may write",
+                    "Close the other window and adopt again.",
+                )
+            )
+        for item in diagnosis.adopted:
+            table = effect_table(item, problem, moment=moment, software=software)
+            append_subtable(folder / "project.toml", parent, "effect", table)
+            written.append(f"project.toml, {parent[0]} {parent[1]}, effect {item.effect}")
+    return tuple(written)
+
+
+def effect_table(
+    item: Adoption, problem: Problem, *, moment: str, software: str
+) -> dict[str, object]:
+    """The table of an adopted effect as it stands in project.toml."""
+    record = item.record
+    labels: Mapping[str, Mapping[float, str]] = problem.grid_labels
+    grid: dict[str, object] = {
+        name: labels.get(name, {}).get(value, value) if isinstance(value, float) else value
+        for name, value in record.grid
+    }
+    table: dict[str, object] = {
+        "id": record.id,
+        "coefficients": {
+            name: {"value": value, "sigma": sigma, "unit": unit}
+            for name, value, sigma, unit in record.coefficients
+        },
+    }
+    if grid:
+        table["grid"] = grid
+    if record.covariance:
+        table["covariance"] = [list(row) for row in record.covariance]
+    if record.valid:
+        table["valid"] = {name: [low, high] for name, low, high in record.valid}
+    table["sha256"] = record.data_sha256
+    errors = {"before": record.before, "after": record.after, "confirm": record.confirm}
+    table.update({name: number for name, number in errors.items() if number is not None})
+    table["unit"] = record.unit
+    table["adopted_at"] = moment
+    table["software"] = software
+    return table
