@@ -80,8 +80,7 @@ def _models(diagnosis: Diagnosis) -> str:
     def row(name: str, model: ModelResult) -> list[str]:
         return [
             name,
-            " + ".join(model.effects) or "base model",
-            str(model.parameters),
+            number(model.parameters, 0),
             small(model.rms),
             small(model.loo_rms),
             small(model.confirm_rms),
@@ -91,9 +90,12 @@ def _models(diagnosis: Diagnosis) -> str:
     rows = [row("before", diagnosis.before), row("after", diagnosis.after)]
     if diagnosis.ambiguous:
         rows.append(row("after, best", diagnosis.after_best))
-    rows.append(["averaged", "", "", "", "", "", value_text(diagnosis, diagnosis.averaged)])
-    head = ["model", "effects", "par.", f"rms {unit}", "left out", "confirm", "value +- sigma"]
-    return table(head, rows, indent=0)
+    rows.append(["averaged", "", "", "", "", value_text(diagnosis, diagnosis.averaged)])
+    effects = [f"after: {' + '.join(diagnosis.after.effects) or 'the base model stands'}"]
+    if diagnosis.ambiguous:
+        effects.append(f"after, best: {' + '.join(diagnosis.after_best.effects)}")
+    head = ["model", "par.", f"rms {unit}", "left out", "confirm", "value +- sigma"]
+    return table(head, rows, indent=0) + "\n" + "\n".join(effects)
 
 
 def value_text(diagnosis: Diagnosis, quantity: Quantity) -> str:

@@ -75,6 +75,8 @@ def _build(problem: Problem) -> tuple[NoiseModel, ...]:
     rank = _scaled_position(problem.position)
     walk = np.minimum.outer(rank, rank) + 1.0
     lag = np.abs(np.subtract.outer(rank, rank))
+    order = np.argsort(np.argsort(rank, kind="stable"), kind="stable").astype(np.float64)
+    step = np.abs(np.subtract.outer(order, order))
     thin = slice(None, None, 2) if n >= LARGE else slice(None)
     models: list[tuple[NoiseKind, tuple[float, ...], Array]] = []
     for ratio in RATIOS[thin]:
@@ -86,9 +88,11 @@ def _build(problem: Problem) -> tuple[NoiseModel, ...]:
             models.append(("random_walk", (float(ratio),), ratio * walk * (1.0 + 0.5 * sides)))
             models.append(("amplitude_walk", (float(ratio),), ratio * walk * sides))
     for correlation in CORRELATIONS[thin]:
-        decay: Array = np.asarray(abs(correlation) ** lag)
+        # a negative correlation alternates from one observation to the next: it knows no time
+        # between them, and only so is it a covariance where the positions are uneven
+        decay: Array = np.asarray(abs(correlation) ** (lag if correlation > 0.0 else step))
         if correlation < 0.0:
-            decay = decay * np.cos(np.pi * np.round(lag))
+            decay = decay * np.where(step % 2.0 == 0.0, 1.0, -1.0)
         models += [("ar1", (correlation, share), share * decay) for share in SHARES]
     outer = np.outer(root, root)
     stack = np.stack([np.eye(n) + process * outer for _, _, process in models])

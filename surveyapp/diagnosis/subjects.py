@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -170,14 +171,25 @@ def determinations(orientation: Orientation, instrument: str) -> tuple[Determina
         )
         label = f"{calibration.session} ({calibration.line})"
         found.append(_determination(calibration.value.value, own, facts, label))
-    return tuple(found) if found else _azimuths(orientation, instrument, by_key)
+    return _in_time(found if found else _azimuths(orientation, instrument, by_key))
+
+
+def _in_time(items: Sequence[Determination]) -> tuple[Determination, ...]:
+    """Where every date is the same (or none is known) the sequence stands in for time."""
+    if len({item.elapsed_days for item in items}) > 1:
+        return tuple(items)
+    stated = all(item.order is not None for item in items)
+    return tuple(
+        replace(item, elapsed_days=None, order=item.order if stated else float(place))
+        for place, item in enumerate(items)
+    )
 
 
 def _azimuths(
     orientation: Orientation,
     instrument: str,
     by_key: dict[tuple[str, str], Circumstances],
-) -> tuple[Determination, ...]:
+) -> list[Determination]:
     """Repeated gyro azimuths of the most often observed line of an uncalibrated instrument."""
     lines: dict[str, list[Determination]] = {}
     for item in orientation.sessions:
@@ -197,7 +209,7 @@ def _azimuths(
     longest: list[Determination] = []
     for members in lines.values():
         longest = members if len(members) > len(longest) else longest
-    return tuple(longest)
+    return longest
 
 
 def _determination(value: float, own: Uncertain, facts: Circumstances, label: str) -> Determination:
