@@ -56,8 +56,8 @@ def simulate(truth: Truth, runs: int, seed: int) -> Runs:
     """Integrate a'' + 2 k a' + b a'|a'| + f sign(a') + pi^2 sin(a - N) = 0, read its turns."""
     g = np.random.default_rng(seed)
     n = truth.size
-    first = np.radians(g.uniform(0.6, 1.2, runs)) * g.choice([-1.0, 1.0], runs)
-    decay = g.uniform(0.008, 0.02, runs)
+    first = np.radians(g.uniform(0.9, 1.1, runs)) * g.choice([-1.0, 1.0], runs)
+    decay = g.uniform(0.012, 0.02, runs)
     north = midpoint(truth, runs, g)
     temperature = g.uniform(10.0, 25.0, (runs, 1)) + temperature_walk(n, runs, g)
     change = g.uniform(0.3, 0.6, runs) * n

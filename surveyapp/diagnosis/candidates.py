@@ -191,15 +191,17 @@ def _shapes(problem: Problem, columns: Mapping[str, Array], root: Array) -> list
     taken = {effect.id for effect in problem.effects}
     if problem.has_swing:
         amplitude = columns["side"] * columns["relative_amplitude"]
-        inner = np.unique(position)[1:-2]
+        inner = np.unique(position)[2:-3]
         kicks = [((position > p) * amplitude)[:, None] for p in inner]
-        shapes.append(_shape("amplitude_step", kicks, 2, root))
+        if kicks:
+            shapes.append(_shape("amplitude_step", kicks, 2, root))
         shapes.append(_periodic("long_oscillation", x, (0.8, 1.45), root, n=problem.size))
     else:
         if "transport_step" not in taken:
             inner = np.unique(position)[1:-2]
             steps = [(position > p).astype(np.float64)[:, None] for p in inner]
-            shapes.append(_shape("step", steps, 2, root))
+            if steps:
+                shapes.append(_shape("step", steps, 2, root))
         shapes.append(_periodic("periodic", x, (1.5, 0.25 * problem.size), root, n=problem.size))
     if "gross_error" not in taken:
         single = [np.eye(problem.size)[:, i : i + 1] for i in range(problem.size)]

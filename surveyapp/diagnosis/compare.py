@@ -7,6 +7,7 @@ compete at every depth.
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
@@ -52,10 +53,16 @@ class Level:
         return tuple(sorted((*self.fits, *self.noises), key=lambda fit: fit.bic))
 
     @property
+    def best_score(self) -> float:
+        """Smallest score of all sets."""
+        return min(fit.score for fit in (*self.fits, *self.noises))
+
+    @property
     def stochastic(self) -> bool:
         """Whether correlated noise alone beats every deterministic set by the margin."""
-        pure = [fit.bic for fit in self.noises if not fit.members]
-        return bool(pure) and bool(self.fits) and min(pure) + MARGIN <= self.fits[0].bic
+        pure = [fit.score for fit in self.noises if not fit.members]
+        sets = [fit.score for fit in self.fits]
+        return bool(pure) and bool(sets) and min(pure) + MARGIN <= min(sets)
 
     @property
     def preferred(self) -> Fit | None:
@@ -133,6 +140,8 @@ def next_level(problem: Problem, level: Level, candidates: Iterable[Candidate]) 
         if level.depth == 0 or bic <= best + REFINED:
             fits.append(_refined(problem, members, anchor, every=level.depth > 0))
     fits.sort(key=lambda fit: fit.bic)
+    least = min(fit.bic for fit in fits)
+    fits = [scored(problem, fit) if fit.bic < least + REFINED else fit for fit in fits]
     noises = [*level.noises]
     for fit in level.fits[:ANCHORS]:
         noises += with_noise(problem, fit)
@@ -194,11 +203,45 @@ def within_margin(level: Level) -> tuple[Fit, ...]:
     best = level.preferred
     if best is None:
         return level.every[:1]
-    near = [f for f in level.every if f.bic < best.bic + MARGIN and f.key != best.key]
+    limit = min(best.score, level.best_score) + MARGIN
+    near = [f for f in level.every if f.score < limit and f.key != best.key]
     rivals = [fit for fit in near if not spans(fit, best)]
     # What a smaller set within the margin explains needs no more.
     rivals = [f for f in rivals if not any(g.key < f.key for g in rivals)]
-    return tuple(sorted((best, *rivals), key=lambda fit: (fit.bic, fit is not best)))
+    chosen = (best,) if best.score < limit or not rivals else ()
+    return tuple(sorted((*chosen, *rivals), key=lambda fit: (fit.bic, fit is not best)))
+
+
+def scored(problem: Problem, fit: Fit) -> Fit:
+    """The fit with its scans paid for by the evidence.
+
+    A scan over G points of which only one explains the record costs 2 log G; one of which many do
+    costs little. The sum over the grid, each point with the same prior, is what BIC replaces by
+    one parameter.
+    """
+    if problem.sigma_known:
+        return fit
+    score = fit.bic
+    for position, member in enumerate(fit.members):
+        if len(member.candidate.points) < 2:
+            continue
+        others = tuple(m for i, m in enumerate(fit.members) if i != position)
+        rss = np.append(_profile(problem, fit, member, others), fit.sum_of_squares)
+        bics = bic_of(problem, rss, 0.0)
+        weight = float(np.exp(-0.5 * (bics[:-1] - bics.min())).sum())
+        searched = member.charge - member.candidate.size
+        score += 2.0 * float(np.log(len(member.candidate.points) / max(weight, 1.0)))
+        score -= searched * float(np.log(problem.size))
+    return dataclasses.replace(fit, score=score)
+
+
+def _profile(problem: Problem, fit: Fit, member: Member, others: tuple[Member, ...]) -> Array:
+    """Sum of squares at each separable grid point of a member beside the others."""
+    if member.candidate.is_law and fit.theta is not None:
+        return scan_law(problem, member.candidate, others, fit.theta)
+    without = fit_members(problem, others, fit.theta)
+    item = project(member.candidate, orthonormal_design(without))
+    return np.asarray(without.sum_of_squares - reductions(item, without.residual))
 
 
 def spans(rival: Fit, fit: Fit) -> bool:

@@ -59,7 +59,10 @@ class Fit:
     parameters : float
         Everything paid for.
     bic : float
-        In units of the problem.
+        In units of the problem; each searched position counts one parameter.
+    score : float
+        The same with the scan paid for as the share of the grid that explains the record; what
+        names are decided by. Equal to ``bic`` until it is worked out.
     noise : NoiseFit or None
         A stochastic rival beside the members.
     """
@@ -71,6 +74,7 @@ class Fit:
     residual: Array
     parameters: float
     bic: float
+    score: float
     noise: NoiseFit | None = None
 
     @property
@@ -149,7 +153,7 @@ def fit_members(problem: Problem, members: Iterable[Member], start: Array | None
         linear = np.linalg.solve(r, q.T @ y) if X.shape[0] >= X.shape[1] else np.zeros(X.shape[1])
         residual = y - X @ linear
         bic = information(problem, residual, parameters)
-        return Fit(every, linear, None, X, residual, parameters, bic)
+        return Fit(every, linear, None, X, residual, parameters, bic, bic)
     effect = None if law is None else law.candidate.effect
     point = {} if law is None else law.point
     if start is None:
@@ -162,7 +166,7 @@ def fit_members(problem: Problem, members: Iterable[Member], start: Array | None
     amplitude = _amplitude(problem, theta, law)
     residual = y - X @ linear - problem.side * amplitude
     bic = information(problem, residual, parameters)
-    return Fit(every, linear, theta, np.hstack([X, D]), residual, parameters, bic)
+    return Fit(every, linear, theta, np.hstack([X, D]), residual, parameters, bic, bic)
 
 
 def _amplitude(problem: Problem, theta: Array, law: Member | None) -> Array:
@@ -219,6 +223,7 @@ def with_noise(problem: Problem, fit: Fit) -> tuple[Fit, ...]:
                 fit.residual,
                 parameters,
                 bic,
+                bic + fit.score - fit.bic,
                 noise,
             )
         )

@@ -211,7 +211,7 @@ def averaged_value(problem: Problem, fits: Sequence[Fit]) -> Value:
     if not problem.has_swing:
         plain = [f for f in fits if f.noise is None or f.noise.kind != "random_walk"]
         fits = plain or fits
-    bics = np.array([fit.bic for fit in fits])
+    bics = np.array([fit.score for fit in fits])
     weights = np.exp(-0.5 * (bics - bics.min()))
     weights /= weights.sum()
     keep = weights > 1e-3
@@ -221,7 +221,7 @@ def averaged_value(problem: Problem, fits: Sequence[Fit]) -> Value:
         for fit, value in zip(
             [f for f, k in zip(fits, keep, strict=True) if k], values, strict=True
         )
-        if fit.noise is not None and fit.noise.kind == "ar1" and fit.bic < bics.min() + WIDENING
+        if fit.noise is not None and fit.noise.kind == "ar1" and fit.score < bics.min() + WIDENING
     ]
     weights = weights[keep] / weights[keep].sum()
     middle = np.array([v.value for v in values])

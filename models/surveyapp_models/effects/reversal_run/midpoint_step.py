@@ -43,8 +43,8 @@ def midpoint(columns: Columns, /, **grid: float) -> Array:
 
 
 def positions(columns: Columns) -> Array:
-    """Last turning point before the step; at least two points on either side."""
-    return np.unique(columns["half_swing"])[1:-2]
+    """Last turning point before the step; at least three points on either side."""
+    return np.unique(columns["half_swing"])[2:-3]
 
 
 def phases(columns: Columns) -> Array:
