@@ -7,6 +7,7 @@ reading beyond the scale, a swing read on one side only.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +21,7 @@ from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import Reading, ReadingKind, Side
 from surveyapp.errors import Problem, SurveyError
-from surveyapp_models.angles import circular_mean
+from surveyapp_models.angles import ARCSEC, circular_mean
 
 Floats = NDArray[np.float64]
 
@@ -28,6 +29,7 @@ SCALE_RANGE_DIV = 15.0
 """Half length of the gyro scale (physics.md 2.6: +-15 div)."""
 NOMINAL_SIGMA_DIV, NOMINAL_SIGMA_S = 0.1, 0.2
 """Relative weights where the card states none (physics.md 2.2, 2.3)."""
+LEAST_FOR_RESOLUTION = 4
 SAME_CLAMPING = math.radians(0.1)
 
 
@@ -76,8 +78,23 @@ def clamp_reading(session: OrientationSession) -> tuple[float, float]:
             expected="one clamping (repeated readings of it may differ by reading errors only)",
             hint="Make a session of its own of every clamping.",
         )
-    resolution = session.resolution or reading_resolution(rows)
+    resolution = session.resolution or circle_resolution(session, rows)
     return circular_mean(values), rounding_sigma(resolution) / math.sqrt(len(values))
+
+
+def circle_resolution(session: OrientationSession, rows: Sequence[Reading]) -> float:
+    """Resolution of the circle [rad] from clamp and sights together.
+
+    One clamp reading that happens to be round says nothing: below four readings of the circle the
+    last written digit counts.
+    """
+    together = [*rows, *session.book.of_kind(ReadingKind.BACKSIGHT)]
+    if len(together) >= LEAST_FOR_RESOLUTION and len({row.unit for row in together}) == 1:
+        return reading_resolution(together)
+    text, unit = rows[0].text.strip(), rows[0].unit
+    decimals = len(text.partition(".")[2].rstrip("\"' "))
+    size = {"gon": math.pi / 200.0, "deg": math.pi / 180.0}.get(unit, ARCSEC)
+    return float(size * 10.0**-decimals)
 
 
 def observe(session: OrientationSession, card: InstrumentCard) -> Observed:

@@ -8,6 +8,7 @@ failing battery: 4'44").
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,7 +20,8 @@ from surveyapp.core.statistics.distributions import normal_quantile
 from surveyapp.core.tapezero import mean_level
 from surveyapp.domain.readings import Place, Reading, ReadingKind
 from surveyapp.domain.results import Check
-from surveyapp_models.angles import RHO_ARCSEC
+from surveyapp_models.angles import RHO_ARCSEC, wrap_pi
+from surveyapp_models.gyro.coefficients import torsion_ratio_from_clampings
 from surveyapp_models.gyro.estimates import Estimate
 from surveyapp_models.gyro.periods import period_at_amplitude_s
 
@@ -31,6 +33,8 @@ SPIN_PER_PERIOD = 1.0 / 0.48
 SUPPLY_LIMIT_PERCENT = 1.0
 """One per cent of spin moves T1 by 2 s of 425 s (physics.md 1.2)."""
 SIGNIFICANCE = 0.01
+LEAST_CLAMPINGS_APART = math.radians(5.0 / 60.0)
+"""Nearer clampings say nothing of the torsion ratio."""
 
 
 def instrument_checks(orientation: Orientation) -> list[Check]:
@@ -40,7 +44,7 @@ def instrument_checks(orientation: Orientation) -> list[Check]:
         checks += _period_check(orientation, item)
         checks += _supply_checks(item)
         checks += _tilt_check(orientation, item)
-    return checks
+    return checks + _clamping_checks(orientation)
 
 
 def _period_check(orientation: Orientation, item: ReducedSession) -> list[Check]:
@@ -169,3 +173,82 @@ def _tilt_check(orientation: Orientation, item: ReducedSession) -> list[Check]:
             ),
         )
     ]
+
+
+@dataclass(frozen=True, slots=True)
+class _Clamping:
+    """One clamping relative to a line: clamp reading [rad] and centre of swing [div]."""
+
+    session: str
+    clamp: Estimate
+    centre_div: Estimate
+
+
+def _clampings(orientation: Orientation) -> dict[tuple[str, str, str], list[_Clamping]]:
+    """Clampings by instrument, station and target; the tape zero is taken out of the centre."""
+    found: dict[tuple[str, str, str], list[_Clamping]] = {}
+    for item in orientation.sessions:
+        values = {name: value for name, value, _ in item.reduction.quantities}
+        if "middle of the swing" not in values:
+            continue
+        zero = item.reduction.tape_zero
+        for target in item.targets:
+            if target.line_reading is None:
+                continue
+            clamp = wrap_pi(math.radians(values["clamp reading"]) - target.line_reading.value)
+            centre = values["middle of the swing"]
+            ratio = values["torsion ratio"]
+            if zero is not None:
+                centre -= ratio / (1.0 + ratio) * zero.value_div
+            key = (item.session.instrument, item.session.station, target.target)
+            found.setdefault(key, []).append(
+                _Clamping(
+                    item.session.id,
+                    Estimate(clamp, target.line_reading.sigma),
+                    Estimate(centre, values.get("sigma of the middle", 0.0)),
+                )
+            )
+    return found
+
+
+def _clamping_checks(orientation: Orientation) -> list[Check]:
+    """Torsion ratio from the two clampings of a line that lie furthest apart, against the card."""
+    checks = []
+    for (instrument, station, target), items in _clampings(orientation).items():
+        card = orientation.project.instrument(instrument).card
+        ordered = sorted(items, key=lambda clamping: clamping.clamp.value)
+        first, last = ordered[0], ordered[-1]
+        here = card_at(card, orientation.positions[station].latitude).torsion_ratio
+        apart = last.clamp.value - first.clamp.value
+        if card.scale_value is None or here is None or apart < LEAST_CLAMPINGS_APART:
+            continue
+        try:
+            found = torsion_ratio_from_clampings(
+                (first.clamp, last.clamp),
+                (first.centre_div, last.centre_div),
+                scale_value=card.scale_value,
+            )
+        except ValueError as error:
+            text, value, limit, passed = str(error), None, None, False
+        else:
+            quantile = normal_quantile(1.0 - 0.5 * SIGNIFICANCE)
+            limit = quantile * math.hypot(found.sigma, here.sigma)
+            value = abs(found.value - here.value)
+            passed = value <= limit
+            text = (
+                f"torsion ratio from clampings {first.session} and {last.session} "
+                f"{found.value:.4f} +-{found.sigma:.4f}, card at this latitude {here.value:.4f}"
+            )
+        checks.append(
+            Check(
+                rule="torsion_ratio.clampings",
+                clause="two clampings, lambda = (H1 - H2)/(mu (B2 - B1)) - 1",
+                value=value,
+                limit=limit,
+                confirmed=False,
+                passed=passed,
+                where=f"{station}-{target}",
+                text=text,
+            )
+        )
+    return checks

@@ -222,6 +222,7 @@ def reduce_nontracking(
         quantities=(
             ("clamp reading", math.degrees(clamp), "deg"),
             ("middle of the swing", middle.value_div, "div"),
+            ("sigma of the middle", middle.sigma_div, "div"),
             ("torsion ratio", ratio, ""),
             *extras,
         ),

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from surveyapp.core.goodness import FitTest, goodness_of_fit
 from surveyapp.core.gyrofit import SwingFit, design, fit_swing, schuler_means, unwrap
+from surveyapp.core.preorientation import two_turning_points
 from surveyapp.core.reduction import (
     ReadingSigma,
     Reduction,
@@ -158,6 +159,8 @@ def reduce_tracking(
         If there are fewer than three turning points, or no three consecutive ones for Schuler, or
         if the damped fit does not converge.
     """
+    if len(session.book.of_kind(ReadingKind.REVERSAL)) == 2 and estimator is None:
+        return _pre_orientation(session, card)
     points = turning_points(session)
     zero, coefficient, correction, warnings = tape_zero_of(session, card, points.rows, latitude)
     points = without_tape_drift(points, zero, coefficient)
@@ -211,6 +214,27 @@ def reduce_tracking(
         points=_point_results(points, fit),
         schuler_means=tuple(wrap_two_pi(points.origin + mean) for mean in means.tolist()),
         warnings=(*warnings, *_sigma_warnings(session, sigma)),
+    )
+
+
+def _pre_orientation(session: OrientationSession, card: InstrumentCard) -> Reduction:
+    """Two turning points: good for setting the alidade, and labelled so."""
+    rows = session.book.of_kind(ReadingKind.REVERSAL)
+    first, second = (row.value or 0.0 for row in rows)
+    second = first + wrap_pi(second - first)
+    sigma = card.sigma.reversal or 0.0
+    north = two_turning_points(first, second, session=session.id, reading_sigma=sigma)
+    text = (
+        f"session {session.id}: two turning points give a pre-orientation, no azimuth: "
+        "the damping of the swing stays in it"
+    )
+    return Reduction(
+        estimator="two turning points",
+        north=north,
+        points_used=2,
+        sigma_source="card",
+        amplitude=0.5 * abs(second - first),
+        warnings=(ResultWarning("pre_orientation", text),),
     )
 
 
