@@ -150,9 +150,9 @@ def _line(line: LineResult, unit: AngleUnit) -> str:
 
 def small_angle(value: float) -> str:
     """A small angle [rad] with its sign: seconds, from a minute on minutes and seconds."""
-    seconds = abs(value) * RHO_ARCSEC
-    sign = "-" if value < 0.0 else "+"
-    minutes, rest = divmod(round(seconds, 2), 60.0)
+    seconds = round(abs(value) * RHO_ARCSEC, 2)
+    sign = "-" if value < 0.0 and seconds else "+"
+    minutes, rest = divmod(seconds, 60.0)
     return f"{sign}{minutes:.0f}'{rest:05.2f}\"" if minutes else f'{sign}{rest:.2f}"'
 
 
