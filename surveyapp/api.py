@@ -11,7 +11,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from surveyapp import __version__
+from surveyapp.api_batch import batch as batch
+from surveyapp.api_batch import batch_rows as batch_rows
 from surveyapp.api_office import blank_form as blank_form
+from surveyapp.api_office import close as close
+from surveyapp.api_office import compare as compare
+from surveyapp.api_office import export_csv as export_csv
+from surveyapp.api_office import export_json as export_json
+from surveyapp.api_office import export_zip as export_zip
+from surveyapp.api_office import reopen as reopen
 from surveyapp.api_office import report as report
 from surveyapp.api_office import report_text as report_text
 from surveyapp.domain.adjustment import AdjustmentResult
@@ -125,8 +133,20 @@ def _require(name: str, known: Iterable[str], kind: str) -> None:
 
 
 def check(project: Project | Folder) -> tuple[Check, ...]:
-    """Apply every limit and test that the project's data can answer."""
-    return orient(project).checks
+    """Apply every limit and test that the project's data can answer.
+
+    Raises
+    ------
+    SurveyError
+        If the project cannot be used; what was changed after its closing is among the problems.
+    """
+    from surveyapp.io.project_checks import changed_after_closing
+
+    try:
+        return orient(project).checks
+    except SurveyError as error:
+        folder = project.path if isinstance(project, Project) else project
+        raise SurveyError([*changed_after_closing(Path(folder)), *error.problems]) from None
 
 
 def adjust(

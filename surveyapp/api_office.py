@@ -1,4 +1,4 @@
-"""What scripts call for the office: records, forms; re-exported by ``surveyapp.api``.
+"""What scripts call for the office, re-exported by ``surveyapp.api``: records, closing, exports.
 
 A module of its own, because the reduction is one subject and what is filed another.
 """
@@ -6,7 +6,10 @@ A module of its own, because the reduction is one subject and what is filed anot
 from __future__ import annotations
 
 import hashlib
+import json
 import os
+from collections.abc import Callable
+from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +17,8 @@ from surveyapp import __version__
 from surveyapp.domain.project import Project
 
 if TYPE_CHECKING:
+    from surveyapp.core.differences import Snapshot
+    from surveyapp.domain.filing import ClosingResult, ComparisonResult, ExportResult
     from surveyapp.report.blocks import Document
     from surveyapp.report.record import Extra
     from surveyapp.report.written import ReportResult
@@ -21,6 +26,10 @@ if TYPE_CHECKING:
 Folder = str | os.PathLike[str]
 
 SOFTWARE = f"surveyapp {__version__}"
+
+
+def _local_now() -> datetime:
+    return datetime.now().astimezone()
 
 
 def report(
@@ -76,13 +85,20 @@ def _record(
     project: Project | Folder, extras: tuple[Extra, ...]
 ) -> tuple[Document, tuple[str, ...]]:
     from surveyapp import api
+    from surveyapp.io.ledger import read_ledger
     from surveyapp.io.project_checks import project_rule_book
-    from surveyapp.report.record import Record, record_document
+    from surveyapp.io.seals import closings_in_force
+    from surveyapp.report.record import Record, SealShown, record_document
 
     if not isinstance(project, Project):
         project = api.open_project(project)
     result = api.orient(project)
-    return record_document(Record(project, result, project_rule_book(project), extras=extras))
+    closing = closings_in_force(read_ledger(Path(project.path))).get("")
+    seal = None
+    if closing is not None:
+        values = [str(closing.data.get(key, "")) for key in ("by", "seal")]
+        seal = SealShown(closing.at, *values)
+    return record_document(Record(project, result, project_rule_book(project), seal, extras))
 
 
 def _write_document(
@@ -96,3 +112,113 @@ def _write_document(
     atomic_write(output, written.data)
     digest = hashlib.sha256(written.data).hexdigest()
     return ReportResult(str(output), written.pages, sections, digest)
+
+
+def close(
+    folder: Folder,
+    *,
+    session: str | None = None,
+    by: str = "",
+    note: str = "",
+    now: Callable[[], datetime] = _local_now,
+) -> ClosingResult:
+    """Close a project, or one session of it: files and ledger are sealed by a hash chain.
+
+    Raises
+    ------
+    SurveyError
+        If it cannot be read, is closed already, is open elsewhere, or cannot be written.
+    """
+    from surveyapp.io.closing import close_project
+
+    at = now().isoformat(timespec="seconds")
+    return close_project(Path(folder), session=session, by=by, note=note, at=at, software=SOFTWARE)
+
+
+def reopen(
+    folder: Folder,
+    *,
+    reason: str,
+    session: str | None = None,
+    by: str = "",
+    now: Callable[[], datetime] = _local_now,
+) -> ClosingResult:
+    """Reopen a closed project or session; reason and what was changed go into the ledger.
+
+    Raises
+    ------
+    SurveyError
+        If it is not closed, or no reason is given.
+    """
+    from surveyapp.io.closing import reopen_project
+
+    at = now().isoformat(timespec="seconds")
+    return reopen_project(
+        Path(folder), session=session, by=by, reason=reason, at=at, software=SOFTWARE
+    )
+
+
+def export_zip(folder: Folder, output: Folder) -> ExportResult:
+    """Write a project as one zip file for hand-over: same project, same bytes."""
+    from surveyapp.io.exporters.archive import archive
+
+    data, count = archive(Path(folder))
+    return _write_export("zip", data, Path(output), count)
+
+
+def export_csv(project: Project | Folder, output: Folder, *, table: str = "lines") -> ExportResult:
+    """Write a table of the results as CSV (lines, sessions, constants, checks, all)."""
+    from surveyapp import api
+    from surveyapp.io.exporters.results_csv import results_csv
+
+    text, count = results_csv(api.orient(project), table)
+    return _write_export("csv", text.encode("utf-8"), Path(output), count)
+
+
+def export_json(project: Project | Folder, output: Folder) -> ExportResult:
+    """Write the result with its files, cards and rule book, for a later ``compare``."""
+    snapshot = _snapshot(project)
+    data = json.dumps(snapshot.to_dict(), ensure_ascii=False, indent=1, allow_nan=False) + "\n"
+    return _write_export("json", data.encode("utf-8"), Path(output), len(snapshot.files or ()))
+
+
+def _write_export(name: str, data: bytes, output: Path, items: int) -> ExportResult:
+    from surveyapp.domain.filing import ExportResult
+    from surveyapp.io.tomltext import atomic_write
+
+    atomic_write(output, data)
+    return ExportResult(name, str(output), items, hashlib.sha256(data).hexdigest())
+
+
+def compare(a: Folder, b: Folder) -> ComparisonResult:
+    """Tell what changed between two results: input, software, card, rule book, numbers.
+
+    Parameters
+    ----------
+    a, b : path
+        Project folders, or files of ``orient --json`` and ``export json``.
+
+    Raises
+    ------
+    SurveyError
+        If one of them cannot be used.
+    """
+    from surveyapp.core.differences import compare_snapshots
+
+    return compare_snapshots(_side(Path(a)), _side(Path(b)))
+
+
+def _side(path: Path) -> Snapshot:
+    from surveyapp.io.snapshots import read_snapshot
+
+    return read_snapshot(path) if path.is_file() else _snapshot(path)
+
+
+def _snapshot(project: Project | Folder) -> Snapshot:
+    from surveyapp import api
+    from surveyapp.io.project_checks import project_rule_book
+    from surveyapp.io.snapshots import folder_snapshot
+
+    if not isinstance(project, Project):
+        project = api.open_project(project)
+    return folder_snapshot(project, api.orient(project), project_rule_book(project))

@@ -31,6 +31,7 @@ from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.clock import SessionClock, Stamp, local_now, steady_seconds
 from surveyapp.io.fieldbook import append_row, read_field_book
 from surveyapp.io.lock import ProjectLock
+from surveyapp.io.seals import is_closed
 from surveyapp_models.angles import ARCSEC
 
 WANTED_KEY: Final = "wanted_interval_arcsec"
@@ -94,6 +95,7 @@ class Observation:
         self.folder = Path(folder)
         self.session_id = session
         self._lock = ProjectLock(self.folder)
+        self._closed = is_closed(self.folder, session)
         try:
             self.project = api.open_project(self.folder)
             self.clock = SessionClock(self.session.book.rows, now=now, steady=steady)
@@ -103,8 +105,8 @@ class Observation:
 
     @property
     def writable(self) -> bool:
-        """Whether rows may be written."""
-        return self._lock.writable
+        """Whether rows may be written: not by a second opener, and not after closing."""
+        return self._lock.writable and not self._closed
 
     @property
     def session(self) -> OrientationSession:

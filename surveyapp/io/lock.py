@@ -24,20 +24,29 @@ class ProjectLock:
     ----------
     folder : Path
         The project folder.
+    even_closed : bool
+        For closing and reopening: a closed project is read-only for everybody else.
 
     Attributes
     ----------
     writable : bool
-        Whether this handle may write. False for the second opener and in a read-only folder.
+        Whether this handle may write. False for the second opener, in a read-only folder and in
+        a closed project.
+    closed : bool
+        Whether the project is closed.
     """
 
-    __slots__ = ("_lock", "folder", "writable")
+    __slots__ = ("_lock", "closed", "folder", "writable")
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, *, even_closed: bool = False) -> None:
+        from surveyapp.io.seals import is_closed
+
         self.folder = folder
         self.writable = False
+        self.closed = is_closed(folder)
         self._lock: BaseFileLock | None = None
-        self._acquire()
+        if even_closed or not self.closed:
+            self._acquire()
 
     def _acquire(self) -> None:
         if not self.folder.is_dir():

@@ -10,7 +10,9 @@ from surveyapp.core.validity import validity_checks
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import Check
 from surveyapp.domain.rulebook import RuleBook
+from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.rulebooks import read_rule_book
+from surveyapp.io.seals import seal_checks
 
 
 def project_rule_book(project: Project) -> RuleBook | None:
@@ -27,7 +29,7 @@ def project_rule_book(project: Project) -> RuleBook | None:
 
 
 def project_checks(project: Project, orientation: Orientation) -> tuple[Check, ...]:
-    """Checks beyond the statistical ones: valid ranges, the rule book.
+    """Checks beyond the statistical ones: valid ranges, seals, the rule book.
 
     Raises
     ------
@@ -36,4 +38,19 @@ def project_checks(project: Project, orientation: Orientation) -> tuple[Check, .
     """
     book = project_rule_book(project)
     checks = validity_checks(orientation)
+    if project.path:
+        checks += seal_checks(Path(project.path))
     return checks if book is None else (*checks, *rule_book_checks(book, measure(orientation)))
+
+
+def changed_after_closing(folder: Path) -> tuple[Problem, ...]:
+    """What was changed in a closed project, as problems: for one that can no longer be read."""
+    try:
+        checks = seal_checks(folder)
+    except (SurveyError, OSError, ValueError):
+        return ()
+    return tuple(
+        Problem("the closed project was changed", check.where, check.text, "as it was closed")
+        for check in checks
+        if check.passed is False and check.confirmed
+    )

@@ -1,0 +1,40 @@
+"""``surveyapp close``: seal a project, or one session of it, with a hash chain in the ledger."""
+
+from __future__ import annotations
+
+import argparse
+
+from surveyapp.cli.output import print_json
+from surveyapp.domain.filing import ClosingResult
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    parser.add_argument("folder", metavar="DIR", help="project folder")
+    parser.add_argument("--session", metavar="ID", help="this session alone")
+    parser.add_argument("--by", default="", metavar="NAME", help="who closes")
+    parser.add_argument("--note", default="", metavar="TEXT", help="a sentence for the ledger")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Close and say what stands in the ledger."""
+    from surveyapp import api
+
+    result = api.close(options.folder, session=options.session, by=options.by, note=options.note)
+    return tell(result, as_json=options.json)
+
+
+def tell(result: ClosingResult, *, as_json: bool) -> int:
+    """Print a closing or a reopening."""
+    if as_json:
+        print_json(result.to_dict())
+        return 0
+    what = f"session {result.session}" if result.session else "project"
+    if result.seal:
+        print(f"{what} closed at {result.at}: {result.files} files, seal {result.seal}")
+    else:
+        print(f"{what} reopened at {result.at}: {result.reason}")
+        for text in result.found:
+            print(f"  changed since it was closed: {text}")
+    return 0

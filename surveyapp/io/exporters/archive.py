@@ -1,0 +1,71 @@
+"""A project as one zip file for hand-over: the same project, the same bytes.
+
+Everything that a closing would seal, the ledger, and a manifest with the sha256 of each file.
+Files outside of the folder are stored below ``outside/``; the manifest tells their names.
+"""
+
+from __future__ import annotations
+
+import io
+import shutil
+import zipfile
+from pathlib import Path
+from typing import Final
+
+from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.ledger import LEDGER_FILE
+from surveyapp.io.seals import hash_file, project_file_names
+
+MANIFEST: Final = "MANIFEST.sha256"
+_MOMENT: Final = (1980, 1, 1, 0, 0, 0)
+"""The earliest moment that a zip can hold: files carry no date, so that bytes do not change."""
+
+
+def stored_name(name: str, number: int) -> str:
+    """Name inside of the archive: never absolute, never above the folder."""
+    parts = name.replace("\\", "/").split("/")
+    if name.startswith("/") or ":" in parts[0] or ".." in parts:
+        return f"outside/{number:03d}-{parts[-1]}"
+    return "/".join(part for part in parts if part not in ("", "."))
+
+
+def archive(folder: Path) -> tuple[bytes, int]:
+    """Zip of a project folder and the number of files in it.
+
+    Raises
+    ------
+    SurveyError
+        If a file cannot be read.
+    """
+    names = list(project_file_names(folder))
+    if (folder / LEDGER_FILE).is_file():
+        names.append(LEDGER_FILE)
+    stream = io.BytesIO()
+    manifest = []
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED, compresslevel=6) as packed:
+        for number, name in enumerate(names, start=1):
+            stored = stored_name(name, number)
+            item = hash_file(folder / name, name)
+            remark = "" if stored == name else f"  (named {name})"
+            manifest.append(f"{item.sha256}  {stored}{remark}")
+            _store(packed, folder / name, f"{folder.resolve().name}/{stored}")
+        text = "\n".join(manifest) + "\n"
+        packed.writestr(_info(f"{folder.resolve().name}/{MANIFEST}"), text)
+    return stream.getvalue(), len(names)
+
+
+def _info(name: str) -> zipfile.ZipInfo:
+    info = zipfile.ZipInfo(name, _MOMENT)
+    info.compress_type = zipfile.ZIP_DEFLATED
+    info.external_attr = 0o644 << 16
+    return info
+
+
+def _store(packed: zipfile.ZipFile, path: Path, name: str) -> None:
+    try:
+        with path.open("rb") as source, packed.open(_info(name), "w") as target:
+            shutil.copyfileobj(source, target, 1 << 20)
+    except OSError as error:
+        raise SurveyError(
+            Problem(f"the file cannot be read ({error.strerror or error})", str(path))
+        ) from None
