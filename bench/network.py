@@ -134,18 +134,30 @@ def _measure(count: int, shape: str, path: str) -> None:
     print(f"{reading} {file_s} {shared_s} {memory}")
 
 
-def _line(count: int, shape: str, folder: Path) -> str:
+def _write(count: int, shape: str, path: str) -> None:
     from surveyapp.io.exporters.gkf import write_gkf
 
-    path = folder / f"{shape}-{count}.gkf"
     write_gkf(with_plain_azimuths(network(count, branched=shape == "branched")), path)
+
+
+def _child(*arguments: str) -> list[float]:
+    """Numbers that a process of its own prints.
+
+    This process must stay small: children inherit its peak memory in their statistics.
+    """
     run = subprocess.run(
-        [sys.executable, "-m", "bench.network", str(count), shape, str(path)],
+        [sys.executable, "-m", "bench.network", *arguments],
         capture_output=True,
         text=True,
         check=True,
     )
-    reading, file_s, shared_s, memory = (float(item) for item in run.stdout.split())
+    return [float(item) for item in run.stdout.split()]
+
+
+def _line(count: int, shape: str, folder: Path) -> str:
+    path = folder / f"{shape}-{count}.gkf"
+    _child("write", str(count), shape, str(path))
+    reading, file_s, shared_s, memory = _child("measure", str(count), shape, str(path))
     seconds, megabytes = TARGETS.get(count, (None, None))
     text = (
         f"{shape:>8} {count:>7} points: {file_s:6.2f} s from file (reading {reading:.2f} s), "
@@ -184,4 +196,5 @@ def run() -> list[str]:
 
 
 if __name__ == "__main__":
-    _measure(int(sys.argv[1]), sys.argv[2], sys.argv[3])
+    action = {"write": _write, "measure": _measure}[sys.argv[1]]
+    action(int(sys.argv[2]), sys.argv[3], sys.argv[4])

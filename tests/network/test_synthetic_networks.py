@@ -135,7 +135,17 @@ def test_partials_are_the_central_differences(kind: ObservationKind) -> None:
         assert partials[i] == pytest.approx((high - low) / 2e-4, rel=1e-6, abs=1e-9)
 
 
-@pytest.mark.parametrize("kinds", [("distance",), ("direction", "distance"), ("angle", "distance")])
+@pytest.mark.parametrize(
+    "kinds",
+    [
+        ("distance", "azimuth"),  # distances alone leave two mirror images
+        ("direction",),
+        ("direction", "distance"),
+        ("angle", "distance"),
+        ("angle", "azimuth"),
+        ("vector", "distance"),
+    ],
+)
 def test_nothing_but_observations_is_needed(kinds: tuple[str, ...]) -> None:
     network, _ = make(21, kinds, points=9)
     result = adjust(network)
@@ -147,6 +157,17 @@ def test_nothing_but_observations_is_needed(kinds: tuple[str, ...]) -> None:
     for a, b in zip(result.points, alone.points, strict=True):
         assert a.e == pytest.approx(b.e, abs=1e-6)
         assert a.n == pytest.approx(b.n, abs=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_free_trilateration_is_built_from_nothing(seed: int) -> None:
+    network, _ = make(seed, ("distance",), points=9, datum="free", reach=200.0)
+    bare = tuple(replace(point, e=None, n=None) for point in network.points)
+    result, alone = adjust(network), adjust(replace(network, points=bare))
+    assert alone.dof == result.dof
+    assert alone.global_test.sum_of_squares == pytest.approx(
+        result.global_test.sum_of_squares, rel=1e-6
+    )
 
 
 def test_rank_tolerances_leave_room_on_both_sides() -> None:

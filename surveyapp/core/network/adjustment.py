@@ -15,6 +15,7 @@ from surveyapp.core.leastsquares.equations import Floats
 from surveyapp.core.network import quality as q
 from surveyapp.core.network.approximate import approximate
 from surveyapp.core.network.closures import network_closures
+from surveyapp.core.network.collector import paused_collection
 from surveyapp.core.network.gaussnewton import Converged, NotConverged, iterate, refuse
 from surveyapp.core.network.model import Model, compile_network
 from surveyapp.core.network.undetermined import refuse_undetermined
@@ -59,14 +60,15 @@ def adjust(
     SurveyError
         No datum, undetermined points (named), no approximate coordinates, no convergence.
     """
-    model = compile_network(network)
-    state = solve_network(network, model)
-    warnings = list(network.warnings) + _skipped_warning(network, model)
-    outcome = _without_gross(network, model, state)
-    if outcome is not None:
-        model, state, dropped = outcome
-        warnings.append(dropped)
-    return _result(network, model, state, tuple(warnings), (family_level, relative))
+    with paused_collection():
+        model = compile_network(network)
+        state = solve_network(network, model)
+        warnings = list(network.warnings) + _skipped_warning(network, model)
+        outcome = _without_gross(network, model, state)
+        if outcome is not None:
+            model, state, dropped = outcome
+            warnings.append(dropped)
+        return _result(network, model, state, tuple(warnings), (family_level, relative))
 
 
 def solve_network(network: Network, model: Model) -> Converged:
@@ -97,18 +99,15 @@ def _skipped_warning(network: Network, model: Model) -> list[ResultWarning]:
 
 
 def _gross_misfit(network: Network, model: Model, state: Converged) -> Floats:
-    """Misclosure of each observation across its sight [m]."""
+    """Misclosure of each observation across its sight [m]; a constant has no sight."""
     misfit = np.abs(state.misclosure)
-    points = state.values[: 3 * len(network.points)].reshape(-1, 3)
-    for row in np.flatnonzero(model.angular):
-        slots = model.slots[row]
-        coordinates = slots[(slots >= 0) & (slots < model.coordinate_slots)]
-        if not len(coordinates):
-            misfit[row] = 0.0
-            continue
-        corners = points[np.unique(coordinates // 3), :2]
-        reach = np.linalg.norm(corners - points[coordinates[0] // 3, :2], axis=1)
-        misfit[row] *= float(np.nanmax(reach))
+    points = state.values[: 3 * len(network.points)].reshape(-1, 3)[:, :2]
+    slots = model.slots[model.angular]
+    real = np.logical_and(slots >= 0, slots < model.coordinate_slots)
+    owner = np.where(real, slots, slots[:, :1]) // 3
+    owner = np.where(np.any(real, axis=1, keepdims=True), owner, 0)
+    reach = np.linalg.norm(points[owner] - points[owner[:, :1]], axis=2).max(axis=1)
+    misfit[model.angular] *= reach
     return misfit
 
 
@@ -312,13 +311,11 @@ def _relative(
 ) -> tuple[RelativeEllipse, ...]:
     """Ellipses of neighbours, at least one of them unknown."""
     number = {point.name: i for i, point in enumerate(network.points)}
-    found = {
-        (min(pair), max(pair))
-        for obs in model.observations
-        if obs.to
-        for pair in ((number[obs.at], number[obs.to]),)
-    }
-    pairs = np.array(sorted(found), dtype=np.int64).reshape(-1, 2)
+    ends = np.array(
+        [(number[obs.at], number[obs.to]) for obs in model.observations if obs.to], dtype=np.int64
+    ).reshape(-1, 2)
+    keys = np.unique(ends.min(axis=1) * len(number) + ends.max(axis=1))
+    pairs = np.stack(np.divmod(keys, len(number)), axis=1)
     slots = np.stack(
         (3 * pairs[:, 0], 3 * pairs[:, 0] + 1, 3 * pairs[:, 1], 3 * pairs[:, 1] + 1), axis=1
     )

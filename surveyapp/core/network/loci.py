@@ -117,11 +117,11 @@ def intersections(first: Locus, second: Locus) -> list[complex]:
 
 @dataclass(frozen=True, slots=True)
 class Fix:
-    """A constructed point, its misfit [m] and whether another point serves as well."""
+    """A constructed point, its misfit [m] and another point that serves as well, if there is."""
 
     point: complex
     misfit: float
-    ambiguous: bool
+    other: complex | None
 
 
 MOST_LOCI = 8
@@ -139,13 +139,13 @@ def construct(loci: Sequence[Locus]) -> Fix | None:
     -------
     Fix or None
         The intersection with the smallest sum of misfits over all loci, which is the L1 choice and
-        so does not follow a single gross error. ``ambiguous`` where a point elsewhere fits as well.
+        so does not follow a single gross error. ``other`` where a point elsewhere fits as well.
     """
     points: list[complex] = []
     few = loci[:MOST_LOCI]
-    for i, first in enumerate(few):
-        for second in few[i + 1 :]:
-            points += intersections(first, second)
+    for i, locus in enumerate(few):
+        for further in few[i + 1 :]:
+            points += intersections(locus, further)
     judged = [(sum(locus.misfit(point) for locus in loci), point) for point in points]
     found = [item for item in judged if math.isfinite(item[0])]
     if not found:
@@ -155,10 +155,13 @@ def construct(loci: Sequence[Locus]) -> Fix | None:
     if misfit > 0.3 * size:
         return None
     tolerance = max(10.0 * misfit, 1e-3 * size)
-    ambiguous = any(
-        abs(point - best) > 0.05 * size and other <= tolerance for other, point in found
-    )
-    return Fix(best, misfit, ambiguous)
+    rivals = [
+        (other, point)
+        for other, point in found
+        if abs(point - best) > 0.05 * size and other <= tolerance
+    ]
+    rival = min(rivals, key=lambda item: item[0])[1] if rivals else None
+    return Fix(best, misfit, rival)
 
 
 def _reach(locus: Locus, point: complex) -> float:

@@ -53,6 +53,8 @@ class Sighted:
 
 
 def _mean(values: list[Measured], *, angular: bool) -> Measured:
+    if len(values) == 1:
+        return values[0]
     weights = [1.0 / item.sigma**2 for item in values]
     first = values[0].value
     offsets = [wrap_pi(item.value - first) if angular else item.value - first for item in values]
@@ -73,11 +75,13 @@ def _angles(observations: Iterable[Observation]) -> dict[tuple[str, str, str], l
     for (at, _), rays in sets.items():
         if len(rays) > MOST_RAYS:
             continue
-        for a in rays:
-            for b in rays:
+        for i, a in enumerate(rays):
+            for b in rays[i + 1 :]:
                 if a.to != b.to:
+                    turn = b.value - a.value
                     sigma = math.hypot(a.sigma, b.sigma)
-                    found[at, a.to, b.to].append(Measured(b.value - a.value, sigma))
+                    found[at, a.to, b.to].append(Measured(turn, sigma))
+                    found[at, b.to, a.to].append(Measured(-turn, sigma))
     return found
 
 

@@ -11,10 +11,9 @@ from __future__ import annotations
 import cmath
 import math
 from collections import deque
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from surveyapp.core.network.loci import Arc, Circle, Locus, Ray, construct
+from surveyapp.core.network.loci import Arc, Circle, Fix, Locus, Ray, construct
 from surveyapp_models.angles import wrap_pi
 
 Positions = dict[str, complex]
@@ -51,8 +50,10 @@ class Sights:
 class Sketch:
     """A growing set of positions; mutable, private to one construction."""
 
-    def __init__(self, sights: Sights, known: Positions) -> None:
+    def __init__(self, sights: Sights, known: Positions, variant: int = 0) -> None:
         self.sights = sights
+        self.variant = variant
+        self.guesses = 0
         self.positions: Positions = dict(known)
         self.orientation: dict[int, float] = {
             i: p.orientation for i, p in enumerate(sights.pencils) if p.orientation is not None
@@ -177,27 +178,42 @@ class Sketch:
             if a != b and self.positions[a] != self.positions[b]
         ]
 
-    def candidates(self) -> Iterable[str]:
+    def candidates(self) -> list[str]:
         """Points that are joined to anything but not placed."""
         names = dict.fromkeys(self.seen_by) | dict.fromkeys(self.at)
         names |= dict.fromkeys(self.sights.distances)
         return [name for name in names if name not in self.positions]
 
     def grow(self, *, guess: bool = False) -> None:
-        """Spread and construct until nothing more can be placed."""
+        """Spread and construct until nothing more can be placed.
+
+        Of two points that serve equally well one is taken only if ``guess`` and only where
+        nothing certain is left; which one, the bits of ``variant`` say.
+        """
         self.spread()
         while True:
-            fixes = []
+            sure: list[tuple[str, complex]] = []
+            doubtful: list[tuple[int, float, str, Fix]] = []
             for name in self.candidates():
                 loci = self.loci(name)
                 fix = construct(loci) if len(loci) >= 2 else None
-                if fix is not None and (guess or not fix.ambiguous):
-                    fixes.append((-len(loci), fix.misfit, name, fix.point))
-            if not fixes:
+                if fix is not None and fix.other is None:
+                    sure.append((name, fix.point))
+                elif fix is not None:
+                    doubtful.append((-len(loci), fix.misfit, name, fix))
+            if not sure and not (guess and doubtful):
                 return
-            for _, _, name, point in sorted(fixes)[: 1 if guess else None]:
+            for name, point in sure:
                 self.place(name, point)
+            if not sure:
+                self._guess(min(doubtful, key=lambda item: item[:3]))
             self.spread()
+
+    def _guess(self, choice: tuple[int, float, str, Fix]) -> None:
+        _, _, name, fix = choice
+        second = bool(self.variant >> self.guesses & 1) and fix.other is not None
+        self.guesses += 1
+        self.place(name, fix.other if second and fix.other is not None else fix.point)
 
 
 def _seed(sights: Sights, sketch: Sketch) -> tuple[Positions, tuple[int, float] | None, bool]:
@@ -231,7 +247,7 @@ def _frame(sights: Sights, sketch: Sketch) -> tuple[Sketch, bool] | None:
     if not start:
         return None
     loose = tuple(Pencil(p.station, p.rays) for p in sights.pencils)
-    frame = Sketch(Sights(loose, sights.distances), start)
+    frame = Sketch(Sights(loose, sights.distances), start, sketch.variant >> sketch.guesses)
     if oriented is not None:
         frame.orient(*oriented)
     frame.grow()
@@ -300,17 +316,69 @@ def sketch_positions(sights: Sights, known: Positions) -> Positions:
     dict
         The known and all further positions that could be found.
     """
-    sketch = Sketch(sights, known)
+    best = _attempt(sights, known, 0)
+    least = _misfit(sights, best)
+    variant = 1
+    while variant < min(2 ** min(best.guesses, 5), MOST_VARIANTS):
+        other = _attempt(sights, known, variant)
+        misfit = _misfit(sights, other)
+        if (len(other.positions), -misfit) > (len(best.positions), -least):
+            best, least = other, misfit
+        variant += 1
+    return best.positions
+
+
+MOST_VARIANTS = 32
+"""So many ways of resolving two-fold points are tried; the best fitting one is taken."""
+
+
+def _attempt(sights: Sights, known: Positions, variant: int) -> Sketch:
+    sketch = Sketch(sights, known, variant)
+    if not known:
+        _anywhere(sights, sketch)
     sketch.grow()
     for _ in range(len(sights.pencils) + len(sights.distances) + 1):
-        if not any(True for _ in sketch.candidates()):
+        if not sketch.candidates():
             break
         before = len(sketch.positions)
         built = _frame(sights, sketch)
         if built is not None and _lay_on(sketch, built[0], scaled=built[1]):
+            sketch.guesses += built[0].guesses
             sketch.grow()
         if len(sketch.positions) == before:
             sketch.grow(guess=True)
         if len(sketch.positions) == before:
             break
-    return sketch.positions
+    return sketch
+
+
+def _anywhere(sights: Sights, sketch: Sketch) -> None:
+    """Start an oriented network that is nowhere at 0, 0, so that its orientation is not lost."""
+    if sights.vectors:
+        sketch.place(next(iter(sights.vectors)), 0j)
+    elif sketch.orientation:
+        number, turn = next(iter(sketch.orientation.items()))
+        pencil = sights.pencils[number]
+        sketch.place(pencil.station, 0j)
+        if not sights.distances:  # no scale either: the first sight is taken for 1000 m
+            target, reading = next(iter(pencil.rays.items()))
+            bearing = turn + reading
+            sketch.place(target, 1000.0 * complex(math.sin(bearing), math.cos(bearing)))
+
+
+def _misfit(sights: Sights, sketch: Sketch) -> float:
+    """Sum of the misfits of all distances (each at most its own length) and oriented rays [m]."""
+    total = 0.0
+    for name, near in sights.distances.items():
+        for other, length in near.items():
+            if name in sketch.positions and other in sketch.positions:
+                gap = abs(sketch.positions[name] - sketch.positions[other])
+                total += min(abs(gap - length), length)
+    for number, pencil in enumerate(sights.pencils):
+        turn, here = sketch.orientation.get(number), sketch.positions.get(pencil.station)
+        if turn is None or here is None:
+            continue
+        for target, reading in pencil.rays.items():
+            if target in sketch.positions:
+                total += Ray(here, turn + reading).misfit(sketch.positions[target])
+    return total

@@ -14,6 +14,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from surveyapp.core.network.collector import paused_collection
 from surveyapp.domain.traverse import Network
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.importers.gkf_document import GkfDocument
@@ -39,7 +40,7 @@ def _handler(document: GkfDocument) -> ContentHandler:
 
         def startElement(self, name: str, attrs: AttributesImpl) -> None:
             line = self.locator.getLineNumber() if self.locator is not None else 0
-            document.start(name, dict(attrs), line or 0)
+            document.start(name, dict(attrs.items()), line or 0)
 
         def endElement(self, name: str) -> None:
             document.end(name)
@@ -69,8 +70,9 @@ def read_gkf(path: Path | str) -> Network:
     """
     path = Path(path)
     document = GkfDocument(str(path.name))
-    _parse(path, document)
-    return network_from(document)
+    with paused_collection():
+        _parse(path, document)
+        return network_from(document)
 
 
 def _parse(path: Path, document: GkfDocument) -> None:
