@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 MAX_LATITUDE_DEG = 75.0
 WARN_LATITUDE_DEG = 70.0
 """physics.md 1.5: a maker's limit, not a singularity."""
+AREA_MARGIN_DEG = 1.0
+"""Beside its area by less, a grid may still be in use: the neighbour's zone is often carried on."""
 CONFORMAL_LIMIT_DEG = 1e-3
 """Angular distortion above which a projection is not treated as conformal (web Mercator passes)."""
 
@@ -40,6 +42,8 @@ class Grid:
     projection, geodesic : pyproj objects
     sign_e, sign_n : float
         -1 where the axis points west or south.
+    area_deg : tuple of float or None
+        West, south, east, north of the area for which the grid is made [degrees].
     """
 
     text: str
@@ -48,6 +52,7 @@ class Grid:
     geodesic: Geod
     sign_e: float
     sign_n: float
+    area_deg: tuple[float, float, float, float] | None = None
 
     @property
     def directions_from_south(self) -> bool:
@@ -72,6 +77,16 @@ class Grid:
         value = float(factors.meridian_convergence)
         self._require_finite(value, _degrees(latitude=latitude, longitude=longitude))
         return math.radians(value)
+
+    def is_beside(self, *, latitude: float, longitude: float) -> bool:
+        """Whether a place [rad] lies beside the area of the grid by more than a margin."""
+        if self.area_deg is None:
+            return False
+        west, south, east, north = self.area_deg
+        width = (east - west) % 360.0 or 360.0
+        from_west = (math.degrees(longitude) - west + AREA_MARGIN_DEG) % 360.0
+        inside = south - AREA_MARGIN_DEG <= math.degrees(latitude) <= north + AREA_MARGIN_DEG
+        return not (inside and from_west <= width + 2.0 * AREA_MARGIN_DEG)
 
     def is_conformal(self, *, latitude: float, longitude: float) -> bool:
         """Whether angles survive the projection at a place."""
@@ -128,6 +143,7 @@ def open_grid(text: str) -> Grid:
         geodesic=geod,
         sign_e=-1.0 if "west" in directions else 1.0,
         sign_n=-1.0 if "south" in directions and "north" not in directions else 1.0,
+        area_deg=None if (area := crs.area_of_use) is None else area.bounds,
     )
 
 

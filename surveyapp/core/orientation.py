@@ -31,6 +31,7 @@ from surveyapp.core.lines import (
     OrientedLine,
     line_geometry,
 )
+from surveyapp.core.plausibility import place_warnings, refuse_one_place
 from surveyapp.core.scatter import RunScatter, run_scatter
 from surveyapp.core.sequence import phase_of, session_moments
 from surveyapp.core.session import (
@@ -117,6 +118,8 @@ def orient_project(
         for instrument in project.instruments
     }
     geometry = _geometries(reduced, stations, grid, positions)
+    refuse_one_place(geometry)
+    warnings += place_warnings(list(geometry.values()), grid)
     constants = []
     for instrument in project.instruments:
         calibrations, more = calibrations_of(

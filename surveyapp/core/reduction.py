@@ -131,7 +131,7 @@ def need_points(session: OrientationSession, *, found: int, needed: int, kind: s
             where=f"session {session.id}, {session.book_path}",
             found=f"{found} {kind} rows that count",
             expected=f"at least {needed}",
-            hint="Observe more turning points, or correct the session's method.",
+            hint="Observe more, or correct the session's method.",
         )
     )
 

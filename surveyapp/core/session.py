@@ -10,6 +10,7 @@ import numpy as np
 
 from surveyapp.core.automatic import reduce_automatic
 from surveyapp.core.nontracking import reduce_nontracking
+from surveyapp.core.plausibility import refuse_wrong_faces
 from surveyapp.core.reduction import Reduction
 from surveyapp.core.resolution import reading_resolution, rounding_sigma
 from surveyapp.core.sights import SightSet, eccentric_correction, reduce_sights
@@ -131,6 +132,7 @@ def collect_sights(session: OrientationSession) -> dict[str, SightSet]:
     for target in sight_targets(session):
         sights = reduce_sights(session.book, target, default_target=session.target)
         if sights is not None:
+            refuse_wrong_faces(session, sights)
             found[target] = sights
     return found
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from surveyapp.core.clamped import session_problem
 from surveyapp.core.goodness import FitTest, goodness_of_fit
 from surveyapp.core.gyrofit import SwingFit, design, fit_swing, schuler_means, unwrap
 from surveyapp.core.preorientation import two_turning_points
@@ -96,6 +97,14 @@ def turning_points(
     index = np.array([i for i, _ in numbered], dtype=np.float64)
     readings = np.array([row.value for row in rows], dtype=np.float64)
     sides = np.array([1.0 if row.side is Side.RIGHT else -1.0 for row in rows])
+    if np.unique(sides).size < 2:
+        raise session_problem(
+            session,
+            "the turning points do not swing: nothing tells left from right",
+            found=f"{len(rows)} points on one side, or all with one reading",
+            expected="points on both sides of north",
+            hint="Was the gyro running, and was it released? Were points left out?",
+        )
     angular = kind is ReadingKind.REVERSAL
     stated = session.resolution if angular else None
     return TurningPoints(

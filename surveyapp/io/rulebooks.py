@@ -44,7 +44,7 @@ def rule_book_text(name_or_path: str, *, base: Path) -> str:
         raise SurveyError(
             Problem(
                 "there is no such rule book",
-                "rule_book",
+                "project.toml, rule_book",
                 shown(name_or_path),
                 "the id of an installed rule book, or a path to your own ending in .toml",
                 nearest_names(name_or_path, known),
