@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from surveyapp import __version__
 from surveyapp.api_batch import batch as batch
@@ -337,6 +337,7 @@ def diagnose(
     confirm: str | None = None,
     effects: Folder | None = None,
     adopt: bool = False,
+    log: bool = True,
 ) -> Diagnosed:
     """Find which effect the model lacks, how sure that is, and prove it.
 
@@ -354,6 +355,8 @@ def diagnose(
         A Python file with a tuple ``EFFECTS`` of the user's own effects.
     adopt : bool
         Write the effects that the engine names into the project; the next ``orient`` uses them.
+    log : bool
+        Append the diagnosis to the project's ledger where it can be written.
 
     Raises
     ------
@@ -372,6 +375,19 @@ def diagnose(
         folder=Path(project.path) if project.path else None,
         adopt=adopt,
         software=SOFTWARE,
+        log=log,
+    )
+
+
+def subjects(project: Project | Folder) -> tuple[tuple[Literal["session", "campaign"], str], ...]:
+    """What ``diagnose`` can take of a project: its keyword and the id."""
+    from surveyapp.workflows.diagnosing import subjects_of
+
+    if not isinstance(project, Project):
+        project = open_project(project)
+    return tuple(
+        ("session" if item.option == "--session" else "campaign", item.id)
+        for item in subjects_of(project)
     )
 
 

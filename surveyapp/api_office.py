@@ -38,6 +38,7 @@ def report(
     *,
     font: Folder | None = None,
     extras: tuple[Extra, ...] = (),
+    diagnosis: bool = False,
 ) -> ReportResult:
     """Write the survey record as PDF; the same input gives the same bytes.
 
@@ -51,14 +52,44 @@ def report(
         faces that PDF viewers bring.
     extras : tuple of surveyapp.report.record.Extra
         Sections from elsewhere, before the checks.
+    diagnosis : bool
+        Diagnose every run and campaign of the project and show what was found.
 
     Raises
     ------
     SurveyError
         If the project cannot be used, the face cannot be embedded or the file not be written.
     """
+    if diagnosis:
+        extras = (*extras, *_diagnoses(project))
     document, sections = _record(project, extras)
     return _write_document(document, sections, Path(output), font)
+
+
+def _diagnoses(project: Project | Folder) -> tuple[Extra, ...]:
+    """A section for every subject that can be diagnosed; too few observations are passed over."""
+    from surveyapp import api
+    from surveyapp.errors import SurveyError
+    from surveyapp.report.record import Extra
+    from surveyapp.report.sections import diagnosis as section
+
+    if not isinstance(project, Project):
+        project = api.open_project(project)
+    found = []
+    for option, identity in api.subjects(project):
+        try:
+            if option == "session":
+                made = api.diagnose(project, session=identity, log=False)
+            else:
+                made = api.diagnose(project, campaign=identity, log=False)
+        except SurveyError:
+            continue
+        if made.diagnosis is None:
+            continue
+        shown = {name: (before, after) for name, before, after in made.channels}
+        made_blocks = section.blocks(made.diagnosis, made.words, shown, unit=project.angle_unit)
+        found.append(Extra(f"diagnosis of {identity}", made_blocks))
+    return tuple(found)
 
 
 def report_text(project: Project | Folder) -> str:

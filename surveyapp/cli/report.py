@@ -14,6 +14,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", metavar="FILE.pdf", help="PDF to be written")
     parser.add_argument("--blank", metavar="METHOD", help="a blank form instead of a record")
     parser.add_argument("--font", metavar="FILE.ttf", help="face for Chinese, Japanese, Korean")
+    parser.add_argument(
+        "--diagnosis", action="store_true", help="diagnose every run and campaign in it"
+    )
     parser.add_argument("--text", action="store_true", help="print the record, write no PDF")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
@@ -32,7 +35,9 @@ def run(options: argparse.Namespace) -> int:
     if options.blank is not None:
         written = api.blank_form(options.blank, options.output, font=options.font)
     else:
-        written = api.report(options.folder, options.output, font=options.font)
+        written = api.report(
+            options.folder, options.output, font=options.font, diagnosis=options.diagnosis
+        )
     if options.json:
         print_json(written.to_dict())
     else:

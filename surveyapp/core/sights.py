@@ -16,11 +16,13 @@ from numpy.typing import NDArray
 
 from surveyapp.core.statistics.distributions import student_tail
 from surveyapp.domain.readings import Face, FieldBook, Place, Reading, ReadingKind
+from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.angles import wrap_pi, wrap_two_pi
 
 Floats = NDArray[np.float64]
 
-DRIFT_SIGNIFICANCE = 0.01
+STEEPEST = math.radians(1.0)
+"""A sight nearer to the vertical is no sight: its azimuth would be lost in the tilt."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,7 +197,20 @@ def zenith_angle(book: FieldBook, target: str, *, default_target: str | None) ->
             continue
         upper = row.value
         values.append(2.0 * math.pi - upper if upper > math.pi else upper)
-    return float(np.mean(values)) if values else None
+    if not values:
+        return None
+    mean = float(np.mean(values))
+    if math.sin(mean) < math.sin(STEEPEST):
+        raise SurveyError(
+            Problem(
+                what="a sight straight up or down has no azimuth",
+                where=f"zenith angles of {target}",
+                found=f"{math.degrees(mean):.3f} degrees",
+                expected="at least 1 degree from the vertical",
+                hint="Was an elevation angle entered instead of a zenith angle?",
+            )
+        )
+    return mean
 
 
 def eccentric_correction(*, line_reading: float, direction: float, ratio: float, at: str) -> float:

@@ -12,7 +12,10 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from surveyapp.core.orientation import Orientation
+from surveyapp.diagnosis.battery import channels
 from surveyapp.diagnosis.engine import diagnose as run_engine
 from surveyapp.diagnosis.problem import Problem
 from surveyapp.diagnosis.result import Adoption, Diagnosis
@@ -26,6 +29,8 @@ from surveyapp.diagnosis.words import words_of
 from surveyapp.domain.project import Project
 from surveyapp.errors import Problem as InputProblem
 from surveyapp.errors import SurveyError, nearest_names
+from surveyapp.io.lock import ProjectLock
+from surveyapp.io.writing import append_subtable
 from surveyapp_models.effects.effect import Effect
 
 RANGE_COLUMNS = ("temperature_c", "latitude", "elapsed_days", "running_s")
@@ -65,12 +70,16 @@ class Diagnosed:
         Where adopted effects were written.
     words : tuple of str
         The diagnosis in plain sentences.
+    channels : tuple of (name, before, after)
+        Residuals in each channel before, and after with the best member of what cannot be told
+        apart [SI].
     """
 
     diagnosis: Diagnosis | None
     subjects: tuple[Subject, ...] = ()
     written: tuple[str, ...] = ()
     words: tuple[str, ...] = ()
+    channels: tuple[tuple[str, tuple[float, ...], tuple[float, ...]], ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON, schema ``surveyapp.diagnose/1``."""
@@ -187,6 +196,7 @@ def diagnose_project(
     folder: Path | None,
     adopt: bool,
     software: str,
+    log: bool = True,
     now: datetime | None = None,
 ) -> Diagnosed:
     """Diagnose, log, and adopt where asked.
@@ -201,6 +211,8 @@ def diagnose_project(
     adopt : bool
         Whether the effects that the engine names are written into the project.
     software : str
+    log : bool
+        Whether the diagnosis is appended to the ledger where the folder can be written.
     now : datetime, optional
         Moment of the adoption; the wall clock if absent.
 
@@ -228,37 +240,45 @@ def diagnose_project(
     if adopt and folder is not None:
         written = _adopt(folder, diagnosis, chosen.problem, moment=moment, software=software)
     words = tuple(words_of(diagnosis, chosen.problem))
-    return Diagnosed(diagnosis, (), written, words)
+    return Diagnosed(diagnosis, (), written, words, _channels(diagnosis, chosen.problem))
+
+
+def _channels(
+    diagnosis: Diagnosis, problem: Problem
+) -> tuple[tuple[str, tuple[float, ...], tuple[float, ...]], ...]:
+    before = channels(problem, np.array([diagnosis.residuals_before]))
+    after = channels(problem, np.array([diagnosis.residuals_best]))
+    return tuple(
+        (name, tuple(values[0].tolist()), tuple(after[name][0].tolist()))
+        for name, values in before.items()
+    )
+
+
+def _need_writable(lock: ProjectLock, folder: Path) -> None:
+    if not lock.writable:
+        raise SurveyError(
+            InputProblem(
+                "the project is open elsewhere or cannot be written",
+                str(folder),
+                "a locked or read-only folder",
+                "a folder that this program may write",
+                "Close the other window and adopt again.",
+            )
+        )
 
 
 def _adopt(
     folder: Path, diagnosis: Diagnosis, problem: Problem, *, moment: str, software: str
 ) -> tuple[str, ...]:
-    from surveyapp.io.lock import ProjectLock
-    from surveyapp.io.writing import append_subtable
-
-    if not diagnosis.adopted:
-        return ()
     if diagnosis.subject == "reversal_run":
         parent = ("orientation", diagnosis.identity)
     else:
         parent = ("instrument", diagnosis.instrument)
     written = []
-    with ProjectLock(folder) as lock:
-        if not lock.writable:
-            raise SurveyError(
-                InputProblem(
-                    "the project is open elsewhere or cannot be written",
-                    str(folder),
-                    "a locked or read-only folder",
-                    "a folder that this program may write",
-                    "Close the other window and adopt again.",
-                )
-            )
-        for item in diagnosis.adopted:
-            table = effect_table(item, problem, moment=moment, software=software)
-            append_subtable(folder / "project.toml", parent, "effect", table)
-            written.append(f"project.toml, {parent[0]} {parent[1]}, effect {item.effect}")
+    for item in diagnosis.adopted:
+        table = effect_table(item, problem, moment=moment, software=software)
+        append_subtable(folder / "project.toml", parent, "effect", table)
+        written.append(f"project.toml, {parent[0]} {parent[1]}, effect {item.effect}")
     return tuple(written)
 
 

@@ -1,0 +1,147 @@
+"""What a diagnosis found: in words, the residuals in their channels, the candidates, the proof."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from surveyapp.diagnosis.result import Diagnosis, ModelResult, Quantity
+from surveyapp.report.blocks import Block, Figure, Heading, Paragraph, Table
+from surveyapp.report.numbers import plain
+from surveyapp.report.plots import Frame, axis
+from surveyapp_models.angles import AngleUnit, format_angle, wrap_two_pi
+
+CHANNEL_NAMES = {
+    "amplitude": "amplitude channel (side times residual)",
+    "midpoint": "midpoint channel (Schuler mean of the residuals)",
+    "residual": "residuals",
+}
+
+
+def blocks(
+    diagnosis: Diagnosis,
+    words: Sequence[str],
+    channels: Mapping[str, tuple[Sequence[float], Sequence[float]]],
+    *,
+    unit: AngleUnit,
+) -> tuple[Block, ...]:
+    """Blocks of one diagnosis.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+    words : sequence of str
+        The diagnosis in plain sentences.
+    channels : mapping
+        Channel to its residuals before and after, in SI units.
+    unit : AngleUnit
+        Of the project, for directions.
+    """
+    verdict = diagnosis.verdict.replace("_", " ")
+    found: list[Block] = [Heading(f"Diagnosis of {diagnosis.identity}: {verdict}")]
+    found += [Paragraph(text) for text in words]
+    found.append(_models(diagnosis, unit))
+    for name, (before, after) in channels.items():
+        found += _figures(diagnosis, name, before, after)
+    found.append(_candidates(diagnosis))
+    if diagnosis.ambiguous:
+        found += [Heading("Not separable", 2), _ambiguous(diagnosis)]
+    return tuple(found)
+
+
+def value_text(diagnosis: Diagnosis, quantity: Quantity, unit: AngleUnit) -> str:
+    """A value with its sigma, a direction in the project's unit."""
+    sigma = None if quantity.sigma is None else quantity.sigma / diagnosis.scale
+    if diagnosis.direction:
+        return (
+            f"{format_angle(wrap_two_pi(quantity.value), unit)} \N{PLUS-MINUS SIGN}{plain(sigma)}"
+        )
+    value = quantity.value / diagnosis.scale
+    return f"{plain(value, 2, sign=True)} \N{PLUS-MINUS SIGN}{plain(sigma)}"
+
+
+def _models(diagnosis: Diagnosis, unit: AngleUnit) -> Table:
+    def small(value: float | None) -> str:
+        return plain(None if value is None else value / diagnosis.scale)
+
+    def row(name: str, model: ModelResult) -> tuple[str, ...]:
+        return (
+            name,
+            " + ".join(model.effects) or "base model",
+            plain(model.parameters, 0),
+            small(model.rms),
+            small(model.loo_rms),
+            small(model.confirm_rms),
+            value_text(diagnosis, model.value, unit),
+        )
+
+    rows = [row("before", diagnosis.before), row("after", diagnosis.after)]
+    if diagnosis.ambiguous:
+        rows.append(row("after, best member", diagnosis.after_best))
+    averaged = value_text(diagnosis, diagnosis.averaged, unit)
+    rows.append(("averaged over models", "", "", "", "", "", averaged))
+    head = (
+        "model",
+        "effects",
+        "param.",
+        f"rms {diagnosis.unit}",
+        "left out",
+        "second set",
+        "value and sigma",
+    )
+    return Table(head, tuple(rows), align="llrrrrr", strong=frozenset({len(rows) - 1}))
+
+
+def _figures(
+    diagnosis: Diagnosis, name: str, before: Sequence[float], after: Sequence[float]
+) -> list[Figure]:
+    title = CHANNEL_NAMES.get(name, name)
+    figures = []
+    for state, series in (("before", before), ("after", after)):
+        points = [(float(i + 1), value / diagnosis.scale) for i, value in enumerate(series)]
+        if len(points) < 2:
+            continue
+        frame = Frame(
+            axis([x for x, _ in points], count=10),
+            axis([y for _, y in points], about_zero=True),
+            height_mm=40.0,
+        )
+        parts = frame.axes("observation", diagnosis.unit)
+        parts.append(frame.level(0.0, "axis"))
+        for x, y in points:
+            parts += frame.bar(x, low=min(0.0, y), high=max(0.0, y))
+        parts += frame.marks(points, "dot")
+        figures.append(frame.figure(f"{title}, {state}", parts))
+    return figures
+
+
+def _candidates(diagnosis: Diagnosis) -> Table:
+    rows = tuple(
+        (
+            item.effect,
+            item.verdict.replace("_", " "),
+            plain(item.p, 4),
+            plain(item.p_family, 4),
+            plain(item.delta_bic, 1),
+        )
+        for item in diagnosis.candidates
+    )
+    return Table(
+        ("candidate", "verdict", "p", "p of the family", "BIC behind the best"),
+        rows,
+        align="llrrr",
+        strong=frozenset(
+            i for i, item in enumerate(diagnosis.candidates) if item.verdict == "adopted"
+        ),
+    )
+
+
+def _ambiguous(diagnosis: Diagnosis) -> Table:
+    rows = tuple(
+        (
+            ", ".join(item.any_of),
+            ", ".join(plain(value, 1) for value in item.delta_bic),
+            item.separate_by,
+        )
+        for item in diagnosis.ambiguous
+    )
+    return Table(("any of", "BIC apart", "what would separate them"), rows)
