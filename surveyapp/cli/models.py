@@ -30,11 +30,13 @@ def run(options: argparse.Namespace) -> int:
         return 0
     card = cards[0]
     print(heading(f"{card.title} ({card.id}, {card.kind})"))
-    facts = [
-        [name, f"{value:g}" if value is not None else "not known"]
-        for name, value in known(card).items()
-    ]
-    print(table(["quantity", "value"], facts))
+    values = known(card)
+    facts = [[name, f"{value:g}"] for name, value in values.items() if value is not None]
+    if facts:
+        print(table(["quantity", "value"], facts))
+    absent = ", ".join(name for name, value in values.items() if value is None)
+    if absent:
+        print(paragraph(f"not known: {absent}"))
     print("\n" + paragraph(f"Source: {card.source}", indent=0))
     for name, text in card.notes:
         print(paragraph(f"{name}: {text}", indent=0))

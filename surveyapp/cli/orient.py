@@ -134,6 +134,8 @@ def _line(line: LineResult, unit: AngleUnit) -> str:
     small("- meridian convergence", line.convergence)
     small("- arc-to-chord", line.arc_to_chord)
     angle("= grid azimuth", line.grid_azimuth)
+    if line.existing_azimuth is not None:
+        rows.append(["  from the coordinates", format_angle(line.existing_azimuth, unit), "", ""])
     if line.direction_from_south is not None:
         text = format_angle(line.direction_from_south, unit)
         rows.append(["direction from south", text, "", ""])

@@ -14,13 +14,17 @@ from surveyapp.core.geodesy import Grid
 from surveyapp.core.lines import LineGeometry
 from surveyapp.core.sights import SightSet
 from surveyapp.domain.project import OrientationSession, ResultWarning
+from surveyapp.domain.results import LineResult
 from surveyapp.errors import Problem, SurveyError
+from surveyapp_models.angles import wrap_pi
 
 MAX_COLLIMATION: Final = math.radians(0.2)
 """No theodolite is as badly adjusted; a slip of one degree in one of four sights makes 0.25. A
 bound of reason: no source states one."""
 SHORTEST_LINE_M: Final = 1.0
 """Below it lies the shortest focusing distance: two stations at one place."""
+LARGEST_CONSTANT: Final = math.radians(1.0)
+"""Printed constants are minutes of arc (10'51" at Johannesburg); more is more likely a slip."""
 LONGEST_LINE_M: Final = 50_000.0
 """Nobody sights further with a gyro-theodolite: coordinates in the wrong order or grid do."""
 
@@ -92,3 +96,24 @@ def place_warnings(lines: Sequence[LineGeometry], grid: Grid | None) -> list[Res
             )
             warnings[f"{line.start.name} of {name}"] = ResultWarning("outside_grid", text)
     return list({warning.text: warning for warning in warnings.values()}.values())
+
+
+def azimuth_warnings(line: LineResult) -> list[ResultWarning]:
+    """Warn of a constant of degrees, and of an azimuth degrees away from the coordinates."""
+    name = f"line {line.station}-{line.target}"
+    warnings = []
+    if line.constant is not None and abs(line.constant) > LARGEST_CONSTANT:
+        text = (
+            f"{name}: the instrument constant is {math.degrees(line.constant):+.4f} degrees: is "
+            "the known azimuth right, and were sight and target the right ones?"
+        )
+        warnings.append(ResultWarning("constant_large", text))
+    if line.grid_azimuth is not None and line.existing_azimuth is not None:
+        apart = wrap_pi(line.grid_azimuth.value - line.existing_azimuth)
+        if abs(apart) > LARGEST_CONSTANT:
+            text = (
+                f"{name}: the grid azimuth lies {math.degrees(apart):+.4f} degrees off the "
+                "coordinates: was this the target, and are the coordinates in the right order?"
+            )
+            warnings.append(ResultWarning("far_from_coordinates", text))
+    return warnings

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from surveyapp.core.calibration_sessions import centring_of, rounds_of
 from surveyapp.core.instrument_constant import Chosen, InstrumentConstant, choose
 from surveyapp.core.lines import LineGeometry, OrientedLine, Round, orient_line
+from surveyapp.core.plausibility import azimuth_warnings
 from surveyapp.core.scatter import RunScatter
 from surveyapp.core.sequence import session_moments
 from surveyapp.core.session import ReducedSession
@@ -125,4 +126,4 @@ def _line_warnings(line: OrientedLine) -> list[ResultWarning]:
     if result.distance_m is None:
         text = f"{name}: its length is not known: centring is not in its sigma"
         warnings.append(ResultWarning("centring_unknown", text))
-    return warnings
+    return [*warnings, *azimuth_warnings(result)]

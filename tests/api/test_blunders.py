@@ -76,3 +76,17 @@ def test_the_area_of_a_grid_knows_the_date_line() -> None:
     assert grid.is_beside(latitude=0.0, longitude=radians(10.0))
     free = open_grid("+proj=tmerc +lon_0=9 +ellps=GRS80 +type=crs")
     assert not free.is_beside(latitude=radians(80.0), longitude=radians(170.0))
+
+
+def test_a_constant_of_degrees_is_told(tmp_path: Path) -> None:
+    toml = GOOD_TOML.replace("arcsec = -9.7", "arcsec = 7200.0")
+    assert "constant_large" in codes(api.orient(good_project(tmp_path, toml=toml)))
+
+
+def test_an_azimuth_far_from_the_coordinates_is_told(tmp_path: Path) -> None:
+    # A-B runs at 1-52 by the coordinates, the readings say 40-25: another target was sighted
+    result = api.orient(good_project(tmp_path))
+    text = next(w.text for w in result.warnings if w.code == "far_from_coordinates")
+    assert "+38.5" in text
+    sample = Path(__file__).parents[2] / "projects" / "tongjin-2015"
+    assert "far_from_coordinates" not in codes(api.orient(sample))
