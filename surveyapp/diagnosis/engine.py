@@ -3,58 +3,36 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from typing import Any
 
-import numpy as np
-
+from surveyapp.diagnosis.adoption import adoptions, p_values
+from surveyapp.diagnosis.ambiguity import ambiguities
 from surveyapp.diagnosis.battery import run_battery
-from surveyapp.diagnosis.compare import Level, added_signal
+from surveyapp.diagnosis.checks import check_input
+from surveyapp.diagnosis.compare import Level
 from surveyapp.diagnosis.fits import Fit
 from surveyapp.diagnosis.ledger import ledger_entry
-from surveyapp.diagnosis.loop import DEFAULT_DRAWS, Search, margin_of, rivals_delta, search
+from surveyapp.diagnosis.loop import DEFAULT_DRAWS, Search, rivals_delta, search
 from surveyapp.diagnosis.problem import Problem
 from surveyapp.diagnosis.prove import confirm_rms, forecast, leave_one_out
 from surveyapp.diagnosis.result import (
-    Adoption,
     Ambiguity,
     CandidateResult,
     CandidateVerdict,
     DatumValue,
     Diagnosis,
     ModelResult,
-    NamedCoefficient,
     Quantity,
     Verdict,
 )
 from surveyapp.diagnosis.value import (
     Value,
     averaged_value,
-    coefficients,
     datum_values,
     rms,
     value_of,
 )
-from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.domain.project import ResultWarning
-from surveyapp.errors import Problem as InputProblem
-from surveyapp.errors import SurveyError
-
-MOST_OPTIONS = 8
-"""Sets that are told; the ledger has them all."""
-SEPARATING = {
-    "quadratic": "a longer record, or the same at another time of day",
-    "smooth": "a longer record",
-    "long_oscillation": "a record of at least twice that period",
-    "periodic": "a record of at least twice that period",
-    "step": "a repetition on the first part",
-    "amplitude_step": "a second run, followed evenly",
-    "amplitude_smooth": "a second run, begun with another amplitude",
-    "outlier": "the book itself, or a repetition",
-    "random_walk": "more observations, or a second record: a wandering north does not repeat",
-    "amplitude_walk": "a second run, followed evenly: irregular following does not repeat",
-    "ar1": "more observations, or a second record: correlated noise does not repeat",
-}
 
 
 def diagnose(
@@ -80,14 +58,14 @@ def diagnose(
     SurveyError
         If there are too few observations, or the second set is of another subject or instrument.
     """
-    _check(problem, confirm)
+    check_input(problem, confirm)
     digest = problem.digest()
     found = search(problem, draws=draws, confirm=confirm)
     base = found.levels[0].fits[0]
     averaged = averaged_value(problem, found.levels[-1].every)
     battery = run_battery(problem, base, int(digest[:15], 16))
-    adopted = _adoptions(problem, found, digest, confirm)
-    ambiguous = _ambiguities(problem, found)
+    adopted = adoptions(problem, found, digest, confirm)
+    ambiguous = ambiguities(problem, found)
     verdict = _verdict(found, ambiguous)
     best = found.best if ambiguous else found.after
     return Diagnosis(
@@ -113,55 +91,6 @@ def diagnose(
         residuals_after=_residuals(problem, found.after),
         residuals_best=_residuals(problem, best),
     )
-
-
-def _check(problem: Problem, confirm: Problem | None) -> None:
-    faults = []
-    least = problem.base_parameters + 1
-    if problem.sigma_known and not problem.has_swing:
-        least = 2
-    if problem.size < least:
-        faults.append(
-            InputProblem(
-                "too few observations to diagnose anything",
-                problem.identity,
-                f"{problem.size}",
-                f"at least {least}; from 8 on an effect can be named",
-                "Observe more, or use the result of orient with its own sigma.",
-            )
-        )
-    if confirm is not None:
-        if confirm.subject != problem.subject:
-            faults.append(
-                InputProblem(
-                    "the second set is of another subject",
-                    confirm.identity,
-                    confirm.subject,
-                    problem.subject,
-                    "Confirm with an independent record of the same kind.",
-                )
-            )
-        elif confirm.instrument != problem.instrument:
-            faults.append(
-                InputProblem(
-                    "the second set is of another instrument",
-                    confirm.identity,
-                    confirm.instrument or "no instrument",
-                    problem.instrument or "no instrument",
-                    "An effect is confirmed by another record of the same instrument.",
-                )
-            )
-        if confirm.size < confirm.base_parameters + 1:
-            faults.append(
-                InputProblem(
-                    "too few observations in the second set",
-                    confirm.identity,
-                    f"{confirm.size}",
-                    f"at least {confirm.base_parameters + 1}",
-                )
-            )
-    if faults:
-        raise SurveyError(faults)
 
 
 def _quantity(problem: Problem, value: Value) -> Quantity:
@@ -193,144 +122,6 @@ def _model(problem: Problem, fit: Fit, confirm: Problem | None) -> ModelResult:
 
 def _residuals(problem: Problem, fit: Fit) -> tuple[float, ...]:
     return tuple(float(v) for v in fit.residual / problem.root_weights)
-
-
-def named_level(found: Search, identity: str) -> Level:
-    """Level at which an effect first stood in the best set."""
-    for level in found.levels[1:]:
-        if level.fits and identity in level.fits[0].key:
-            return level
-    return found.levels[-1]
-
-
-def p_values(found: Search, identity: str) -> tuple[float | None, float | None]:
-    """P and family p where an effect was tested last with the gate open, else at the first gate."""
-    chosen: tuple[float | None, float | None] = (None, None)
-    for gate in found.gates:
-        for test in gate.tests:
-            if test.id == identity and (gate.fired or chosen[0] is None) and test.p is not None:
-                chosen = (test.p, test.p_family)
-    return chosen
-
-
-def _adoptions(
-    problem: Problem, found: Search, digest: str, confirm: Problem | None
-) -> tuple[Adoption, ...]:
-    if not found.adopted:
-        return ()
-    base = found.levels[0].fits[0]
-    numbers = coefficients(problem, found.after)
-    before, after = rms(problem, base), rms(problem, found.after)
-    proof = None if confirm is None else confirm_rms(confirm, found.after)
-    result = []
-    for identity in found.adopted:
-        members = [m for m in found.after.members if m.candidate.id == identity]
-        effect = members[0].candidate.effect
-        if effect is None:
-            continue
-        values, covariance = numbers[identity]
-        every = [c for m in members for c in effect.coefficients * m.candidate.count]
-        scales = np.array([c.scale for c in every])
-        sigmas = np.sqrt(np.maximum(np.diag(covariance), 0.0)) / scales
-        named = tuple(
-            NamedCoefficient(c.name, float(v / c.scale), float(s), c.unit)
-            for c, v, s in zip(every, values, sigmas, strict=True)
-        )
-        units = {g.name: g.unit for g in effect.grid}
-        grid = tuple(
-            (name, value, units.get(name, next(iter(units.values()), "")))
-            for m in members
-            for name, value in m.point.items()
-        )
-        scaled = covariance / np.outer(scales, scales)
-        record = AdoptedEffect(
-            id=identity,
-            coefficients=tuple((c.name, c.value, c.sigma or 0.0, c.unit) for c in named),
-            grid=tuple((name, value) for name, value, _ in grid),
-            covariance=tuple(tuple(float(x) for x in row) for row in scaled),
-            valid=_valid(problem, [need.name for need in effect.needs]),
-            data_sha256=digest,
-            before=before / problem.scale,
-            after=after / problem.scale,
-            confirm=None if proof is None else proof / problem.scale,
-            unit=problem.unit,
-        )
-        level = named_level(found, identity)
-        result.append(
-            Adoption(
-                identity,
-                effect.title,
-                named,
-                grid,
-                p_values(found, identity)[1],
-                margin_of(level, identity),
-                record,
-            )
-        )
-    return tuple(result)
-
-
-def _valid(problem: Problem, names: Iterable[str]) -> tuple[tuple[str, float, float], ...]:
-    ranges = []
-    for name in names:
-        values = problem.columns.get(name)
-        if values is not None and np.isfinite(values).all():
-            ranges.append((name, float(values.min()), float(values.max())))
-    return tuple(ranges)
-
-
-def _ambiguities(problem: Problem, found: Search) -> tuple[Ambiguity, ...]:
-    """What is left in the sets within the margin once the adopted names are taken out."""
-    if not found.near:
-        return ()
-    options: dict[str, Fit] = {}
-    for fit in found.near:
-        rest = [i for i in fit.effects if i not in found.adopted]
-        if rest:
-            options.setdefault(" + ".join(rest), fit)
-    if not options:
-        return ()
-    best = min(fit.bic for fit in found.near)
-    options = dict(list(options.items())[:MOST_OPTIONS])
-    fits = list(options.values())
-    texts = []
-    for fit in fits:
-        for identity in fit.effects:
-            text = _separating(problem, identity)
-            if identity not in found.adopted and text and text not in texts:
-                texts.append(text)
-    return (
-        Ambiguity(
-            tuple(options),
-            tuple(fit.bic - best for fit in fits),
-            _collinearity(fits, found.adopted),
-            "; ".join(texts),
-        ),
-    )
-
-
-def _separating(problem: Problem, identity: str) -> str:
-    for effect in problem.effects:
-        if effect.id == identity:
-            return effect.separate_by
-    return SEPARATING.get(identity, "")
-
-
-def _collinearity(fits: list[Fit], adopted: tuple[str, ...]) -> float | None:
-    """Correlation of what the two best sets add, None where one of them is stochastic."""
-    signals = []
-    for fit in fits[:2]:
-        if fit.noise is not None:
-            return None
-        signal = added_signal(fit)
-        keep = [i for i, m in enumerate(fit.members) if m.candidate.id not in adopted]
-        if not keep:
-            return None
-        signals.append(signal[:, keep].sum(axis=1))
-    if len(signals) < 2:
-        return None
-    size = float(np.linalg.norm(signals[0]) * np.linalg.norm(signals[1]))
-    return float(abs(signals[0] @ signals[1]) / size) if size > 0.0 else None
 
 
 def _verdict(found: Search, ambiguous: tuple[Ambiguity, ...]) -> Verdict:

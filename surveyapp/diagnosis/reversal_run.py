@@ -81,7 +81,7 @@ def reversal_run(points: TurningPoints, extra: tuple[Effect, ...] = ()) -> Probl
         if points.count is None
         else np.asarray(points.count, dtype=np.float64)
     )
-    offset = circular_mean(readings)
+    offset = _middle(readings)
     y = wrap_pi_array(readings - offset)
     side = _sides(points, y, count)
     warnings: list[ResultWarning] = []
@@ -124,6 +124,14 @@ def reversal_run(points: TurningPoints, extra: tuple[Effect, ...] = ()) -> Probl
         labels=tuple(f"turning point {int(k) + 1}" for k in count - count[0]),
         warnings=tuple(warnings),
     )
+
+
+def _middle(readings: Array) -> float:
+    """Middle of the swing; of one wider than half a circle, as read without passing zero."""
+    try:
+        return circular_mean(readings)
+    except ValueError:
+        return float(0.5 * (readings.min() + readings.max()))
 
 
 def _check(points: TurningPoints, readings: Array) -> None:

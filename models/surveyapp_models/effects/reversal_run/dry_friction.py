@@ -52,8 +52,9 @@ EFFECT = Effect(
             "arcsec/half swing",
             ARCSEC,
             0.0,
-            400.0,
-            "the amplitude loses this much each half swing, whatever its size",
+            20000.0,
+            "the amplitude loses this much each half swing, whatever its size; a gyro loses at "
+            "most some 400, the wide range serves any pendulum",
         ),
     ),
     basis=basis,
