@@ -128,6 +128,7 @@ def main(arguments: Sequence[str]) -> int:
 
 def _told_fault(fault: Exception) -> tuple[SurveyError, int]:
     if isinstance(fault, OSError) and fault.filename is None and fault.strerror:
+        _leave_output()
         where, hint = "standard output", "Is the disk full?"
         what = f"the result cannot be written ({fault.strerror})"
         return SurveyError(Problem(what=what, where=where, hint=hint)), EXIT_INPUT
@@ -203,7 +204,7 @@ def _tell(error: SurveyError, code: int, *, as_json: bool) -> int:
             print_json({"schema": "surveyapp.error/1", "problems": problems})
             _flush()
             return code
-    except OSError:
+    except OSError:  # told on standard error instead
         _leave_output()
     for problem in error.problems:
         head = f"{problem.where}: {problem.what}" if problem.where else problem.what
