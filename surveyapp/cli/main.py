@@ -122,7 +122,8 @@ def main(arguments: Sequence[str]) -> int:
     except Exception as fault:  # the last resort: a fault of ours, never a traceback for a surveyor
         if os.environ.get("SURVEYAPP_DEBUG"):
             raise
-        return _tell(*_told_fault(fault), as_json=as_json)
+        told, code = _told_fault(fault)
+        return _tell(told, code, as_json=as_json and code == EXIT_FAULT)
     return code
 
 
