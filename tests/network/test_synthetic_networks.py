@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from network_factory import Independent, make
+from network_factory import ARC, Independent, make
 
 from surveyapp.core.leastsquares import solution
 from surveyapp.core.network import adjust, gaussnewton
 from surveyapp.core.network.linearise import LINEARISATION
-from surveyapp.domain.observations import ObservationKind
+from surveyapp.domain.observations import Observation, ObservationKind
+from surveyapp.domain.traverse import GyroConstant, Network, NetworkPoint, Status
 
+K = ObservationKind
 CASES = [
     # kinds, datum, correlated
     (("distance",), "fixed", False),
@@ -111,6 +114,78 @@ def test_both_routes_agree_on_a_larger_network(monkeypatch: pytest.MonkeyPatch) 
     for u, v in zip(dense.observations, sparse.observations, strict=True):
         assert u.redundancy == pytest.approx(v.redundancy, abs=1e-8)
         assert u.mdb_effect_m == pytest.approx(v.mdb_effect_m, rel=1e-5)
+
+
+def loop(count: int, kinds: tuple[str, ...]) -> Network:
+    """A long closed traverse, two points fixed, with noise."""
+    rng = np.random.default_rng(count)
+    turn = 2.0 * math.pi * np.arange(count) / count
+    places = np.stack((np.sin(turn), np.cos(turn)), axis=1) * count * 12.0
+    names = [f"P{i}" for i in range(count)]
+
+    def azimuth(a: int, b: int) -> float:
+        east, north = places[b % count] - places[a % count]
+        return math.atan2(east, north)
+
+    observations = []
+    for i, name in enumerate(names):
+        fore, back = names[(i + 1) % count], names[i - 1]
+        if "angle" in kinds:
+            value = azimuth(i, i + 1) - azimuth(i, i - 1) + rng.normal(0.0, 7 * ARC)
+            observations.append(Observation(K.ANGLE, name, fore, value, 7 * ARC, back=back))
+        else:
+            for target, j in ((back, i - 1), (fore, i + 1)):
+                value = azimuth(i, j) + rng.normal(0.0, 5 * ARC)
+                observations.append(Observation(K.DIRECTION, name, target, value, 5 * ARC))
+        if i:
+            length = float(np.hypot(*(places[(i + 1) % count] - places[i])))
+            observations.append(Observation(K.DISTANCE, name, fore, length, 0.002))
+        if i % 10 == 0 and "gyro" in kinds:
+            value = azimuth(i, i + 1) + rng.normal(0.0, 15 * ARC)
+            observations.append(Observation(K.GYRO, name, fore, value, 15 * ARC, constant="G"))
+    points = tuple(
+        NetworkPoint(n, *map(float, p), None, *((Status.FIXED,) * 2 if i < 2 else ()))
+        for i, (n, p) in enumerate(zip(names, places, strict=True))
+    )
+    constants = (GyroConstant("G", 0.0, 20 * ARC),) if "gyro" in kinds else ()
+    return Network(points, tuple(observations), constants=constants)
+
+
+@pytest.mark.parametrize("kinds", [("angle",), ("direction",), ("angle", "gyro"), ("gyro",)])
+def test_long_loops_agree_on_both_routes(
+    kinds: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    network = loop(90, kinds)
+    sparse = adjust(network)
+    monkeypatch.setattr(gaussnewton, "DENSE_UNKNOWNS", 10_000)
+    dense = adjust(network)
+    for a, b in zip(dense.points, sparse.points, strict=True):
+        assert a.e == pytest.approx(b.e, abs=1e-6)
+        np.testing.assert_allclose(a.covariance, b.covariance, rtol=1e-5, atol=1e-12)
+    for u, v in zip(dense.observations, sparse.observations, strict=True):
+        assert u.redundancy == pytest.approx(v.redundancy, abs=1e-6)
+        assert u.sigma_adjusted == pytest.approx(v.sigma_adjusted, rel=1e-5)
+        assert u.standardized == pytest.approx(v.standardized, abs=1e-3)
+        assert u.mdb_effect_m == pytest.approx(v.mdb_effect_m, rel=1e-3)
+
+
+@pytest.mark.parametrize("kinds", [("angle", "gyro"), ("gyro",)])
+def test_redundancies_of_a_very_long_loop_sum_to_the_degrees_of_freedom(
+    kinds: tuple[str, ...],
+) -> None:
+    result = adjust(loop(3000, kinds), relative=False)
+    total = sum(item.redundancy for item in result.observations)
+    assert total == pytest.approx(result.dof, rel=1e-6)
+
+
+def test_a_long_free_loop_settles() -> None:
+    network = loop(1500, ("direction",))
+    free = tuple(
+        replace(p, status_e=Status.CONSTRAINED, status_n=Status.CONSTRAINED) for p in network.points
+    )
+    result = adjust(replace(network, points=free), relative=False)
+    # the leg between the two fixed points was not measured
+    assert (result.defect, result.dof) == (3, 2)
 
 
 def test_every_kind_has_its_linearisation() -> None:

@@ -32,9 +32,11 @@ DENSE_UNKNOWNS = 160
 RANK_TOLERANCE = 1e-9
 """Relative singular value below which a direction is undetermined: far above rounding (1e-14 for
 columns of length 1), far below the weakest geometry that deserves a result (1e-7)."""
-PIVOT_TOLERANCE = 1e-11
-"""Pivot of the scaled normal matrix below which an unknown is suspected to be undetermined; the
-suspicion is then checked with the equations themselves (``NULL_TOLERANCE``)."""
+PIVOT_TOLERANCES = (1e-11, 1e-13, 1e-14, 0.0)
+"""Pivots of the scaled normal matrix below which an unknown is suspected to be undetermined. The
+suspicion is checked with the equations themselves (``NULL_TOLERANCE``); if it proves wrong the
+system is weak but determined (a loop of thousands of legs), and the next one is tried. Rounding
+leaves about 1e-15 of a pivot that vanishes."""
 NULL_TOLERANCE = 1e-6
 """Largest |A g| of a unit vector g that counts as a true null vector."""
 
@@ -216,14 +218,12 @@ def _dense(unit: Sequence[ElementGroup], count: int) -> tuple[Floats, Floats]:
 
 
 def _sparse(unit: Sequence[ElementGroup], plan: Plan) -> tuple[sparse.Factor, Floats]:
-    factor = sparse.factorise(plan, unit, PIVOT_TOLERANCE)
-    basis = sparse.null_space(factor)
-    if basis.shape[1]:
+    for threshold in PIVOT_TOLERANCES:
+        factor = sparse.factorise(plan, unit, threshold)
+        basis = sparse.null_space(factor)
         lengths = np.linalg.norm(basis, axis=0)
-        if bool((product(unit, basis) > NULL_TOLERANCE * lengths).any()):
-            # a weak but determined system: only pivots lost to rounding may vanish
-            factor = sparse.factorise(plan, unit, 0.0)
-            basis = sparse.null_space(factor)
+        if not bool((product(unit, basis) > NULL_TOLERANCE * lengths).any()):
+            break
     return factor, basis
 
 

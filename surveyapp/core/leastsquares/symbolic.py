@@ -93,6 +93,8 @@ class Plan:
         front = np.where(front == np.iinfo(np.int64).max, 0, front)
         key = front[:, None] * self.structure.count + np.where(missing, 0, unknowns)
         found = np.minimum(np.searchsorted(self.keys, key), len(self.keys) - 1)
+        if bool((~missing & (self.keys[found] != key)).any()):
+            raise ValueError("these unknowns share no element: their cofactors are not computed")
         return front, self.places[found], ~missing
 
 

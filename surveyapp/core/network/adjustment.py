@@ -13,6 +13,7 @@ import numpy as np
 
 from surveyapp.core.leastsquares.equations import Floats
 from surveyapp.core.network import quality as q
+from surveyapp.core.network.angle_pairs import fold
 from surveyapp.core.network.approximate import approximate
 from surveyapp.core.network.closures import network_closures
 from surveyapp.core.network.collector import paused_collection
@@ -184,7 +185,8 @@ def _result(
     estimated = network.scaled_by_residuals and test.ratio is not None
     scale = float(test.ratio or 1.0) if estimated else 1.0
     coordinate = np.append(state.model.slot_of < model.coordinate_slots, 0.0).astype(np.float64)
-    checked = q.assess(state.groups, solved.cofactor, len(model.observations), coordinate)
+    checked = q.assess(state.groups, solved.cofactor, len(state.model.value), coordinate)
+    checked = fold(state.model, checked, len(model.observations))
     return AdjustmentResult(
         points=_points(network, model, state, scale),
         observations=_observations(model, state, checked, scale),

@@ -1,7 +1,7 @@
 """Angles as pairs of directions: the same equations in a form that stays accurate in long chains.
 
 See ``model`` for why. Used for large networks only; results are expressed in the network's own
-observations again (``gaussnewton``).
+observations again (``fold``).
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import numpy as np
 
 from surveyapp.core.leastsquares.equations import Floats, Ints
 from surveyapp.core.network.model import Model, number_unknowns
+from surveyapp.core.network.quality import Quality
 from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.traverse import Status
 
@@ -76,6 +77,7 @@ def with_orientations(model: Model, values: Floats) -> tuple[Model, Floats]:
             datum_unknowns=unknowns[3],
             orientations=(*model.orientations, *_angle_names(model, angles)),
             station_of=np.concatenate((model.station_of, at[:, 0] // 3)),
+            pairs=np.stack((angles, *np.split(new, 2)), axis=1),
         ),
         np.append(values, np.arctan2(gap[:, 0], gap[:, 1])),
     )
@@ -94,3 +96,43 @@ def _slot_status(model: Model) -> list[Status]:
     status[model.slot_of[model.datum_unknowns]] = 2
     names = (Status.FIXED, Status.FREE, Status.CONSTRAINED)
     return [names[item] for item in status.tolist()]
+
+
+def fold(model: Model, checked: Quality, rows: int) -> Quality:
+    """Quality of the network's own observations from that of the pairs.
+
+    The half difference of a pair carries the angle with its redundancy, their half sum only the
+    orientation with none; so each direction has half the redundancy, and the standardized
+    residual, the estimated error and the detectable bias of the angle.
+
+    Parameters
+    ----------
+    model : Model
+        With the pairs.
+    checked : Quality
+        Of all its rows.
+    rows : int
+        Observations of the network itself.
+    """
+    if not len(model.pairs):
+        return checked
+    angle, back, fore = model.pairs.T
+    redundancy, standardized, adjusted, error, mdb, effect = (
+        values[:rows].copy()
+        for values in (
+            checked.redundancy,
+            checked.standardized,
+            checked.sigma_adjusted,
+            checked.error,
+            checked.mdb,
+            checked.effect,
+        )
+    )
+    redundancy[angle] = checked.redundancy[back] + checked.redundancy[fore]
+    standardized[angle] = checked.standardized[fore]
+    share = np.maximum(1.0 - redundancy[angle], 0.0)
+    adjusted[angle] = model.sigma[angle] * np.sqrt(share)
+    error[angle] = checked.error[fore]
+    mdb[angle] = checked.mdb[fore]
+    effect[angle] = np.maximum(checked.effect[back], checked.effect[fore])
+    return Quality(redundancy, standardized, adjusted, error, mdb, effect)

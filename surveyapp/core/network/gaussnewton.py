@@ -6,7 +6,7 @@ Whatever does not converge is an error with the point that still moves, never a 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -23,6 +23,9 @@ STEP_TOLERANCE = 1e-5
 """Converged when the step is below this in sigmas of any function of the unknowns."""
 ROUNDING = 1e-6
 """Rounding of one whitened observation; grows with the root of the number of unknowns."""
+NOISE = 0.1
+"""Growth of the sum of squares per observation that does not stop a step: far below its own
+expectation of 1. In long loops the curvature of a first step costs as much, and the next repays."""
 HALVINGS = 12
 """Step halvings before an iteration gives up: 2**-12 of a step is no step."""
 
@@ -43,15 +46,15 @@ class Converged:
     Parameters
     ----------
     model : Model
-        The network with the numbering of unknowns that was solved for.
+        The network as it was solved: large ones have their angles as pairs of directions.
     values : float array
         All slots of the network (first) and of auxiliary orientations.
     groups : tuple of ElementGroup
-        Equations at ``values``; their misclosures are minus the whitened residuals.
+        Equations of ``model`` at ``values``; their misclosures are minus the whitened residuals.
     solved : Solved
         Of the last step; cofactors belong to the last linearisation.
     misclosure : float array
-        Observed minus adjusted, shape (rows,).
+        Observed minus adjusted of the network's own observations, shape (rows,).
     sum_of_squares : float
         Of the whitened residuals.
     iterations : int
@@ -126,23 +129,11 @@ def iterate(model: Model, start: Floats, *, plan: Plan | None = None) -> Converg
 
 
 def _state(model: Model, work: Model, values: Floats, outcome: tuple[Solved, int]) -> Converged:
-    """The solution expressed in the observations of the network itself."""
+    """Equations at the solution, and misclosures of the network's own observations."""
     solved, iterations = outcome
-    slots = len(model.unknown_of) - 1
-    seen = replace(
-        model,
-        unknown_of=np.append(work.unknown_of[:slots], -1),
-        slot_of=work.slot_of,
-        structure=work.structure,
-        datum_unknowns=work.datum_unknowns,
-        orientations=work.orientations,
-        station_of=work.station_of,
-    )
-    computed, partials = linearised(model, values[:slots])
-    misclosure = misclosures(model, computed)
-    groups = equations(seen, partials, misclosure)
-    total = sum(float(np.einsum("nk,nk->", g.misclosure, g.misclosure)) for g in groups)
-    return Converged(work, values, groups, solved, misclosure, total, iterations)
+    computed, _ = linearised(model, values[: len(model.unknown_of) - 1])
+    groups, _, total = _whitened(work, values)
+    return Converged(work, values, groups, solved, misclosures(model, computed), total, iterations)
 
 
 def _search(
@@ -153,7 +144,7 @@ def _search(
     for _ in range(HALVINGS):
         moved = _moved(model, values, step, factor)
         groups, rows, new = _whitened(model, moved)
-        if math.isfinite(new) and new <= total * (1.0 + 1e-6) + 1e-6 * rows:
+        if math.isfinite(new) and new <= total + NOISE * rows:
             return moved, groups, new, factor
         factor /= 2.0
     return moved, groups, new, 0.0

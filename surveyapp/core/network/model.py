@@ -11,7 +11,7 @@ lose a digit with every doubling of the length).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -105,6 +105,9 @@ class Model:
         at and set of each orientation slot.
     station_of : int array, shape (orientations,)
         Place of the station of each orientation among the points.
+    pairs : int array, shape (n, 3)
+        Rows of angles that are written as two directions, with the rows of these
+        (``angle_pairs``).
     """
 
     observations: tuple[Observation, ...]
@@ -125,6 +128,7 @@ class Model:
     constants: tuple[str, ...]
     orientations: tuple[tuple[str, str], ...]
     station_of: Ints
+    pairs: Ints = field(default_factory=lambda: np.empty((0, 3), dtype=np.int64))
 
     @property
     def coordinate_slots(self) -> int:
