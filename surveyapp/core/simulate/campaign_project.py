@@ -25,6 +25,7 @@ def campaign_files(
                 _names(campaign, index),
                 latitude=float(campaign.latitude[index]),
                 azimuth=float(campaign.azimuth[index]),
+                known=not _is_survey(campaign, index),
             )
         )
     parts += [_orientation(campaign, index) for index in range(count)]

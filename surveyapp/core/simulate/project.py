@@ -201,6 +201,7 @@ def _project_toml(project: SimulatedProject) -> str:
             (session.station, session.target),
             latitude=session.simulated.spec.latitude,
             azimuth=session.simulated.spec.line_azimuth,
+            known=session.purpose == "calibration",
         )
         for session in lines.values()
     ]
@@ -208,15 +209,20 @@ def _project_toml(project: SimulatedProject) -> str:
     return "\n".join(parts)
 
 
-def station_pair(names: tuple[str, str], *, latitude: float, azimuth: float) -> str:
-    """Return the two stations of a line that begins on the central meridian, angles [rad]."""
+def station_pair(names: tuple[str, str], *, latitude: float, azimuth: float, known: bool) -> str:
+    """Return the two stations of a line that begins on the central meridian, angles [rad].
+
+    The target of a line that is sought has the coordinates of an old plan, to 1e-6 degree (0.1 m):
+    exact ones would give the truth away.
+    """
     longitude = math.radians(CENTRAL_MERIDIAN_DEG)
     end = direct_position(latitude, longitude, azimuth=azimuth, distance_m=SIGHT_LENGTH_M)
     text = ""
     for name, (lat, lon) in zip(names, ((latitude, longitude), end), strict=True):
+        digits = 6 if name == names[1] and not known else 12
         text += (
             f'[[station]]\nname = "{name}"\n'
-            f"lat = {math.degrees(lat):.12f}\nlon = {math.degrees(lon):.12f}\n"
+            f"lat = {math.degrees(lat):.{digits}f}\nlon = {math.degrees(lon):.{digits}f}\n"
             "deflection = { xi_arcsec = 0.0, eta_arcsec = 0.0, sigma_arcsec = 0.0 }\n\n"
         )
     return text.rstrip("\n") + "\n"
