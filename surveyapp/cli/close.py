@@ -32,9 +32,10 @@ def tell(result: ClosingResult, *, as_json: bool) -> int:
         return 0
     what = f"session {result.session}" if result.session else "project"
     if result.seal:
-        print(f"{what} closed at {result.at}: {result.files} files, seal {result.seal}")
+        print(f"{what} closed, {result.files} files sealed")
+        print(f"  at    {result.at}\n  seal  {result.seal}")
     else:
-        print(f"{what} reopened at {result.at}: {result.reason}")
+        print(f"{what} reopened: {result.reason}\n  at    {result.at}")
         for text in result.found:
             print(f"  changed since it was closed: {text}")
     return 0

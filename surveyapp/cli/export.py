@@ -63,5 +63,5 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print_json(result.to_dict())
     else:
-        print(f"{result.path}: {result.items} items, sha256 {result.sha256}")
+        print(f"{result.path}: {result.items} items\n  sha256 {result.sha256}")
     return 0

@@ -170,11 +170,13 @@ def checks_text(checks: Sequence[Check], *, told: Sequence[ResultWarning] = ()) 
     if not checks:
         return ""
     rows = []
-    for check in checks:
+    answered = [check for check in checks if check.passed is not None]
+    for check in answered:
         limit = "-" if check.limit is None else f"{check.limit:.4g}"
         value = "-" if check.value is None else f"{check.value:.4g}"
         rows.append([_verdict(check), check.rule, check.where, value, limit, check.unit])
-    parts = [table(["verdict", "check", "where", "value", "limit", "unit"], rows)]
+    head = ["verdict", "check", "where", "value", "limit", "unit"]
+    parts = [table(head, rows)] if rows else []
     parts += [
         paragraph(f"{_verdict(check)}: {check.where}: {check.text}")
         for check in checks
@@ -183,11 +185,22 @@ def checks_text(checks: Sequence[Check], *, told: Sequence[ResultWarning] = ()) 
         and not check.rule.startswith("fit.")  # the parts of the test of fit, told by it
         and not any(check.text in warning.text for warning in told)
     ]
+    parts += _open(checks)
     clauses: dict[str, dict[str, None]] = {}
-    for check in checks:
+    for check in answered:
         clauses.setdefault(check.clause, {})[check.rule] = None
     parts += [paragraph(f"{clause}: {', '.join(rules)}") for clause, rules in clauses.items()]
     return "Checks\n" + "\n".join(parts)
+
+
+def _open(checks: Sequence[Check]) -> list[str]:
+    """What the data cannot answer, by what is missing."""
+    missing: dict[str, dict[str, None]] = {}
+    for check in checks:
+        if check.passed is None:
+            name = f"{check.rule} ({check.where})" if check.where else check.rule
+            missing.setdefault(check.text, {})[name] = None
+    return [paragraph(f"open, {text}: {', '.join(rules)}") for text, rules in missing.items()]
 
 
 def _verdict(check: Check) -> str:

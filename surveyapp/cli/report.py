@@ -41,7 +41,7 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print_json(written.to_dict())
     else:
-        print(f"{written.path}: {written.pages} pages, sha256 {written.sha256}")
+        print(f"{written.path}: {written.pages} pages\n  sha256 {written.sha256}")
     return 0
 
 

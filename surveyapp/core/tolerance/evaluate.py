@@ -63,7 +63,7 @@ def apply_limit(book: RuleBook, limit: Limit, item: Measured) -> Check | None:
         slack = _ROUNDING * max(abs(bound), 1.0)
         passed = value <= bound + slack if limit.sense == "at most" else value >= bound - slack
     text = missing or (f"{kind.title}: {item.text}" if item.text else kind.title)
-    if limit.sense == "at least":
+    if limit.sense == "at least" and not missing:
         text += " (at least)"
     return Check(
         rule=f"{book.id}.{limit.id}",
