@@ -141,17 +141,31 @@ def _alternate(row: Reading) -> Side | None:
 def _expected_point(step: Step, rows: tuple[Reading, ...], progress: Progress | None) -> Expected:
     swing = [r for r in rows if r.kind in (ReadingKind.REVERSAL, ReadingKind.MISSED)]
     points = [row for row in swing if row.kind is ReadingKind.REVERSAL]
+    number = len(swing) + 1
+    progress = of_this_book(progress, points)
     forecast = progress.next if progress is not None else None
-    if progress is None or forecast is None or not points:
-        return Expected(step, ReadingKind.REVERSAL, number=len(swing) + 1)
+    if progress is None or forecast is None:
+        near = swing[-2].value if len(swing) > 1 else None
+        return Expected(step, ReadingKind.REVERSAL, near=near, number=number)
     side = Side(forecast.side) if len(points) > 1 else None
     return Expected(
         step,
         ReadingKind.REVERSAL,
         side=side,
         near=progress.next_reading,
-        number=len(swing) + 1,
+        number=number,
     )
+
+
+def of_this_book(progress: Progress | None, points: list[Reading]) -> Progress | None:
+    """The judgement if it is of the turning points that stand in the book now, else None.
+
+    It is computed beside the typing: for a moment after each reading it is one reading old.
+    """
+    if progress is None:
+        return None
+    judged = [(point.seq, point.reading) for point in progress.points]
+    return progress if judged == [(row.seq, row.value) for row in points] else None
 
 
 def _near_sight(observation: Observation, target: str, face: Face) -> float | None:
@@ -268,6 +282,8 @@ def _questions(
         earlier = [row for row in sights if row not in here]
         return doubt_sight(value, what.face, series=series, earlier=earlier)
     if what.kind is not ReadingKind.REVERSAL or progress is None or progress.next is None:
+        return ()
+    if of_this_book(progress, list(observation.book.of_kind(ReadingKind.REVERSAL))) is None:
         return ()
     middle = progress.middle
     return doubt_turning_point(
