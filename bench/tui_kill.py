@@ -87,7 +87,7 @@ def script(rng: np.random.Generator) -> list[Act]:
 
 
 def _typed(kind: ReadingKind, text: str) -> Act:
-    return Act(text + "\r", kind, text)
+    return Act(text + "\r\r", kind, text)  # the second Enter answers a question, if one is asked
 
 
 def _go(step: Step) -> Act:
@@ -125,6 +125,12 @@ def start(folder: Path, log: Path) -> pexpect.spawn[bytes]:
     return child
 
 
+def stop(child: pexpect.spawn[bytes]) -> None:
+    """End a terminal that was started here."""
+    child.close(force=True)
+    child.logfile_read.close()
+
+
 def plain(log: Path) -> str:
     """What the terminal was sent, without its escape sequences."""
     return _ESCAPES.sub("", log.read_bytes().decode("utf-8", errors="replace"))
@@ -141,8 +147,7 @@ def run_once(folder: Path, seed: int) -> Outcome:
     deadline = time.monotonic() + float(rng.uniform(0.0, 3.0))
     _type(child, acts, deadline, rng)
     os.kill(child.pid, signal.SIGKILL)
-    child.close(force=True)
-    child.logfile_read.close()
+    stop(child)
     confirmed = [(int(seq), text) for seq, text in _CONFIRMED.findall(plain(log))]
     return _judge(folder, seed, acts, confirmed)
 

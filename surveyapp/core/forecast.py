@@ -25,6 +25,8 @@ LOG_DECREMENT_SIGMA: Final = 0.015
 STAMP_SIGMA_S: Final = 4.0
 """How exactly the moment of typing tells the moment of turning [s]; the times themselves refine it
 from five points on. An estimate of habit, not of physics: it only widens the countdown."""
+HELD: Final = 0.995
+"""Quantile of the forecast: 99 % of clean readings lie inside, one in a hundred is asked about."""
 PERIOD_SHARE: Final = 0.02
 """Doubt of a card's period at another latitude and spin, as a share of it (physics.md 1.2: one
 degree of latitude is 0.5 to 2.4 %, one percent of spin is 0.5 %)."""
@@ -43,7 +45,7 @@ class PointForecast:
     reading : float or None
         Relative to the readings' origin, in their unit; None before there are two points.
     half_width : float or None
-        Half-width of the 95 % interval; None where nothing tells a reading sigma.
+        Half-width of the 99 % interval; None where nothing tells a reading sigma.
     moment_s : float or None
         On the clock of the points.
     moment_half_width_s : float or None
@@ -132,7 +134,7 @@ def forecast_reading(
     sigma: float | None,
     dof: float,
 ) -> tuple[float | None, float | None]:
-    """Reading of the next turning point and the half-width of its 95 % interval.
+    """Reading of the next turning point and the half-width of its 99 % interval.
 
     Parameters
     ----------
@@ -169,7 +171,7 @@ def forecast_reading(
         return reading, None
     cofactor = _with_prior(fit, start, sides, known)
     variance = known**2 * (1.0 + float(row @ cofactor @ row))
-    return reading, student_quantile(0.975, dof) * math.sqrt(variance)
+    return reading, student_quantile(HELD, dof) * math.sqrt(variance)
 
 
 def _with_prior(fit: SwingFit, index: Floats, sides: Floats, sigma: float) -> Floats:
@@ -197,7 +199,7 @@ def _from_two(
     own = 0.0 if sigma is None else sigma
     variance = (slope * LOG_DECREMENT_SIGMA) ** 2
     variance += own**2 * (1.0 + noise[0] ** 2 + noise[1] ** 2)
-    return reading, 1.96 * math.sqrt(variance)
+    return reading, student_quantile(HELD, math.inf) * math.sqrt(variance)
 
 
 def swing_curve(

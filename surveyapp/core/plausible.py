@@ -69,7 +69,7 @@ def doubt_turning_point(
     middle : float or None
         Circle reading of the swing's middle [rad].
     predicted, half_width : float or None
-        Forecast and half-width of its 95 % interval [rad].
+        Forecast and half-width of its interval [rad].
     side : Side or None
         Where the next point must lie.
     """

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
+from datetime import datetime
+from functools import partial
 from pathlib import Path
 from typing import ClassVar
 
-from textual.app import App
+from textual.app import App, SystemCommand
 from textual.binding import Binding, BindingType
+from textual.screen import Screen
 
 from surveyapp import api_home
 from surveyapp.api_session import Observation
 from surveyapp.errors import SurveyError
+from surveyapp.io.clock import local_now, steady_seconds
 from surveyapp.io.settings import read_settings
 from surveyapp.tui import texts
 from surveyapp.tui.screens.home import HomeScreen
 from surveyapp.tui.screens.project import ProjectScreen
 from surveyapp.tui.screens.result import ResultScreen
 from surveyapp.tui.screens.session import SessionScreen
+from surveyapp.tui.themes import THEMES
 
 
 class SurveyApp(App[int]):
@@ -26,6 +32,8 @@ class SurveyApp(App[int]):
     ----------
     folder : str or None
         Project folder to open; None begins with the home screen.
+    now, steady : callable
+        Wall clock, and seconds that never go back; for tests and pictures.
     """
 
     CSS_PATH = "app.tcss"
@@ -33,21 +41,47 @@ class SurveyApp(App[int]):
     ENABLE_COMMAND_PALETTE = True
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (110, "-wide")]  # noqa: RUF012
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("ctrl+q", "quit", texts.KEY_QUIT, priority=True),
+        Binding("f9", "next_theme", texts.KEY_THEME, show=False),
+        Binding("ctrl+q", "quit", texts.KEY_QUIT, priority=True, show=False),
     ]
 
-    def __init__(self, folder: str | None) -> None:
+    def __init__(
+        self,
+        folder: str | None,
+        *,
+        now: Callable[[], datetime] = local_now,
+        steady: Callable[[], float] = steady_seconds,
+    ) -> None:
         super().__init__()
         self.folder = folder
+        self.now, self.steady = now, steady
         self.drafts: dict[str, str] = {}
         self.settings = read_settings()
 
     def on_mount(self) -> None:
         """Show the first screen."""
+        for theme in THEMES:
+            self.register_theme(theme)
+        known = [theme.name for theme in THEMES]
+        self.theme = self.settings.theme if self.settings.theme in known else known[0]
         if self.folder is None:
             self.push_screen(HomeScreen())
         else:
             self.open_folder(self.folder)
+
+    def get_system_commands(self, screen: Screen[object]) -> Iterable[SystemCommand]:
+        """Every action of the screen that is open, then those of the program."""
+        for active in screen.active_bindings.values():
+            binding = active.binding
+            if binding.description and active.enabled and active.node in (screen, self):
+                run = partial(self.run_action, binding.action, active.node)
+                yield SystemCommand(binding.description, self.get_key_display(binding), run)
+
+    def action_next_theme(self) -> None:
+        """Dark, light, high contrast, and round again."""
+        names = [theme.name for theme in THEMES]
+        self.theme = names[(names.index(self.theme) + 1) % len(names)]
+        api_home.keep_theme(self.theme)
 
     def open_folder(self, folder: str) -> None:
         """Open a project and remember it."""
@@ -64,7 +98,7 @@ class SurveyApp(App[int]):
         if self.folder is None:
             return
         try:
-            observation = Observation(self.folder, session)
+            observation = Observation(self.folder, session, now=self.now, steady=self.steady)
         except SurveyError as error:
             self.notify(str(error), severity="error", markup=False)
             return

@@ -191,12 +191,15 @@ class Desk:
         return self.strike(row.seq, texts.UNDO_REASON)
 
     def swings(self) -> bool:
-        """Whether the step takes turning points that may be missed."""
-        return self.what().kind in (ReadingKind.REVERSAL, ReadingKind.SCALE_REVERSAL)
+        """Whether turning points are read now that may be missed."""
+        turning = (ReadingKind.REVERSAL, ReadingKind.SCALE_REVERSAL)
+        return self.step is Step.SWING and self.what().kind in turning
 
-    def has_kinds(self) -> bool:
-        """Whether the step takes more than one kind of reading."""
-        return len(kinds_of(self.step, self.observation.session.method)) > 1
+    def has_other(self, which: str) -> bool:
+        """Whether there is another kind, face or target to read in this step."""
+        if which == "kind":
+            return len(kinds_of(self.step, self.observation.session.method)) > 1
+        return self.what().face is not None
 
     def go(self, places: int) -> str:
         """Go on, or back, by some steps, and say where that is."""
@@ -211,17 +214,15 @@ class Desk:
             return texts.CLOSED_BEFORE
         return texts.STEP_NAMES[order[index]]
 
-    def other_kind(self) -> None:
-        """Take the other kind of reading of this step."""
-        self.kind = next_kind(self.observation, self.what())
-
-    def other_face(self) -> None:
-        """Take the other face."""
-        self.face = Face.RIGHT if self.what().face is Face.LEFT else Face.LEFT
-
-    def other_target(self) -> None:
-        """Take the next target."""
-        self.target = next_target(self.observation, self.what())
+    def take_other(self, which: str) -> None:
+        """Take the other kind of reading, the other face, or the next target."""
+        what = self.what()
+        if which == "kind":
+            self.kind = next_kind(self.observation, what)
+        elif which == "face":
+            self.face = Face.RIGHT if what.face is Face.LEFT else Face.LEFT
+        else:
+            self.target = next_target(self.observation, what)
 
     def strikable(self) -> tuple[Reading, ...]:
         """Rows that may be struck, the latest first."""

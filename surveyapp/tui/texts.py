@@ -122,8 +122,8 @@ F_TYPING: Final = "Typing"
 F_RULES: Final = "Rule book"
 F_STATIONS: Final = "Stations"
 F_STATIONS_HINT: Final = (
-    "One a line: name, east, north, height. Or a first line that names the\n"
-    "columns: name, lat, lon, h. Or the path of a CSV file alone."
+    "One a line: name, east, north, height. Or a first line that\n"
+    "names the columns: name, lat, lon, h. Or a CSV file's path."
 )
 F_INSTRUMENT: Final = "Instrument"
 F_INSTRUMENT_ID: Final = "Its id"
@@ -168,6 +168,7 @@ MISSING_FIELD: Final = "{field} is missing"
 
 # keys
 KEY_QUIT: Final = "Quit"
+KEY_THEME: Final = "Next theme: dark, light, high contrast"
 KEY_BACK: Final = "Back"
 KEY_TABS: Final = "Page"
 KEY_RELOAD: Final = "Read again"
@@ -228,7 +229,7 @@ STRUCK: Final = "row {seq} struck: {reason}; it stays visible"
 NOTHING_TO_STRIKE: Final = "there is no reading to strike"
 MISSED_NOTED: Final = "on disk: row {seq}, turning point missed; the count goes on"
 NOT_WRITTEN: Final = "NOT written: {what}. {hint}"
-ASK_AGAIN: Final = "{question} Enter again writes it."
+ASK_AGAIN: Final = "{question} Enter keeps it, typing replaces it."
 DRAFT_KEPT: Final = "what you typed is kept; Escape again leaves, Enter writes it"
 CLOSED_BEFORE: Final = "the swing has begun: what is read now counts as after it (F8 goes on)"
 CLOCK_SET: Final = (
@@ -239,35 +240,35 @@ CLOCK_BACK: Final = (
 )
 TORN: Final = "a torn last line was moved aside to {book}.torn"
 QUESTIONS: Final = {
-    "outside_forecast": "{difference} from the forecast, ±{limit} expected.",
-    "wrong_side": "The next turning point lies on the other side.",
-    "faces_contradict": "The faces differ by {difference} beyond half a circle.",
-    "sight_moved": "{difference} from the last sight in this face.",
-    "collimation_jump": "Twice the collimation jumps by {difference}.",
+    "outside_forecast": "{difference} from the forecast, ±{limit}.",
+    "wrong_side": "It lies on the other side.",
+    "faces_contradict": "Faces differ by 180° and {difference}.",
+    "sight_moved": "{difference} from the last sight.",
+    "collimation_jump": "2c jumps by {difference}.",
 }
 ALERTS: Final = {
-    "gross_error": "Point {number} stands out: strike it and repeat (p {p:.3f})",
-    "midpoint_step": "Midpoint jumps at point {number}: check the tripod (p {p:.3f})",
-    "damping_break": "Decay changes at point {number}: check follow-up (p {p:.3f})",
-    "unclear": "Run breaks at point {number}: go on to point 12 (p {p:.3f})",
+    "gross_error": "Point {number} stands out: strike it and repeat (p {p:.4f})",
+    "midpoint_step": "Midpoint jumps at point {number}: check the tripod (p {p:.4f})",
+    "damping_break": "Decay changes at point {number}: check follow-up (p {p:.4f})",
+    "unclear": "Run breaks at point {number}: go on to point 12 (p {p:.4f})",
 }
 LEDGER_COLUMNS: Final = ("row", "time", "kind", "reading", "", 'v "')
 LEDGER_STRUCK: Final = "struck"
 LEDGER_MISSED: Final = "missed"
 NEXT_POINT: Final = "next {side} in {time}"
 NEXT_NOW: Final = "next {side} NOW ({time})"
-NEXT_LONG_PAST: Final = "next {side} long past: F5 for each point missed"
+NEXT_LONG_PAST: Final = "next {side} overdue (F5: missed)"
 NEXT_SIDE: Final = "next {side}"
 NEXT_READING: Final = "at {reading}"
 NEXT_INTERVAL: Final = ' ±{interval}"'
-NORTH_NOW: Final = 'north {north} ±{interval}"'
-NORTH_OPEN: Final = "north {north}, interval not known"
-NORTH_NONE: Final = "north from {needed} turning points on"
+NORTH_NOW: Final = 'gyro north {north} ±{interval}" (95 %)'
+NORTH_OPEN: Final = "gyro north {north}, interval not known"
+NORTH_NONE: Final = "gyro north from {needed} turning points on"
 AFTER_TWO: Final = '±{interval}" after two more'
 WANTED: Final = 'wanted ±{interval}"'
 ENOUGH: Final = "ENOUGH"
 NO_WANTED: Final = "no wanted interval set"
-SCHULER: Final = "Schuler means (tape zero not in)"
+SCHULER: Final = "Schuler, without tape zero"
 CHANNEL_MIDPOINT: Final = 'v" midpoint '
 CHANNEL_AMPLITUDE: Final = 'v" amplitude'
 PLOT_EMPTY: Final = "The swing is drawn from the third turning point on."
@@ -300,7 +301,9 @@ R_CONSTANTS: Final = "Instrument constant through time"
 R_WARNINGS: Final = "To know"
 R_POINTS: Final = "Turning points"
 R_LIMIT: Final = "limit {limit}"
-R_NO_LINE: Final = "no grid azimuth from this session: see below"
+R_NO_LINE: Final = "no gyro north from this session"
+R_TRUE: Final = "true azimuth, {reference}"
+R_NOT_MET: Final = "Not met"
 KEY_PDF: Final = "PDF"
 KEY_OBSERVE: Final = "Observe"
 KEY_NEW: Final = "New session"

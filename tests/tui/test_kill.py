@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from bench.tui_kill import plain, run_once, start
+from bench.tui_kill import plain, run_once, start, stop
 from surveyapp.api_session import Observation
 from surveyapp.core.steps import Step
 from surveyapp.tui import texts
@@ -31,6 +31,6 @@ def test_after_a_kill_the_screen_opens_where_it_was(tmp_path: Path) -> None:
     child.expect(rb"each reading goes to disk")
     child.send("\x11")
     child.expect(b"\\Z|$", timeout=5)
-    child.close(force=True)
+    stop(child)
     assert "READING ONLY" not in plain(log)
     assert f"{texts.STEP_HERE} {name}" in plain(log)

@@ -150,12 +150,11 @@ async def test_an_implausible_reading_is_asked_for_once_and_then_written(tmp_pat
         await enter(pilot, "98-58-02")
         assert "other side" in told(screen)
         assert screen.query_one(EntryLine).text == "98-58-02"
-        await pilot.press("backspace", "3", "enter")
+        await pilot.press("right", "backspace", "3", "enter")
         await settle(pilot)
         assert "other side" in told(screen), "another text is asked about anew"
-        for _ in range(8):
-            await pilot.press("backspace")
-        await enter(pilot, "101-48-02")
+        await pilot.press(*"101-48-02", "enter")
+        await settle(pilot)
         assert "from the forecast" in told(screen)
         await pilot.press("enter")
         await settle(pilot)

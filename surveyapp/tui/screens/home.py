@@ -28,6 +28,7 @@ class HomeScreen(Screen[None]):
         Binding("enter", "choose", texts.KEY_OPEN),
         Binding("n", "new", texts.KEY_NEW_PROJECT),
         Binding("o", "folder", texts.KEY_FOLDER),
+        Binding("ctrl+q", "app.quit", texts.KEY_QUIT),
     ]
 
     class FolderChosen(Message):

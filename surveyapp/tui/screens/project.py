@@ -39,7 +39,7 @@ class ProjectScreen(Screen[None]):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("1", f"page('{PAGES[0]}')", texts.KEY_TABS, key_display="1-5"),
         *[Binding(str(i), f"page('{name}')", show=False) for i, name in enumerate(PAGES[1:], 2)],
-        Binding("enter", "observe", texts.KEY_OBSERVE),
+        Binding("o", "observe", texts.KEY_OBSERVE),
         Binding("n", "new", texts.KEY_NEW),
         Binding("f5", "reload", texts.KEY_RELOAD),
         Binding("escape", "back", texts.KEY_BACK),

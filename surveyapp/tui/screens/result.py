@@ -87,7 +87,9 @@ class ResultScreen(Screen[None]):
         self.result = message.result
         unit = message.project.angle_unit
         self.query_one(TitleBar).state = summary(message.result)
-        self.query_one("#headline", Static).update(result_headline(message.result, unit))
+        self.query_one("#headline", Static).update(
+            result_headline(message.result, self.session, unit)
+        )
         text = Text()
         for heading, rows in result_sections(message.result, self.session, unit):
             text.append(f"{heading}\n", style="bold")

@@ -23,6 +23,7 @@ from surveyapp.tui import texts
 from surveyapp.tui.desk import Desk, NotWrittenError
 from surveyapp.tui.screens.help import HelpScreen
 from surveyapp.tui.screens.strike import StrikeScreen
+from surveyapp.tui.session_keys import HIDDEN, KEYS, ORDERED
 from surveyapp.tui.widgets.entry import EntryLine, ReadingInput
 from surveyapp.tui.widgets.run import RunPane
 from surveyapp.tui.widgets.steps import StepList
@@ -41,16 +42,8 @@ class SessionScreen(Screen[None]):
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("f1", "help", texts.KEY_HELP),
-        Binding("f2", "kind", texts.KEY_KIND),
-        Binding("f3", "face", texts.KEY_FACE),
-        Binding("f4", "target", texts.KEY_TARGET),
-        Binding("f5", "missed", texts.KEY_MISSED),
-        Binding("f6", "strike", texts.KEY_STRIKE),
-        Binding("ctrl+z", "undo", texts.KEY_UNDO, priority=True),
-        Binding("f7", "step(-1)", texts.KEY_PREVIOUS),
-        Binding("f8", "step(1)", texts.KEY_NEXT),
-        Binding("escape", "leave", texts.KEY_LEAVE),
+        Binding(key, action, name, show=action not in HIDDEN)
+        for key, (action, name) in KEYS.items()
     ]
 
     class Left(Message):
@@ -89,7 +82,7 @@ class SessionScreen(Screen[None]):
         with Horizontal(id="work"):
             yield StepList(session.method)
             yield RunPane(self.desk)
-        yield EntryLine()
+        yield EntryLine(self.enter, ORDERED)
         yield Footer(show_command_palette=False)
 
     def on_mount(self) -> None:
@@ -126,12 +119,12 @@ class SessionScreen(Screen[None]):
         self.warned = False
         self.query_one(EntryLine).understood(self.desk.typing(event.value))
 
-    def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Write the reading."""
+    def enter(self, text: str) -> bool:
+        """Write the reading; whether it is on the disk."""
         if self.desk.step is Step.RESULT:
             self.post_message(self.ResultWanted(self.observation.session_id))
-        elif event.value.strip() and self.attempt(lambda: self.desk.enter(event.value)):
-            self.query_one(EntryLine).text = ""
+            return False
+        return bool(text.strip()) and self.attempt(lambda: self.desk.enter(text))
 
     def attempt(self, act: Callable[[], str]) -> bool:
         """Do something that writes, and tell what became of it."""
@@ -146,35 +139,20 @@ class SessionScreen(Screen[None]):
         self.show_book()
         return True
 
-    def on_reading_input_passage(self) -> None:
+    def action_passage(self) -> None:
         """Space in the empty line: a timed passage."""
         if self.desk.what().kind is ReadingKind.TRANSIT:
             self.attempt(self.desk.passage)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Show the keys that mean something in this step."""
-        what = self.desk.what()
-        shown = {
-            "face": what.face is not None,
-            "target": what.face is not None,
-            "missed": self.desk.step is Step.SWING and self.desk.swings(),
-            "kind": self.desk.has_kinds(),
-        }
-        return shown.get(action, True)
+        if action == "other":
+            return self.desk.has_other(str(parameters[0]))
+        return action != "missed" or self.desk.swings()
 
-    def action_kind(self) -> None:
-        """Another kind of reading."""
-        self.desk.other_kind()
-        self.show_prompt()
-
-    def action_face(self) -> None:
-        """The other face."""
-        self.desk.other_face()
-        self.show_prompt()
-
-    def action_target(self) -> None:
-        """Another target."""
-        self.desk.other_target()
+    def action_other(self, which: str) -> None:
+        """The other kind of reading, face or target."""
+        self.desk.take_other(which)
         self.show_prompt()
 
     def action_missed(self) -> None:

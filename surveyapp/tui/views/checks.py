@@ -23,28 +23,33 @@ def verdict_word(check: Check) -> str:
     return texts.NOT_MET if check.confirmed else texts.WARNS
 
 
+def ordered_checks(result: OrientationResult) -> list[Check]:
+    """The checks, what is not met first, what could not be answered last."""
+    order = {False: 0, True: 1, None: 2}
+    return sorted(result.checks, key=lambda check: order[check.passed])
+
+
 def check_rows(result: OrientationResult) -> list[tuple[str, ...]]:
     """Each check in one row, what is not met first."""
-    ordered = sorted(result.checks, key=lambda check: check.passed is not False)
     return [
         (
             verdict_word(check),
             check.rule,
             check.where,
-            _quantity(check.value, check.unit),
-            _quantity(check.limit, check.unit),
+            quantity_text(check.value, check.unit),
+            quantity_text(check.limit, check.unit),
         )
-        for check in ordered
+        for check in ordered_checks(result)
     ]
 
 
 def check_texts(result: OrientationResult) -> list[str]:
     """Sentence and clause of each check, in the order of ``check_rows``."""
-    ordered = sorted(result.checks, key=lambda check: check.passed is not False)
-    return [f"{check.text}\n{check.clause}" for check in ordered]
+    return [f"{check.text}\n{check.clause}" for check in ordered_checks(result)]
 
 
-def _quantity(value: float | None, unit: str) -> str:
+def quantity_text(value: float | None, unit: str) -> str:
+    """A value or limit with its unit."""
     if value is None:
         return texts.NOT_DETERMINED
     mark = {"arcsec": '"'}.get(unit, f" {unit}" if unit else "")

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-from surveyapp.domain.results import LineResult, OrientationResult, SessionResult
+from surveyapp.domain.results import (
+    AngleResult,
+    Check,
+    LineResult,
+    OrientationResult,
+    SessionResult,
+)
 from surveyapp.tui import texts
-from surveyapp.tui.views.checks import check_rows, check_texts
+from surveyapp.tui.views.checks import ordered_checks, quantity_text, verdict_word
 from surveyapp.tui.views.constants import constant_rows
-from surveyapp.tui.views.form import angle_text, arcsec_text, sigma_text
+from surveyapp.tui.views.form import angle_text, arcsec_text, interval_text, sigma_text
 from surveyapp.tui.views.lines import budget_rows, chain_rows
 from surveyapp.tui.views.session import session_details
 from surveyapp_models.angles import AngleUnit, format_angle
@@ -14,13 +20,25 @@ from surveyapp_models.angles import AngleUnit, format_angle
 Section = tuple[str, list[tuple[str, ...]]]
 
 
-def result_headline(result: OrientationResult, unit: AngleUnit) -> str:
-    """The one number that the session was made for."""
+def result_headline(result: OrientationResult, session: str, unit: AngleUnit) -> str:
+    """The one number that the session was made for, as far as it goes."""
     for line in result.lines:
+        name = f"{line.station}-{line.target}"
         if line.grid_azimuth is not None:
-            azimuth = angle_text(line.grid_azimuth, unit)
-            return f'{line.station}-{line.target}  {azimuth}  ±{sigma_text(line.grid_azimuth)}"'
+            return _headline(name, texts.COL_GRID, line.grid_azimuth, unit)
+        if line.true_azimuth is not None:
+            label = texts.R_TRUE.format(reference=(line.true_azimuth.reference or "").lower())
+            return _headline(name, label, line.true_azimuth, unit)
+        return _headline(name, texts.COL_AZIMUTH, line.gyro_azimuth, unit)
+    own = next(item for item in result.sessions if item.id == session)
+    if own.gyro_north is not None:
+        return _headline(own.station, texts.COL_NORTH, own.gyro_north, unit)
     return texts.R_NO_LINE
+
+
+def _headline(name: str, label: str, angle: AngleResult, unit: AngleUnit) -> str:
+    sigma, interval = sigma_text(angle), interval_text(angle)
+    return f'{name}  {label} {angle_text(angle, unit)}  ±{sigma}"  (95 % ±{interval}")'
 
 
 def result_sections(result: OrientationResult, session: str, unit: AngleUnit) -> list[Section]:
@@ -33,19 +51,20 @@ def result_sections(result: OrientationResult, session: str, unit: AngleUnit) ->
     sections += [
         (texts.R_BUDGET, [tuple(row) for row in budget_rows(line)]) for line in result.lines
     ]
-    checks = [
-        (row[0], f"{row[1]} {row[3]}", f"{texts.R_LIMIT.format(limit=row[4])}; {text}")
-        for row, text in zip(
-            check_rows(result), (t.replace("\n", "; ") for t in check_texts(result)), strict=True
-        )
-    ]
-    sections.append((texts.R_CHECKS, list(checks)))
+    sections.append((texts.R_CHECKS, [_check(check) for check in ordered_checks(result)]))
+    failed = [check for check in ordered_checks(result) if check.passed is False]
+    sections.append((texts.R_NOT_MET, [(f"{c.text} ({c.clause})",) for c in failed]))
     constants = [(row[1], row[2], f"±{row[3]}") for row in constant_rows(result)]
     sections.append((texts.R_CONSTANTS, list(constants)))
-    warnings = [(warning.text, "", "") for warning in result.warnings]
-    sections.append((texts.R_WARNINGS, list(warnings)))
+    sections.append((texts.R_WARNINGS, [(warning.text,) for warning in result.warnings]))
     sections.append((texts.R_POINTS, _points(own, unit)))
     return [section for section in sections if section[1]]
+
+
+def _check(check: Check) -> tuple[str, ...]:
+    limit = quantity_text(check.limit, check.unit)
+    value = quantity_text(check.value, check.unit)
+    return (f"{verdict_word(check):<8}{check.rule}", value, texts.R_LIMIT.format(limit=limit))
 
 
 def _chain(own: SessionResult, line: LineResult, unit: AngleUnit) -> list[tuple[str, ...]]:

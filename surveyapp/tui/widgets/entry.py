@@ -2,36 +2,77 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+
+from textual.actions import parse
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
 from textual.events import Key
-from textual.message import Message
 from textual.widgets import Input, Static
 
 
 class ReadingInput(Input):
-    """An input that passes a space at its beginning on, for timed passages."""
+    """An input that works off its keys strictly in their order.
 
-    class Passage(Message):
-        """Space was pressed in the empty line."""
+    Enter and the keys of the screen are done with before the next key is looked at, not sent round
+    as messages: on a slow machine a surveyor types ahead, and a reading must neither take in the
+    digits of the next one nor slip into another step.
+
+    Parameters
+    ----------
+    enter : callable
+        Takes the text; whether it was written.
+    actions : mapping
+        Action of the screen by key.
+    """
+
+    def __init__(self, enter: Callable[[str], bool], actions: Mapping[str, str]) -> None:
+        super().__init__(id="reading", compact=True, select_on_focus=False)
+        self.cursor_blink = False
+        self.enter = enter
+        self.actions = dict(actions)
 
     async def _on_key(self, event: Key) -> None:
-        if event.key == "space" and not self.value:
+        key = event.key
+        if key == "space" and not self.value:
+            key = "empty_space"
+        if key == "enter":
             event.stop()
             event.prevent_default()
-            self.post_message(self.Passage())
-            return
-        await super()._on_key(event)
+            if self.enter(self.value):
+                self.value = ""
+            else:
+                self.select_all()
+        elif key in self.actions:
+            event.stop()
+            event.prevent_default()
+            action = self.actions[key]
+            _, name, parameters = parse(action)
+            if self.screen.check_action(name, parameters):
+                await self.app.run_action(action, default_namespace=self.screen)
+        else:
+            await super()._on_key(event)
 
 
 class EntryLine(Vertical):
-    """Prompt, input, and two lines below: how it is understood, and what became of it."""
+    """Prompt, input, and two lines below: how it is understood, and what became of it.
+
+    Parameters
+    ----------
+    enter, actions
+        As in ``ReadingInput``.
+    """
+
+    def __init__(self, enter: Callable[[str], bool], actions: Mapping[str, str]) -> None:
+        super().__init__()
+        self.enter = enter
+        self.actions = actions
 
     def compose(self) -> ComposeResult:
         """The parts."""
         with Horizontal(id="entry-row"):
             yield Static(id="prompt", markup=False)
-            yield ReadingInput(id="reading", compact=True, select_on_focus=False)
+            yield ReadingInput(self.enter, self.actions)
             yield Static(id="understood", markup=False)
         yield Static(id="message", markup=False)
 

@@ -1,0 +1,145 @@
+"""Every screen as a picture, small and large; each was looked at before it became a reference."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+
+import pytest
+from helpers_tui import LARGE, SMALL, Clock, make_project, simulated
+from textual.pilot import Pilot
+
+from surveyapp.api_session import NewRow, Observation
+from surveyapp.core.simulate.session import book_text
+from surveyapp.core.steps import Step
+from surveyapp.domain.readings import ReadingKind
+from surveyapp.tui.app import SurveyApp
+
+PROJECTS = Path(__file__).resolve().parents[2] / "projects"
+Snap = Callable[..., bool]
+sizes = pytest.mark.parametrize("size", [SMALL, LARGE], ids=["80x24", "120x40"])
+
+
+def keys(*names: str) -> Callable[[Pilot[int]], Awaitable[None]]:
+    """Press keys, each after the last computation has been shown."""
+
+    async def press(pilot: Pilot[int]) -> None:
+        for name in ("", *names, ""):
+            await pilot.app.workers.wait_for_complete()
+            await pilot.pause()
+            if name:
+                await pilot.press(name)
+        for _ in range(3):
+            await pilot.app.workers.wait_for_complete()
+            await pilot.pause()
+
+    return press
+
+
+def app_on(folder: Path | None, seconds: float = 0.0) -> SurveyApp:
+    """The screens with a clock that stands still."""
+    clock = Clock()
+    clock.pass_by(seconds)
+    return SurveyApp(None if folder is None else str(folder), now=clock.now, steady=clock.steady)
+
+
+def sample(tmp_path: Path, name: str) -> Path:
+    return Path(shutil.copytree(PROJECTS / name, tmp_path / name))
+
+
+def observed(tmp_path: Path, rows: int) -> Path:
+    """A session of which some rows are written; it stands at its turning points."""
+    folder = make_project(tmp_path / "ramp-3")
+    text = book_text(simulated(points=12).rows[:rows])
+    (folder / "observations" / "r1.csv").write_text(text, encoding="utf-8")
+    return folder
+
+
+@sizes
+def test_home(snap_compare: Snap, size: tuple[int, int]) -> None:
+    assert snap_compare(app_on(None), terminal_size=size, run_before=keys())
+
+
+@pytest.mark.parametrize(
+    ("page", "size"),
+    [("1", SMALL), ("2", SMALL), ("2", LARGE), ("3", SMALL), ("4", LARGE), ("5", SMALL)],
+    ids=["sessions", "lines", "lines-large", "constants", "checks-large", "warnings"],
+)
+def test_project(snap_compare: Snap, tmp_path: Path, page: str, size: tuple[int, int]) -> None:
+    folder = sample(tmp_path, "tongjin-2015")
+    assert snap_compare(app_on(folder), terminal_size=size, run_before=keys(page))
+
+
+def test_broken_project(snap_compare: Snap, tmp_path: Path) -> None:
+    folder = sample(tmp_path, "gi-b1-1966")
+    book = folder / "observations" / "round-3.csv"
+    text = book.read_text(encoding="utf-8").replace("107-57-34", "365-57-34")
+    book.write_text(text, encoding="utf-8")
+    assert snap_compare(app_on(folder), terminal_size=SMALL, run_before=keys())
+
+
+@sizes
+@pytest.mark.parametrize("form", ["new-project", "new-session"])
+def test_forms(snap_compare: Snap, tmp_path: Path, form: str, size: tuple[int, int]) -> None:
+    folder = None if form == "new-project" else sample(tmp_path, "tongjin-2015")
+    assert snap_compare(app_on(folder), terminal_size=size, run_before=keys("n"))
+
+
+@sizes
+@pytest.mark.parametrize("rows", [0, 6, 9, 17])
+def test_session(snap_compare: Snap, tmp_path: Path, rows: int, size: tuple[int, int]) -> None:
+    """At the start, at the sights, after two turning points, after ten."""
+    folder = observed(tmp_path, rows)
+    app = app_on(folder, seconds=2980.0)
+    assert snap_compare(app, terminal_size=size, run_before=keys("enter"))
+
+
+def test_alarm(snap_compare: Snap, tmp_path: Path) -> None:
+    folder = observed(tmp_path, 17)
+    book = folder / "observations" / "r1.csv"
+    text = book.read_text(encoding="utf-8").replace("101-58-01.5", "101-59-31.5")
+    book.write_text(text, encoding="utf-8")
+    app = app_on(folder, seconds=2980.0)
+    assert snap_compare(app, terminal_size=SMALL, run_before=keys("enter"))
+
+
+def test_question(snap_compare: Snap, tmp_path: Path) -> None:
+    folder = observed(tmp_path, 17)
+    app = app_on(folder, seconds=2980.0)
+    typed = keys("enter", *"101-48-00", "enter")
+    assert snap_compare(app, terminal_size=SMALL, run_before=typed)
+
+
+@pytest.mark.parametrize("key", ["f1", "f6"])
+def test_help_and_strike(snap_compare: Snap, tmp_path: Path, key: str) -> None:
+    folder = observed(tmp_path, 17)
+    app = app_on(folder, seconds=2980.0)
+    assert snap_compare(app, terminal_size=SMALL, run_before=keys("enter", key))
+
+
+@sizes
+def test_result(snap_compare: Snap, tmp_path: Path, size: tuple[int, int]) -> None:
+    folder = observed(tmp_path, 26)
+    clock = Clock()
+    clock.pass_by(4200.0)
+    seen = Observation(folder, "r1", now=clock.now, steady=clock.steady)
+    seen.record(NewRow(ReadingKind.NOTE, note="quiet, dry"))
+    seen.go_to(Step.RESULT)
+    seen.close()
+    app = app_on(folder, seconds=4210.0)
+    assert snap_compare(app, terminal_size=size, run_before=keys("enter", "f8"))
+
+
+@pytest.mark.parametrize("times", [1, 2], ids=["light", "contrast"])
+def test_themes(snap_compare: Snap, tmp_path: Path, times: int) -> None:
+    folder = observed(tmp_path, 17)
+    app = app_on(folder, seconds=2980.0)
+    assert snap_compare(app, terminal_size=SMALL, run_before=keys("enter", *["f9"] * times))
+
+
+def test_no_colour(snap_compare: Snap, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NO_COLOR", "1")
+    folder = observed(tmp_path, 17)
+    app = app_on(folder, seconds=2980.0)
+    assert snap_compare(app, terminal_size=SMALL, run_before=keys("enter"))
