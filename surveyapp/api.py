@@ -143,10 +143,26 @@ def check(project: Project | Folder) -> tuple[Check, ...]:
     from surveyapp.io.project_checks import changed_after_closing
 
     try:
-        return orient(project).checks
+        if not isinstance(project, Project):
+            project = open_project(project)
+        return _with_traverses(project, orient(project).checks)
     except SurveyError as error:
         folder = project.path if isinstance(project, Project) else project
         raise SurveyError([*changed_after_closing(Path(folder)), *error.problems]) from None
+
+
+def _with_traverses(project: Project, checks: tuple[Check, ...]) -> tuple[Check, ...]:
+    """Checks of the orientation with those of the traverses, where there are any."""
+    if not project.tables.get("traverse"):
+        return checks
+    from surveyapp.io.traverse_checks import traverse_checks
+    from surveyapp.io.traverseheader import traverse_headers
+
+    networks = [
+        (header.traverse_class, network(project, traverse=header.name))
+        for header in traverse_headers(project)
+    ]
+    return traverse_checks(project, networks, checks)
 
 
 def adjust(
@@ -183,7 +199,7 @@ def network(source: Project | Folder, *, traverse: str | None = None) -> Network
 
     if not isinstance(source, Project):
         path = Path(source)
-        if path.suffix.lower() in (".gkf", ".xml"):
+        if path.suffix.lower() in (".gkf", ".xml") or path.is_file():
             return read_gkf(path)
         source = open_project(path)
     lines, constants, warnings = oriented_lines(orient(source).lines if source.sessions else ())

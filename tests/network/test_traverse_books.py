@@ -113,6 +113,21 @@ def test_the_whole_way_on_the_command_line(
     assert "main" in capsys.readouterr().err
 
 
+def test_check_answers_what_the_rule_book_asks_of_traverses(tmp_path: Path) -> None:
+    book = BOOK + "angle,B,A,C,90-00-25,dms,,,,,,last angle again\n"
+    folder = project(tmp_path, book)
+    text = (folder / "project.toml").read_text(encoding="utf-8")
+    text = text.replace('name = "T"', 'name = "T"\nrule_book = "cn-coal-15"', 1)
+    (folder / "project.toml").write_text(text, encoding="utf-8")
+    checks = {check.rule: check for check in api.check(folder)}
+    again = [c for rule, c in checks.items() if c.unit == "arcsec" and c.where == "A-B-C"]
+    assert [round(c.value or 0.0) for c in again] == [25]
+    assert again[0].limit == 40.0  # the 15" class
+    assert again[0].passed is True
+    assert checks["traverse.forward_back"].where == "C-D"
+    assert checks["traverse.forward_back"].value == pytest.approx(1.0)
+
+
 GYRO = BOOK + "gyro,C,,D,,,,,,,,\n"
 
 
