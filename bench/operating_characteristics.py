@@ -18,8 +18,8 @@ from bench._records import CampaignTruth, Truth, campaign_problem, problems
 from surveyapp.diagnosis import Diagnosis, Problem, diagnose
 
 PAGE = Path(__file__).resolve().parent.parent / "docs/reference/operating-characteristics.md"
-RUNS = 60
-CAMPAIGN_RUNS = 30
+RUNS = 48
+CAMPAIGN_RUNS = 20
 DRAWS = 1000
 
 

@@ -10,7 +10,7 @@ from surveyapp.diagnosis.ambiguity import ambiguities
 from surveyapp.diagnosis.battery import run_battery
 from surveyapp.diagnosis.checks import check_input
 from surveyapp.diagnosis.compare import Level
-from surveyapp.diagnosis.fits import Fit
+from surveyapp.diagnosis.fits import Fit, unit_variance
 from surveyapp.diagnosis.ledger import ledger_entry
 from surveyapp.diagnosis.loop import DEFAULT_DRAWS, Search, rivals_delta, search
 from surveyapp.diagnosis.problem import Problem
@@ -62,7 +62,7 @@ def diagnose(
     digest = problem.digest()
     found = search(problem, draws=draws, confirm=confirm)
     base = found.levels[0].fits[0]
-    averaged = averaged_value(problem, found.levels[-1].every)
+    averaged = _widened(problem, found, averaged_value(problem, found.levels[-1].every))
     battery = run_battery(problem, base, int(digest[:15], 16))
     adopted = adoptions(problem, found, digest, confirm)
     ambiguous = ambiguities(problem, found)
@@ -91,6 +91,17 @@ def diagnose(
         residuals_after=_residuals(problem, found.after),
         residuals_best=_residuals(problem, best),
     )
+
+
+def _widened(problem: Problem, found: Search, averaged: Value) -> Value:
+    """The averaged value, not more certain than the scatter that the stated sigmas deny."""
+    known = unit_variance(problem)
+    base = found.levels[0].fits[0]
+    dof = problem.size - base.design.shape[1]
+    if known is None or found.levels[-1].depth == 0 or found.adopted or dof < 1:
+        return averaged
+    scatter = math.sqrt(max(1.0, base.sum_of_squares / dof / known))
+    return Value(averaged.value, max(averaged.sigma, scatter * value_of(problem, base).sigma), dof)
 
 
 def _quantity(problem: Problem, value: Value) -> Quantity:

@@ -101,6 +101,8 @@ def test_tongjin_two_constants_are_not_separable() -> None:
     assert set(result.ambiguous[0].any_of) == {"line_offset", "transport_step", "time_drift"}
     assert "first line" in result.ambiguous[0].separate_by
     assert "opposite order" in result.ambiguous[0].separate_by
+    # What is unattributed widens sigma: half of 14.55 arcsec, not 5 / sqrt(6).
+    assert result.averaged.sigma == pytest.approx(14.55 / 2.0 * ARCSEC, rel=1e-6)
     json.dumps(result.to_dict(), allow_nan=False)
 
 
