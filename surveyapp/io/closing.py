@@ -123,6 +123,7 @@ def _where(session: str) -> str:
 
 def _writable(lock: ProjectLock) -> None:
     if not lock.writable:
+        read_project(lock.folder, repair=False)  # a folder that is no project is told as such
         raise SurveyError(
             Problem(
                 "the project cannot be written to",

@@ -185,7 +185,9 @@ def _require(name: str, known: list[str], where: str, kind: str) -> None:
     if name not in known:
         hint = nearest_names(name, known)
         raise SurveyError(
-            InputProblem(f"there is no {kind} of this name", where, name, f"an {kind}", hint)
+            InputProblem(
+                f"there is no {kind} of this name", where, name, f"the name of a known {kind}", hint
+            )
         )
 
 

@@ -247,6 +247,7 @@ def test_good_project_is_good(tmp_path: Path) -> None:
         (["new", "OTHER", "--crs", "EPSG:4326"], "crs", "WGS 84", "grid"),
         (["new", "OTHER", "--angle-unit", "grad"], "--angle-unit", "grad", "gon"),
         (["open", "OTHER"], "other", "", "surveyapp new"),
+        (["close", "OTHER"], "other", "", "surveyapp new"),
         (["demo", "more"], "surveyapp demo", "more", ""),
     ],
 )
