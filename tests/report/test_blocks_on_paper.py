@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import math
 
+import pypdf
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -116,3 +118,13 @@ def test_odd_blocks_can_be_written() -> None:
     written = write_pdf(document)
     assert written.pages > 3
     assert write_pdf(document).data == written.data
+
+
+def test_a_cell_taller_than_a_page_loses_no_word() -> None:
+    words = " ".join(f"w{index}" for index in range(3000))
+    blocks = (Table(("a", "b"), (("x", words), ("y", "last"))), KeyValues((("k", words),)))
+    written = write_pdf(Document("t", "h", ("f",), blocks))
+    reader = pypdf.PdfReader(io.BytesIO(written.data))
+    found = " ".join(page.extract_text() for page in reader.pages).split()
+    assert [found.count(f"w{index}") for index in (0, 1234, 2999)] == [2, 2, 2]
+    assert "last" in found

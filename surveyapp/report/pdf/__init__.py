@@ -53,7 +53,7 @@ from surveyapp.report.pdf.style import (
     WIDTH,
     style_of,
 )
-from surveyapp.report.pdf.tables import table_flowable
+from surveyapp.report.pdf.tables import is_tall, table_flowable
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,7 +231,8 @@ def _key_values(block: KeyValues, faces: Faces) -> Flowable:
         [Text(faces.markup(key), key_style), Text(faces.markup(value), value_style)]
         for key, value in block.pairs
     ]
-    grid = Grid(rows, colWidths=[first, WIDTH - first], hAlign="LEFT")
+    tall = is_tall(value for _, value in block.pairs)
+    grid = Grid(rows, colWidths=[first, WIDTH - first], hAlign="LEFT", splitInRow=int(tall))
     grid.setStyle(
         [
             ("VALIGN", (0, 0), (-1, -1), "TOP"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Final
 
 from reportlab.lib.enums import TA_CENTER, TA_RIGHT
@@ -76,9 +76,25 @@ def table_flowable(block: Table, faces: Faces) -> Flowable:
     heights = None
     if block.row_height_mm is not None:
         heights = [*([None] if headed else []), *[block.row_height_mm * mm] * len(block.rows)]
-    grid = Grid(rows, colWidths=widths, rowHeights=heights, repeatRows=int(headed), hAlign="LEFT")
+    tall = is_tall(text for row in block.rows for text in row)
+    grid = Grid(
+        rows,
+        colWidths=widths,
+        rowHeights=heights,
+        repeatRows=int(headed),
+        hAlign="LEFT",
+        splitInRow=int(tall),
+    )
     grid.setStyle(_table_style(block, align, size, headed=headed))
     return grid
+
+
+def is_tall(cells: Iterable[str]) -> bool:
+    """Whether a cell may become taller than a page: only then a row is divided between two."""
+    return any(len(text) > _LONG_CELL for text in cells)
+
+
+_LONG_CELL: Final = 1000
 
 
 def _cell_maker(

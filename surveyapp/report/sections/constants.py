@@ -76,15 +76,14 @@ def _determinations(constant: ConstantResult) -> Table:
 
 def _plot(constant: ConstantResult) -> Figure:
     items = constant.determinations
-    values = [item.value for item in items]
     centre = constant.value or 0.0
-    spread = [item.sigma for item in items if math.isfinite(item.sigma)]
+    spread = [item.sigma if math.isfinite(item.sigma) else 0.0 for item in items]
     bounds = [
         bound
-        for item in items
-        for bound in (item.value - min(item.sigma, 1.0), item.value + min(item.sigma, 1.0))
+        for item, sigma in zip(items, spread, strict=True)
+        for bound in (item.value - sigma, item.value + sigma)
     ]
-    shown = [to_arcsec(v) or 0.0 for v in ([*bounds, centre] if spread else [*values, centre])]
+    shown = [to_arcsec(value) or 0.0 for value in (*bounds, centre)]
     frame = Frame(_moments(items), axis(shown), height_mm=52.0)
     names = [_name(item) for item in items]
     by_order = len(set(frame.x.ticks)) == len(items) and frame.x.decimals < 0

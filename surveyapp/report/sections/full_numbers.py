@@ -8,6 +8,7 @@ from typing import Any
 from surveyapp.domain.results import OrientationResult
 from surveyapp.report.blocks import Block, Heading, PageBreak, Paragraph, Table
 
+_NUMBERS_A_ROW = 40
 _TEXTS = frozenset({"schema", "project", "software", "input_sha256", "warnings", "text"})
 
 
@@ -22,8 +23,10 @@ def blocks(result: OrientationResult) -> tuple[Block, ...]:
                 name = f"{item['station']}-{item['target']}"
             numbers = list(_numbers(item, ""))
             if numbers:
-                text = "; ".join(f"{key} {value}" for key, value in numbers)
-                rows.append((f"{part}[{index}] {name}".strip(), text))
+                for start in range(0, len(numbers), _NUMBERS_A_ROW):
+                    few = numbers[start : start + _NUMBERS_A_ROW]
+                    text = "; ".join(f"{key} {value}" for key, value in few)
+                    rows.append((f"{part}[{index}] {name}".strip(), text))
     if not rows:
         return ()
     return (
