@@ -71,6 +71,17 @@ def test_the_angular_misclosure_is_the_sum_of_the_errors() -> None:
     assert large.passed is False
 
 
+def test_the_linear_misclosure_is_formed_after_the_angular_one_is_distributed() -> None:
+    equal = (30 * ARC,) * 4
+    loop = replace(square(equal, (0, 0, 0, 0)), points=tuple(point(name) for name in "ABCD"))
+    closure = network_closures(loop)[0]
+    assert abs(closure.angular or 0.0) == pytest.approx(120 * ARC, rel=1e-6)
+    assert closure.linear_m == pytest.approx(0.0, abs=1e-9)
+    route = network_closures(square(equal, (0, 0, 0, 0)))[0]
+    assert route.kind == "connecting"
+    assert route.linear_m == pytest.approx(0.0, abs=1e-9)
+
+
 def test_a_free_loop_closes_without_coordinates() -> None:
     network = square((0, 0, 0, 0), (0.03, 0, 0, 0.04))
     free = replace(network, points=tuple(point(name) for name in "ABCD"))

@@ -228,6 +228,16 @@ def test_entities_are_refused(tmp_path: Path) -> None:
         read_gkf(path)
 
 
+def test_what_is_not_applied_is_said(tmp_path: Path) -> None:
+    body = """<point id="A" z="0" fix="z"/> <point id="B" adj="z"/>
+    <height-differences><dh from="A" to="B" val="1.0" stdev="2"/></height-differences>"""
+    network = read(tmp_path, body, parameters='ellipsoid="grs80" colour="red"')
+    assert {warning.code for warning in network.warnings} == {
+        "reductions_not_applied",
+        "unknown_attribute",
+    }
+
+
 def test_a_missing_file_is_said(tmp_path: Path) -> None:
     with pytest.raises(SurveyError, match="cannot be read"):
         read_gkf(tmp_path / "none.gkf")

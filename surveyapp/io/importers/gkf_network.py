@@ -309,6 +309,9 @@ def network_from(document: GkfDocument) -> Network:
         ResultWarning("unknown_attribute", f"{document.where(line)}: {name} was not understood")
         for name, line in document.unknown_attributes.items()
     ]
+    if "ellipsoid" in document.parameters:
+        text = "ellipsoidal reductions are not applied: reduce the observations first"
+        warnings.append(ResultWarning("reductions_not_applied", text))
     actual = document.parameters.get("sigma-act", "aposteriori").strip()
     if actual not in ("aposteriori", "apriori"):
         document.problem("Unknown sigma-act", 0, actual, "aposteriori or apriori")
