@@ -130,8 +130,8 @@ def _consequence(result: Diagnosis) -> list[str]:
         for text, quantity in datum.states:
             apart = (quantity.value - result.averaged.value) / result.scale
             said.append(
-                f"With {datum.effect.replace('_', ' ')} in the model the value at "
-                f"{text} is {apart:+.1f}{_unit(result)} from that."
+                f"With {datum.effect.replace('_', ' ')} in the model: {text} "
+                f"{apart:+.1f}{_unit(result)} from that."
             )
     return said
 

@@ -27,7 +27,7 @@ RUN_SIZES = {
     "warm_up": 80.0,
     "secondary_oscillation": 40.0,
     "temperature": 15.0,
-    "amplitude_asymmetry": 39.0,
+    "amplitude_asymmetry": 29.0,
     "gross_error": 60.0,
 }
 CAMPAIGN_SIZES = {

@@ -30,8 +30,8 @@ EFFECT = Effect(
             "asymmetry",
             "arcsec",
             ARCSEC,
-            -40.0,
-            40.0,
+            -30.0,
+            30.0,
             "shift of the midpoint at the amplitude of the first point",
         ),
     ),
@@ -39,7 +39,7 @@ EFFECT = Effect(
     datum="north averaged over the run, the asymmetry included",
     source=(
         "a one-sided follow-up lag eps shifts north by lambda eps / 2 (integrated equation of "
-        "motion): 36 arcsec for lambda 0.2 and a lag of 6 arcmin bound the range"
+        "motion): 30 arcsec for lambda 0.2 and a lag of 5 arcmin bound the range"
     ),
     remedy="Begin with a small swing; follow evenly in both directions.",
     symptom="the midpoint moved as the swing became smaller",
