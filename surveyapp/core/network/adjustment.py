@@ -34,6 +34,8 @@ from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network, Status
 from surveyapp.errors import SurveyError
 
+SOUND = 1e-3
+"""Relative gap between redundancies and degrees of freedom from which on a user must know."""
 FAMILY_LEVEL = 0.05
 """Probability of accusing any observation of a network that has no gross error."""
 
@@ -187,6 +189,7 @@ def _result(
     coordinate = np.append(state.model.slot_of < model.coordinate_slots, 0.0).astype(np.float64)
     checked = q.assess(state.groups, solved.cofactor, len(state.model.value), coordinate)
     checked = fold(state.model, checked, len(model.observations))
+    warnings = (*warnings, *_unsound(float(checked.redundancy.sum()), dof))
     return AdjustmentResult(
         points=_points(network, model, state, scale),
         observations=_observations(model, state, checked, scale),
@@ -203,6 +206,17 @@ def _result(
         snooping=_snooping(model, checked, scale, (family_level, dof if estimated else None)),
         warnings=warnings,
     )
+
+
+def _unsound(redundancy: float, dof: int) -> list[ResultWarning]:
+    """Redundancies sum to the degrees of freedom, or rounding has spoilt the cofactors."""
+    if abs(redundancy - dof) <= SOUND * max(dof, 1):
+        return []
+    text = (
+        f"the redundancies sum to {redundancy:.6g} instead of {dof}: the network is so weak that "
+        "its sigmas and tests are not reliable"
+    )
+    return [ResultWarning("cofactors_inaccurate", text)]
 
 
 def _point_cofactors(state: Converged, points: int) -> Floats:
