@@ -313,3 +313,33 @@ KEY_NEW_PROJECT: Final = "New project"
 KEY_FOLDER: Final = "Folder"
 KEY_MAKE: Final = "Make it"
 KEY_FIELD: Final = "Next field"
+
+# diagnosis screen
+DIAGNOSIS_TITLE: Final = "{name}  what the model lacks"
+DIAGNOSING: Final = "diagnosing ..."
+NO_SUBJECTS: Final = "Nothing here can be diagnosed: it takes a reversal run or three sessions."
+COL_SUBJECT: Final = "subject"
+COL_ID: Final = "id"
+COL_CANDIDATE: Final = "candidate"
+COL_FAMILY: Final = "p family"
+COL_BIC: Final = "BIC behind"
+SUBJECT_RUN: Final = "run"
+SUBJECT_CAMPAIGN: Final = "campaign"
+CHANNEL_NAMES: Final = {
+    "amplitude": "Amplitude channel (side times residual)",
+    "midpoint": "Midpoint channel (Schuler mean of the residuals)",
+    "residual": "Residuals",
+}
+D_BEFORE: Final = "before"
+D_AFTER: Final = "after"
+D_BEST: Final = "after, best member"
+D_AVERAGED: Final = "averaged"
+D_LEFT_OUT: Final = "left out"
+D_VALUE: Final = "value"
+KEY_DIAGNOSE: Final = "Diagnose"
+KEY_ADOPT: Final = "Adopt"
+KEY_YES: Final = "Yes"
+NOTHING_TO_ADOPT: Final = "No effect is named here: there is nothing to adopt."
+ADOPT_ASK: Final = "Adopt {names}? It is written into project.toml, and the next result uses it."
+CONFIRM_KEYS: Final = "Enter: yes   Escape: no"
+ADOPTED: Final = "written: {place}"

@@ -6,7 +6,7 @@ instrument (a campaign), with the digest of the data that chose it, and the next
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -239,8 +239,17 @@ def diagnose_project(
     diagnosis = run_engine(chosen.problem, confirm=chosen.confirm)
     moment = (now or datetime.now(UTC)).isoformat(timespec="seconds")
     written: tuple[str, ...] = ()
-    if adopt and folder is not None:
-        written = _adopt(folder, diagnosis, chosen.problem, moment=moment, software=software)
+    if folder is not None and (adopt or log):
+        written = _record(
+            folder,
+            diagnosis,
+            effect_tables(diagnosis, chosen.problem, moment=moment, software=software)
+            if adopt
+            else (),
+            already=_already(orientation.project, diagnosis),
+            moment=moment,
+            software=software,
+        )
     words = tuple(words_of(diagnosis, chosen.problem))
     return Diagnosed(diagnosis, (), written, words, _channels(diagnosis, chosen.problem))
 
@@ -269,19 +278,53 @@ def _need_writable(lock: ProjectLock, folder: Path) -> None:
         )
 
 
-def _adopt(
-    folder: Path, diagnosis: Diagnosis, problem: Problem, *, moment: str, software: str
-) -> tuple[str, ...]:
+def _already(project: Project, diagnosis: Diagnosis) -> frozenset[str]:
+    """Ids of the effects that the session (a run) or the instrument (a campaign) has already."""
     if diagnosis.subject == "reversal_run":
-        parent = ("orientation", diagnosis.identity)
-    else:
-        parent = ("instrument", diagnosis.instrument)
+        return frozenset(effect.id for effect in project.session(diagnosis.identity).effects)
+    return frozenset(effect.id for effect in project.instrument(diagnosis.instrument).effects)
+
+
+def _record(
+    folder: Path,
+    diagnosis: Diagnosis,
+    tables: Sequence[dict[str, object]],
+    *,
+    already: frozenset[str],
+    moment: str,
+    software: str,
+) -> tuple[str, ...]:
+    """Append to the ledger, and write every effect that is not adopted yet.
+
+    A folder that cannot be written keeps no ledger; adopting in it is an error.
+    """
     written = []
-    for item in diagnosis.adopted:
-        table = effect_table(item, problem, moment=moment, software=software)
-        append_subtable(folder / "project.toml", parent, "effect", table)
-        written.append(f"project.toml, {parent[0]} {parent[1]}, effect {item.effect}")
+    wanted = [table for table in tables if table["id"] not in already]
+    with ProjectLock(folder) as lock:
+        if wanted:
+            _need_writable(lock, folder)
+        if not lock.writable:
+            return ()
+        append_entry(folder, "diagnosis", dict(diagnosis.ledger), at=moment, software=software)
+        if diagnosis.subject == "reversal_run":
+            parent = ("orientation", diagnosis.identity)
+        else:
+            parent = ("instrument", diagnosis.instrument)
+        for table in wanted:
+            append_subtable(folder / "project.toml", parent, "effect", table)
+            entry = {"parent": list(parent), "effect": table}
+            append_entry(folder, "adoption", entry, at=moment, software=software)
+            written.append(f"project.toml, {parent[0]} {parent[1]}, effect {table['id']}")
     return tuple(written)
+
+
+def effect_tables(
+    diagnosis: Diagnosis, problem: Problem, *, moment: str, software: str
+) -> tuple[dict[str, object], ...]:
+    """The tables of every effect that the engine names, as they stand in project.toml."""
+    return tuple(
+        effect_table(item, problem, moment=moment, software=software) for item in diagnosis.adopted
+    )
 
 
 def effect_table(

@@ -96,6 +96,11 @@ def test_adopted_step_of_a_run_changes_its_north_and_its_sigma(tmp_path: Path) -
     assert before.gyro_north is not None
     assert after.gyro_north is not None
     assert after.gyro_north.sigma < 0.6 * before.gyro_north.sigma
+    kinds = [json.loads(line)["kind"] for line in (folder / "ledger.jsonl").open()]
+    assert kinds == ["diagnosis", "adoption"]
+    again = api.diagnose(folder, session="run-1", adopt=True)
+    assert again.written == ()
+    assert len(api.open_project(folder).session("run-1").effects) == 1
     error = (math.degrees(after.gyro_north.value) - truth["run_mean_north_deg"]) * 3600.0
     assert abs(error) < 4.0 * math.degrees(after.gyro_north.sigma) * 3600.0
 

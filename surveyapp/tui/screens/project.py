@@ -6,6 +6,7 @@ result comes back as a message.
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import ClassVar
 
 from rich.text import Text
@@ -21,6 +22,7 @@ from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import SurveyError
 from surveyapp.tui import texts
+from surveyapp.tui.screens.diagnosis import DiagnosisScreen
 from surveyapp.tui.screens.new_session import NewSessionScreen
 from surveyapp.tui.views.checks import CHECK_COLUMNS, check_rows, check_texts, summary
 from surveyapp.tui.views.constants import CONSTANT_COLUMNS, constant_rows
@@ -41,6 +43,7 @@ class ProjectScreen(Screen[None]):
         *[Binding(str(i), f"page('{name}')", show=False) for i, name in enumerate(PAGES[1:], 2)],
         Binding("o", "observe", texts.KEY_OBSERVE),
         Binding("n", "new", texts.KEY_NEW),
+        Binding("d", "diagnose", texts.KEY_DIAGNOSE),
         Binding("f5", "reload", texts.KEY_RELOAD),
         Binding("escape", "back", texts.KEY_BACK),
     ]
@@ -163,6 +166,14 @@ class ProjectScreen(Screen[None]):
         """Begin another session."""
         if self.project is not None:
             self.app.push_screen(NewSessionScreen(self.folder, self.project), self._made)
+
+    def action_diagnose(self) -> None:
+        """Ask what the model lacks; the project is read anew on return."""
+        name = Path(self.folder).resolve().name
+        self.app.push_screen(DiagnosisScreen(self.folder, name), self._diagnosed)
+
+    def _diagnosed(self, _: None) -> None:
+        self.action_reload()
 
     def _made(self, session: str | None) -> None:
         if session is not None:
