@@ -29,6 +29,7 @@ from surveyapp.diagnosis.words import words_of
 from surveyapp.domain.project import Project
 from surveyapp.errors import Problem as InputProblem
 from surveyapp.errors import SurveyError, nearest_names
+from surveyapp.io.ledger import append_entry
 from surveyapp.io.lock import ProjectLock
 from surveyapp.io.writing import append_subtable
 from surveyapp_models.effects.effect import Effect

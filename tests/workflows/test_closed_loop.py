@@ -96,7 +96,9 @@ def test_adopted_step_of_a_run_changes_its_north_and_its_sigma(tmp_path: Path) -
     assert before.gyro_north is not None
     assert after.gyro_north is not None
     assert after.gyro_north.sigma < 0.6 * before.gyro_north.sigma
-    kinds = [json.loads(line)["kind"] for line in (folder / "ledger.jsonl").open()]
+    kinds = [
+        json.loads(line)["kind"] for line in (folder / "ledger.jsonl").read_text().splitlines()
+    ]
     assert kinds == ["diagnosis", "adoption"]
     again = api.diagnose(folder, session="run-1", adopt=True)
     assert again.written == ()
