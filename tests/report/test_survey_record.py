@@ -12,17 +12,20 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pypdf
 import pytest
 
 from surveyapp import api
 from surveyapp.cli.main import main
+from surveyapp.core.simulate.project import project_files, simulate_reversal_project
+from surveyapp.core.simulate.specification import SessionSpec
 from surveyapp.errors import SurveyError
 from surveyapp.report import faces
 from surveyapp.report.blocks import Figure, Polyline, Table
 from surveyapp.report.forms import FORMS
 from surveyapp.report.record import SECTIONS, Record, record_document
-from surveyapp_models.angles import AngleUnit, format_angle
+from surveyapp_models.angles import ARCSEC, AngleUnit, format_angle, parse_angle
 
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLES = ("johannesburg-1966", "gi-b1-1966", "tongjin-2015")
@@ -214,7 +217,7 @@ def test_struck_rows_stay_visible_as_struck(named_project: Path) -> None:
 def test_corrections_stand_on_their_own_lines_with_their_origin(named_project: Path) -> None:
     text = api.report_text(named_project)
     for words in (
-        "north as observed",
+        "= north as observed",
         "tape zero in force",
         "+ tape-zero correction",
         "per division (periods)",
@@ -292,3 +295,31 @@ def test_the_writer_is_the_only_one_that_loads_reportlab() -> None:
     assert (
         subprocess.run([sys.executable, "-c", code], env=environment, check=False).returncode == 0
     )
+
+
+@pytest.mark.parametrize("method", ["amplitude", "transit"])
+def test_a_clamped_swing_shows_its_own_steps(method: str, tmp_path: Path) -> None:
+    """The steps add up to gyro north: alidade, middle of the swing, tape zero."""
+    spec = SessionSpec(latitude=math.radians(47.0), method=method)  # type: ignore[arg-type]
+    simulated = simulate_reversal_project(spec, np.random.default_rng(5))
+    for name, text in project_files(simulated).items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    project = api.open_project(tmp_path)
+    result = api.orient(project)
+    document, _ = record_document(Record(project, result))
+    tables = [b for b in document.blocks if isinstance(b, Table) and b.head[0] == "step"]
+    steps = next({row[0]: row[1] for row in t.rows} for t in tables if t.rows[0][0][:3] == "mid")
+    total = parse_angle(steps["clamped alidade"], AngleUnit.DMS)
+    for label in ("+ (1 + lambda) mu B", "+ tape-zero correction"):
+        total += signed_seconds(steps[label]) * ARCSEC
+    north = parse_angle(steps["= gyro north"], AngleUnit.DMS)
+    assert abs(total - north) < 0.15 * ARCSEC
+    titles = [block.title for block in document.blocks if isinstance(block, Figure)]
+    assert any(title.startswith("Swing on the scale") for title in titles)
+    api.report(project, tmp_path / "record.pdf")
+
+
+def signed_seconds(text: str) -> float:
+    """Seconds of ``+12.34"`` or of ``-6'40.12" (-400.12")``."""
+    return float(text.rpartition("(")[2].rstrip(')"'))

@@ -88,7 +88,7 @@ def _plot(constant: ConstantResult) -> Figure:
     names = [_name(item) for item in items]
     by_order = len(set(frame.x.ticks)) == len(items) and frame.x.decimals < 0
     parts = frame.axes(
-        "session" if by_order else "date", "arcsec", names if by_order else _days(frame.x)
+        "session" if by_order else "date (UTC)", "arcsec", names if by_order else _days(frame.x)
     )
     parts.append(frame.level(to_arcsec(centre) or 0.0, "mean"))
     for place, item in zip(_places(items), items, strict=True):

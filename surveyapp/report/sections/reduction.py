@@ -15,14 +15,13 @@ from surveyapp.report.blocks import Block, Figure, Heading, Paragraph, Table
 from surveyapp.report.numbers import (
     NOTHING,
     direction,
-    four_digits,
     plain,
     seconds,
     signed_angle,
     with_sigma,
 )
 from surveyapp.report.plots import Frame, axis, half_wave
-from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, wrap_pi
+from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, wrap_pi, wrap_two_pi
 
 Row = tuple[str, str, str, str, str]
 
@@ -64,15 +63,40 @@ def _north(item: SessionResult, unit: AngleUnit) -> list[Row]:
     rows: list[Row] = []
     how = f"{item.estimator}, {item.points_used} points, {item.dof} degrees of freedom"
     correction = item.tape_zero_correction
+    before = north.value - (correction or 0.0)
+    scale = _scale_steps(item, before, unit, how)
+    rows += scale
+    if item.tape_zero is not None or scale:
+        how = "" if scale else how
+        rows.append(("= north as observed", direction(wrap_two_pi(before), unit), "", "", how))
     if item.tape_zero is not None:
-        observed = direction((north.value - (correction or 0.0)) % (2.0 * math.pi), unit)
-        rows.append(("north as observed", observed, "", "", how))
         rows += _tape_zero(item.tape_zero, correction)
         how = ""
     origin = f"sigma from {item.sigma_source}" if item.sigma_source else "no sigma: nothing tells"
     text = f"{how}; {origin}" if how else origin
     rows.append(("= gyro north", *with_sigma(north, unit), text))
     return rows
+
+
+def _scale_steps(item: SessionResult, north: float, unit: AngleUnit, how: str) -> list[Row]:
+    """Steps of a clamped swing: the alidade, and the middle of the swing on the scale."""
+    known = {name: value for name, value, _ in item.quantities}
+    if not {"clamp reading", "middle of the swing", "torsion ratio"} <= set(known):
+        return []
+    clamp = math.radians(known["clamp reading"])
+    middle, ratio = known["middle of the swing"], known["torsion ratio"]
+    shift = wrap_pi(north - clamp)
+    return [
+        ("middle of the swing B", f"{middle:+.4f} div", "", "", how),
+        ("clamped alidade", direction(clamp, unit), "", "", "circle reading"),
+        (
+            "+ (1 + lambda) mu B",
+            signed_angle(shift),
+            "",
+            "",
+            f"lambda {ratio:.4f} at this latitude, mu of the card",
+        ),
+    ]
 
 
 def _tape_zero(zero: TapeZeroResult, correction: float | None) -> list[Row]:
@@ -162,9 +186,17 @@ def _figures_of_merit(item: SessionResult) -> Table:
     ]
     if item.reading_sigma is not None and item.method in ("tracking", "automatic"):
         rows.append(("sigma of one reading", seconds(item.reading_sigma), "arcsec"))
-    rows += [(name.replace("_", " "), four_digits(v), unit) for name, v, unit in item.quantities]
+    rows += [
+        (name.replace("_", " "), _quantity(value, unit), unit)
+        for name, value, unit in item.quantities
+    ]
     known = tuple(row for row in rows if row[1] != NOTHING)
     return Table(("quantity", "value", "unit"), known, "lrl")
+
+
+def _quantity(value: float, unit: str) -> str:
+    """A further quantity: degrees to a hundredth of an arc-second, the rest to six digits."""
+    return plain(value, 6) if unit == "deg" else f"{value:.6g}"
 
 
 def _points(item: SessionResult, unit: AngleUnit) -> list[Block]:
@@ -210,8 +242,8 @@ def _plots(item: SessionResult) -> list[Figure]:
     residuals = [(float(p.index + 1), p.residual) for p in item.points if p.residual is not None]
     scale = item.method in ("amplitude", "transit")
     figures = []
-    if item.method == "tracking" and len(item.points) > 2:
-        figures.append(_swing(item))
+    if len(item.points) > 2 and item.method != "automatic":
+        figures.append(_scale_swing(item) if scale else _swing(item))
     if len(residuals) > 1:
         factor, unit = (1.0, "div") if scale else (RHO_ARCSEC, "arcsec")
         points = [(x, y * factor) for x, y in residuals]
@@ -238,6 +270,22 @@ def _swing(item: SessionResult) -> Figure:
         parts.append(frame.curve(half_wave(fitted), "data"))
     parts += frame.marks(observed, "circle")
     return frame.figure("Swing: circles observed, line fitted", parts)
+
+
+def _scale_swing(item: SessionResult) -> Figure:
+    """Turning points on the scale, the fitted swing between them."""
+    observed = [(float(p.index + 1), p.observed) for p in item.points]
+    fitted = [(float(p.index + 1), p.fitted) for p in item.points if p.fitted is not None]
+    frame = Frame(axis([x for x, _ in observed], count=10), axis([y for _, y in observed]))
+    parts = frame.axes("turning point", "divisions")
+    middle = {name: value for name, value, _ in item.quantities}.get("middle of the swing")
+    if middle is not None:
+        parts.append(frame.level(middle, "mean"))
+    if len(fitted) > 1:
+        parts.append(frame.curve(half_wave(fitted), "data"))
+    parts += frame.marks(observed, "circle")
+    title = "Swing on the scale: circles observed, line fitted; dashed: its middle"
+    return frame.figure(title, parts)
 
 
 def _residuals(item: SessionResult, points: list[tuple[float, float]], unit: str) -> Figure:
