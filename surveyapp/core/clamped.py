@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -148,7 +148,18 @@ def observe(session: OrientationSession, card: InstrumentCard) -> Observed:
             expected="turning points on both sides",
             hint="The amplitude is half the distance of the two sides.",
         )
+    swing = replace(swing, sides=swing.sides * _polarity(swing))
     return Observed(swing, tuple(row for _, row in readings), passage_rows, estimate_period(swing))
+
+
+def _polarity(swing: ClampedSwing) -> float:
+    """-1 where the sides are written as east and west and the scale reads the other way, else +1.
+
+    The fits take +1 for the larger reading; which way the scale reads stands in the sign of the
+    scale value alone.
+    """
+    right, left = swing.readings[swing.sides > 0], swing.readings[swing.sides < 0]
+    return -1.0 if float(right.mean()) < float(left.mean()) else 1.0
 
 
 def _check_scale(session: OrientationSession, rows: list[Reading]) -> None:

@@ -113,7 +113,11 @@ class _Book:
         return 1 if place > self.extent[1] else 0
 
     def assign(self, strikes: Sequence[Struck]) -> None:
-        """Find successors in the order of the candidates; of two struck rows the earlier first."""
+        """Find successors in the order of the candidates; of two struck rows the earlier first.
+
+        A ``missed`` written below a strike says that the count went on: what is read after it is a
+        later turning point, and the struck one has no successor.
+        """
         begins = {s.strike: s for s in strikes}
         waiting: dict[ReadingKind, list[Struck]] = {}
         for index, row in enumerate(self.rows):
@@ -121,6 +125,9 @@ class _Book:
                 strike = begins[index]
                 kind = self.rows[strike.row].kind
                 insort(waiting.setdefault(kind, []), strike, key=lambda s: self.place(s.row))
+            elif row.kind is ReadingKind.MISSED and index not in self.by_row:
+                for swing in _SWING_TURNS:
+                    waiting.pop(swing, None)
             elif row.kind in waiting and index not in self.places:
                 self._offer(index, waiting[row.kind])
 
