@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from surveyapp.core.gyrofit import unwrap
-from surveyapp.core.reduction import Reduction, need_points, reading_sigma
+from surveyapp.core.reduction import Reduction, need_points, reading_sigma, unit_scatter
 from surveyapp.core.resolution import reading_resolution
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import InstrumentCard
@@ -36,6 +36,14 @@ def stated_sigma(session: OrientationSession) -> float | None:
     return None
 
 
+def azimuth_targets(session: OrientationSession) -> tuple[str, ...]:
+    """Targets whose azimuth the gyro delivered, the session's own first."""
+    rows = session.book.of_kind(ReadingKind.AZIMUTH)
+    names = dict.fromkeys(row.target or session.target or "" for row in rows)
+    own = session.target
+    return tuple(sorted(filter(None, names), key=lambda name: name != own))
+
+
 def reduce_automatic(
     session: OrientationSession, card: InstrumentCard, *, target: str | None = None
 ) -> Reduction:
@@ -46,7 +54,7 @@ def reduce_automatic(
     session : OrientationSession
     card : InstrumentCard
     target : str or None
-        Whose delivered azimuths are meant, None for the session's own target.
+        Whose delivered azimuths are meant, None for the session's own target, else the first.
 
     Raises
     ------
@@ -67,7 +75,7 @@ def reduce_automatic(
                 hint="Make two sessions of it.",
             )
         )
-    wanted = target or session.target or ""
+    wanted = target or next(iter(azimuth_targets(session)), session.target or "")
     rows = tuple(
         row
         for row in session.book.of_kind(kinds[0])
@@ -119,4 +127,5 @@ def reduce_automatic(
             for i, (row, residual) in enumerate(zip(rows, residuals.tolist(), strict=True))
         ),
         warnings=tuple(warnings),
+        unit=unit_scatter("rounds", sigma) if stated is None else None,
     )

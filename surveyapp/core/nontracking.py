@@ -17,9 +17,16 @@ from surveyapp.core.cardphysics import card_at
 from surveyapp.core.clamped import Observed, clamp_reading, observe, session_problem
 from surveyapp.core.goodness import FitTest, goodness_of_fit
 from surveyapp.core.gyrofit import design, fit_swing, schuler_means
-from surveyapp.core.reduction import Reduction, need_points, reading_sigma, tape_zero_parts
+from surveyapp.core.reduction import (
+    Reduction,
+    UnitScatter,
+    need_points,
+    reading_sigma,
+    tape_zero_parts,
+    unit_scatter,
+)
 from surveyapp.core.resolution import reading_resolution, rounding_sigma
-from surveyapp.core.sights import moments
+from surveyapp.core.sights import TripodTwist, moments
 from surveyapp.core.swingfit import ClampedFit, fit_clamped
 from surveyapp.core.tapezero import TapeZero, TapeZeroCoefficient, reduce_tape_zero, with_levels
 from surveyapp.core.uncertain import Source, Uncertain
@@ -49,6 +56,7 @@ class Middle:
     estimator : str
     source : str
         Name of the error source.
+    unit : UnitScatter or None
     """
 
     value_div: float
@@ -57,6 +65,7 @@ class Middle:
     origin: str | None
     estimator: str
     source: str
+    unit: UnitScatter | None = None
 
 
 def _transit_middle(
@@ -113,7 +122,9 @@ def _scale_middle(
     else:
         value, norm = fit.north, math.sqrt(fit.cofactor[0, 0])
         estimator = "least-squares"
-    return Middle(value, norm * sigma.value, sigma.dof, sigma.origin, estimator, "scale readings")
+    source = "scale readings"
+    unit = unit_scatter(source, sigma)
+    return Middle(value, norm * sigma.value, sigma.dof, sigma.origin, estimator, source, unit)
 
 
 def _full_middle(observed: Observed, period: float) -> tuple[Middle, ClampedFit] | None:
@@ -126,13 +137,15 @@ def _full_middle(observed: Observed, period: float) -> tuple[Middle, ClampedFit]
     if fit.unit_variance is not None and fit.dof >= 2:
         floor_div = rounding_sigma(reading_resolution(observed.readings)) / observed.swing.sigma_div
         unit, origin, dof = max(fit.unit_variance, floor_div**2), "residuals", float(fit.dof)
+    source = "scale readings and passages"
     middle = Middle(
         fit.middle_div,
         math.sqrt(unit * fit.cofactor_middle),
         dof,
         origin,
         "least-squares",
-        "scale readings and passages",
+        source,
+        UnitScatter(source, math.sqrt(unit), dof) if origin == "residuals" else None,
     )
     return middle, fit
 
@@ -144,6 +157,7 @@ def reduce_nontracking(
     *,
     latitude: float | None,
     estimator: str | None,
+    twist: TripodTwist | None = None,
 ) -> Reduction:
     """Reduce one session with a clamped alidade.
 
@@ -153,6 +167,8 @@ def reduce_nontracking(
         ``amplitude`` (Schuler means of the scale), ``transit`` (arcsine of the time difference),
         ``least-squares`` (all readings and times together); None: least squares where there is
         redundancy for it, else the method's own closed form.
+    twist : TripodTwist or None
+        Turning of the tripod that the sights tell: the clamped alidade turns with it.
 
     Raises
     ------
@@ -166,7 +182,7 @@ def reduce_nontracking(
     zero = reduce_tape_zero(session.book, [*observed.readings, *observed.passages])
     if zero is not None:
         zero = with_levels(zero, session.book, card)
-        observed = _without_tape_drift(observed, zero, ratio)
+    observed = _at_middle(observed, zero, twist, ratio=ratio, scale=scale)
     middle, fit, extras = _middle(session, observed, card, estimator, latitude)
     coefficient = TapeZeroCoefficient(-ratio * scale, 0.0, "lambda", latitude is not None)
     d = 0.0 if zero is None else zero.value_div
@@ -227,18 +243,33 @@ def reduce_nontracking(
             *extras,
         ),
         warnings=tuple(warnings),
+        unit=middle.unit,
     )
 
 
-def _without_tape_drift(observed: Observed, zero: TapeZero, ratio: float) -> Observed:
-    """Refer readings and passages to the tape zero at the middle of the run.
+def _at_middle(
+    observed: Observed,
+    zero: TapeZero | None,
+    twist: TripodTwist | None,
+    *,
+    ratio: float,
+    scale: float,
+) -> Observed:
+    """Refer readings and passages to the tape zero and the tripod at the middle of the run.
 
-    The middle of a clamped swing follows the tape zero by lambda / (1 + lambda).
+    The middle of a clamped swing follows the tape zero by lambda / (1 + lambda); of a tripod that
+    turns the alidade away it shows 1 / (1 + lambda).
     """
     times = moments([*observed.readings, *observed.passages])
-    if times is None or zero.drift_div_per_s == 0.0:
+    if times is None:
         return observed
-    shift = ratio / (1.0 + ratio) * zero.drift_at(times)
+    shift = np.zeros(times.size)
+    if zero is not None:
+        shift += ratio / (1.0 + ratio) * zero.drift_at(times)
+    if twist is not None:
+        shift += twist.at(times) / ((1.0 + ratio) * scale)
+    if not np.any(shift):
+        return observed
     count = len(observed.readings)
     swing = replace(
         observed.swing,

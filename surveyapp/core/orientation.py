@@ -32,6 +32,7 @@ from surveyapp.core.lines import (
     line_geometry,
 )
 from surveyapp.core.plausibility import place_warnings, refuse_one_place
+from surveyapp.core.pooled_weights import with_pooled_weights
 from surveyapp.core.scatter import RunScatter, run_scatter
 from surveyapp.core.sequence import phase_of, session_moments
 from surveyapp.core.session import (
@@ -44,7 +45,7 @@ from surveyapp.core.session import (
     reduce_targets,
     sight_resolution,
 )
-from surveyapp.core.sights import SightSet, zenith_angle
+from surveyapp.core.sights import SightSet, tripod_twist, zenith_angle
 from surveyapp.core.survey_lines import oriented_lines
 from surveyapp.core.tracking import RunModel
 from surveyapp.core.uncertain import Uncertain
@@ -109,7 +110,7 @@ def orient_project(
     warnings = list(project.warnings)
     setting = _Setting(project, positions, stations, rng, estimator, run_model)
     reduced, sigmas = _reduce_all(setting)
-    measured = reduced
+    measured = reduced = with_pooled_weights(reduced)
     for instrument in project.instruments:
         reduced, found = apply_adopted(instrument, reduced, positions)
         warnings += found
@@ -214,6 +215,7 @@ def _reduce_one(
         latitude=latitude,
         estimator=setting.estimator,
         run_model=setting.run_model,
+        twist=tripod_twist(list(sights.values())),
     )
     targets = reduce_targets(
         session, reduction, sights, sigma=sigma, stations=setting.stations, card=card

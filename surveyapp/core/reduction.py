@@ -22,6 +22,24 @@ MIN_POINTS_FOR_RESIDUALS = 5
 
 
 @dataclass(frozen=True, slots=True)
+class UnitScatter:
+    """What the residuals of one run tell of one of its readings.
+
+    Parameters
+    ----------
+    source : str
+        Name of the error source that it enters.
+    sigma : float
+        Of unit weight, in the unit of that source.
+    dof : float
+    """
+
+    source: str
+    sigma: float
+    dof: float
+
+
+@dataclass(frozen=True, slots=True)
 class Reduction:
     """Gyro north (or the delivered gyro azimuth) of one session.
 
@@ -53,6 +71,8 @@ class Reduction:
     quantities : tuple of (name, value, unit)
         Further results worth showing.
     warnings : tuple of ResultWarning
+    unit : UnitScatter or None
+        None where the sigma is not from residuals.
     """
 
     estimator: str
@@ -74,6 +94,7 @@ class Reduction:
     schuler_means: tuple[float, ...] = ()
     quantities: tuple[tuple[str, float, str], ...] = ()
     warnings: tuple[ResultWarning, ...] = field(default=())
+    unit: UnitScatter | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,6 +140,11 @@ def reading_sigma(
     if card_sigma is not None:
         return ReadingSigma(card_sigma, math.inf, "card")
     return ReadingSigma(math.inf, math.inf, None)
+
+
+def unit_scatter(source: str, sigma: ReadingSigma) -> UnitScatter | None:
+    """Scatter of one reading where the residuals tell it."""
+    return UnitScatter(source, sigma.value, sigma.dof) if sigma.origin == "residuals" else None
 
 
 def need_points(session: OrientationSession, *, found: int, needed: int, kind: str) -> None:

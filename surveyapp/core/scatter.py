@@ -31,8 +31,9 @@ SCATTER_GATE = 0.05
 
 
 def own_variance(item: Uncertain) -> float:
-    """Variance [rad^2] of what belongs to one determination alone."""
-    return item.without(*SHARED).variance
+    """Variance [rad^2] of what belongs to one determination alone, as weights are made of it."""
+    own = item.without(*SHARED)
+    return math.fsum((part * source.weight_ratio) ** 2 for source, part in own.parts.items())
 
 
 def weights_of(items: Sequence[Uncertain]) -> list[float]:

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from surveyapp.core.automatic import reduce_automatic
+from surveyapp.core.automatic import azimuth_targets, reduce_automatic
 from surveyapp.core.nontracking import reduce_nontracking
 from surveyapp.core.plausibility import refuse_wrong_faces
 from surveyapp.core.reduction import Reduction
 from surveyapp.core.resolution import reading_resolution, rounding_sigma
-from surveyapp.core.sights import SightSet, eccentric_correction, reduce_sights
+from surveyapp.core.sights import (
+    SightSet,
+    TripodTwist,
+    eccentric_correction,
+    reduce_sights,
+)
 from surveyapp.core.tracking import RunModel, reduce_tracking
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import InstrumentCard
@@ -29,6 +34,8 @@ ESTIMATORS: Mapping[str, tuple[str, ...]] = {
     "automatic": ("mean",),
 }
 """Estimators by method; the first is the default (tracking: from six turning points on)."""
+LEAST_COLLIMATIONS = 4
+"""Set-ups from which the scatter of the collimation has three degrees of freedom."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,15 +113,24 @@ def reduce_swing(
     latitude: float | None,
     estimator: str | None,
     run_model: RunModel | None = None,
+    twist: TripodTwist | None = None,
 ) -> Reduction:
-    """Reduce the observation itself by the session's method."""
+    """Reduce the observation itself by the session's method, a turning tripod taken out of it."""
     chosen = estimator_for(session, estimator)
     if session.method == "automatic":
         return reduce_automatic(session, card)
     if session.method != "tracking":
-        return reduce_nontracking(session, card, rng, latitude=latitude, estimator=chosen)
+        return reduce_nontracking(
+            session, card, rng, latitude=latitude, estimator=chosen, twist=twist
+        )
     return reduce_tracking(
-        session, card, rng, latitude=latitude, estimator=chosen, run_model=run_model
+        session,
+        card,
+        rng,
+        latitude=latitude,
+        estimator=chosen,
+        run_model=run_model,
+        twist=twist,
     )
 
 
@@ -151,16 +167,36 @@ def pooled_sight_sigma(
         Reading resolution [rad]; rounding is the floor.
     fallback : float or None
         The card's sigma of a turning point, which contains a circle reading: an upper bound, used
-        where the sights have no redundancy.
+        where the sights have no redundancy. The scatter of the collimation over several set-ups
+        is an upper bound as well; the smaller of the two is taken.
     """
     dof = sum(item.dof for item in sights)
     floor = rounding_sigma(resolution)
     if dof > 0:
         sigma = math.sqrt(math.fsum(item.sum_of_squares for item in sights) / dof)
         return SightSigma(max(sigma, floor), float(dof), "residuals of the sights")
+    scatter = _collimation_scatter(sights)
+    if scatter is not None and (fallback is None or scatter.value < fallback):
+        return replace(scatter, value=max(scatter.value, floor))
     if fallback is not None:
         return SightSigma(max(fallback, floor), math.inf, "the card's reading sigma")
     return SightSigma(floor, math.inf, "rounding alone")
+
+
+def _collimation_scatter(sights: Sequence[SightSet]) -> SightSigma | None:
+    """Sigma of one pointing from what the collimation changes from set-up to set-up."""
+    found = [
+        (item.collimation, item.collimation_cofactor)
+        for item in sights
+        if item.collimation is not None
+    ]
+    if len(found) < LEAST_COLLIMATIONS:
+        return None
+    weights = [1.0 / cofactor for _, cofactor in found]
+    mean = math.fsum(w * c for w, (c, _) in zip(weights, found, strict=True)) / math.fsum(weights)
+    squares = math.fsum(w * (c - mean) ** 2 for w, (c, _) in zip(weights, found, strict=True))
+    dof = len(found) - 1
+    return SightSigma(math.sqrt(squares / dof), float(dof), "scatter of the collimation")
 
 
 def sight_resolution(session: OrientationSession) -> float:
@@ -217,9 +253,14 @@ def reduce_targets(
     """Gyro azimuth of every target of a session."""
     results = []
     if reduction.azimuth is not None:
-        for target in sight_targets(session):
+        for target in azimuth_targets(session):
             own = reduce_automatic(session, card, target=target).azimuth
-            results.append(TargetReduction(target, None, None, 0.0, own))
+            correction, spread = _delivered_eccentric(session, target, sights, stations)
+            if own is not None:
+                own = own.shifted(correction)
+                if spread > 0.0:
+                    own = own.with_part(Source("eccentricity", session.id), spread)
+            results.append(TargetReduction(target, None, None, correction, own))
         return tuple(results)
     for target, item in sights.items():
         correction, spread = eccentric_of(session, target, item.line_reading, stations)
@@ -233,6 +274,31 @@ def reduce_targets(
         azimuth = None if reduction.north is None else reading - reduction.north
         results.append(TargetReduction(target, item, reading, correction, azimuth))
     return tuple(results)
+
+
+def _delivered_eccentric(
+    session: OrientationSession,
+    target: str,
+    sights: Mapping[str, SightSet],
+    stations: Mapping[str, Station],
+) -> tuple[float, float]:
+    """Eccentric correction of a delivered azimuth: it needs the circle reading of the line."""
+    eccentric = session.eccentric
+    if eccentric is None or eccentric.distance_m == 0.0:
+        return 0.0, 0.0
+    if target in sights:
+        return eccentric_of(session, target, sights[target].line_reading, stations)
+    if eccentric.at == "target" and target != session.target:
+        return 0.0, 0.0
+    raise SurveyError(
+        Problem(
+            what="an eccentric set-up of a delivered azimuth needs the circle reading of its line",
+            where=f"session {session.id}, line {session.station}-{target}",
+            found="azimuth rows without a backsight of the target",
+            expected="a backsight on the circle on which the direction to the mark was read",
+            hint="Enter the sights, or the azimuth of the marks itself.",
+        )
+    )
 
 
 def known_target(session: OrientationSession, stations: Mapping[str, Station]) -> None:

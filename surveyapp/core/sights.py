@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,8 +21,32 @@ from surveyapp_models.angles import wrap_pi, wrap_two_pi
 
 Floats = NDArray[np.float64]
 
+SIGHT_MIDDLE = (
+    ReadingKind.REVERSAL,
+    ReadingKind.SCALE_REVERSAL,
+    ReadingKind.TRANSIT,
+    ReadingKind.NORTH,
+)
+"""The rows whose mean moment is the middle of the observation."""
+
 STEEPEST = math.radians(1.0)
 """A sight nearer to the vertical is no sight: its azimuth would be lost in the tilt."""
+
+
+@dataclass(frozen=True, slots=True)
+class Clock:
+    """When the sights stood relative to the observation.
+
+    Parameters
+    ----------
+    middle_s : float
+        Mean moment of the observation [s].
+    span_s : float
+        From the mean of the sights before to that of the sights after [s].
+    """
+
+    middle_s: float
+    span_s: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +73,10 @@ class SightSet:
     dof : int
         Redundancy of the pointings.
     pointings : int
+    clock : Clock or None
+        None where not every row is timed.
+    collimation_cofactor : float
+        As ``cofactor``, for the collimation.
     """
 
     target: str
@@ -62,12 +90,8 @@ class SightSet:
     sum_of_squares: float
     dof: int
     pointings: int
-
-
-def _seconds(reading: Reading) -> float | None:
-    if reading.elapsed_s is not None:
-        return reading.elapsed_s
-    return None if reading.time is None else reading.time.timestamp()
+    clock: Clock | None = None
+    collimation_cofactor: float = 0.0
 
 
 def moments(rows: Sequence[Reading]) -> Floats | None:
@@ -81,7 +105,23 @@ def moments(rows: Sequence[Reading]) -> Floats | None:
     return None
 
 
-def _epochs(book: FieldBook, rows: Sequence[Reading], swing: Sequence[Reading]) -> Floats:
+def swing_moments(
+    rows: Sequence[Reading], swing: Sequence[Reading]
+) -> tuple[Floats, Floats] | None:
+    """Moments of rows and of the observation [s] on one clock, None where they share none.
+
+    Of a clamped swing the passages may be the only rows that are timed: then they tell.
+    """
+    for own in (swing, [row for row in swing if row.kind is ReadingKind.TRANSIT]):
+        times = moments([*rows, *own])
+        if times is not None and own:
+            return times[: len(rows)], times[len(rows) :]
+    return None
+
+
+def _epochs(
+    book: FieldBook, rows: Sequence[Reading], swing: Sequence[Reading]
+) -> tuple[Floats, Clock | None]:
     """Position of each sight relative to the middle of the observation, in units of the drift.
 
     With times on every row: (t - t_middle) / (t_after - t_before); without: -1/2 before, +1/2
@@ -90,16 +130,18 @@ def _epochs(book: FieldBook, rows: Sequence[Reading], swing: Sequence[Reading]) 
     places = [book.place_of(row) for row in rows]
     nominal = {Place.BEFORE: -0.5, Place.DURING: 0.0, Place.AFTER: 0.5}
     positions = np.array([nominal[place] for place in places])
-    times = moments([*rows, *swing])
-    if times is None or not swing:
-        return positions
-    own, middle = times[: len(rows)], float(np.mean(times[len(rows) :]))
+    times = swing_moments(rows, swing)
+    if times is None:
+        return positions, None
+    own, middle = times[0], float(np.mean(times[1]))
     before = own[positions < 0]
     after = own[positions > 0]
     if before.size == 0 or after.size == 0:
-        return positions
+        return positions, None
     span = float(after.mean() - before.mean())
-    return (own - middle) / span if span > 0.0 else positions
+    if span <= 0.0:
+        return positions, None
+    return (own - middle) / span, Clock(middle, span)
 
 
 def reduce_sights(book: FieldBook, target: str, *, default_target: str | None) -> SightSet | None:
@@ -125,12 +167,12 @@ def reduce_sights(book: FieldBook, target: str, *, default_target: str | None) -
     ]
     if not rows:
         return None
-    swing = book.of_kind(ReadingKind.REVERSAL, ReadingKind.SCALE_REVERSAL, ReadingKind.NORTH)
-    epochs = _epochs(book, rows, swing)
+    swing = book.of_kind(*SIGHT_MIDDLE)
+    epochs, clock = _epochs(book, rows, swing)
     faces = np.array([-1.0 if row.face is Face.RIGHT else 1.0 for row in rows])
     origin = _as_face_left(rows[0])
     values = np.array([wrap_pi(_as_face_left(row) - origin) for row in rows])
-    return _solve(target, origin, values, faces=faces, epochs=epochs)
+    return replace(_solve(target, origin, values, faces=faces, epochs=epochs), clock=clock)
 
 
 def _as_face_left(row: Reading) -> float:
@@ -170,6 +212,7 @@ def _solve(
         sum_of_squares=float(residuals @ residuals),
         dof=int(values.size - basis.shape[1]),
         pointings=int(values.size),
+        collimation_cofactor=float(inverse[1] @ inverse[1]) if both_faces else 0.0,
     )
 
 
@@ -187,6 +230,44 @@ def drift_probability(sights: SightSet, *, sigma: float, dof: float) -> float | 
         return None
     ratio = abs(sights.drift) / (sigma * math.sqrt(sights.drift_cofactor))
     return 2.0 * student_tail(ratio, dof)
+
+
+@dataclass(frozen=True, slots=True)
+class TripodTwist:
+    """A tripod that turned under the instrument while the swing was observed.
+
+    Parameters
+    ----------
+    rate : float
+        Change of the circle reading of a fixed direction [rad/s].
+    middle_s : float
+        Moment to which everything is referred [s].
+    """
+
+    rate: float
+    middle_s: float
+
+    def at(self, times: Floats) -> Floats:
+        """Circle reading of a fixed direction minus that at the middle [rad]."""
+        return self.rate * (times - self.middle_s)
+
+
+def tripod_twist(sets: Sequence[SightSet]) -> TripodTwist | None:
+    """Turning of the tripod from the sights of all targets, None where nothing is timed.
+
+    What the line reading is freed of the swing is freed of as well: the middle of the run does not
+    feel it, but its residuals would (physics.md section 4).
+    """
+    timed = [
+        (item.drift, item.drift_cofactor, item.clock)
+        for item in sets
+        if item.drift is not None and item.clock is not None and item.drift_cofactor > 0.0
+    ]
+    if not timed:
+        return None
+    total = math.fsum(1.0 / cofactor for _, cofactor, _ in timed)
+    rate = math.fsum(drift / clock.span_s / cofactor for drift, cofactor, clock in timed) / total
+    return TripodTwist(rate, timed[0][2].middle_s)
 
 
 def zenith_angle(book: FieldBook, target: str, *, default_target: str | None) -> float | None:

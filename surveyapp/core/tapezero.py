@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from surveyapp.core.cardphysics import card_at
 from surveyapp.core.gyrofit import fit_swing, schuler_means
-from surveyapp.core.sights import moments
+from surveyapp.core.sights import swing_moments
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.readings import FieldBook, Place, Reading, ReadingKind, Side
 
@@ -155,13 +155,12 @@ def _clock(
     before: Sequence[Reading], after: Sequence[Reading], swing: Sequence[Reading]
 ) -> tuple[float, float, float] | None:
     """Mean moments of the zero before, the run and the zero after, None where not all are timed."""
-    times = moments([*before, *after, *swing])
-    if times is None or not swing:
+    times = swing_moments([*before, *after], swing)
+    if times is None:
         return None
-    first = float(times[: len(before)].mean())
-    last = float(times[len(before) : len(before) + len(after)].mean())
-    middle = float(times[len(before) + len(after) :].mean())
-    return (first, middle, last) if last > first else None
+    first = float(times[0][: len(before)].mean())
+    last = float(times[0][len(before) :].mean())
+    return (first, float(times[1].mean()), last) if last > first else None
 
 
 def mean_level(book: FieldBook, kind: ReadingKind, place: Place) -> float | None:

@@ -22,9 +22,10 @@ from surveyapp.core.reduction import (
     need_points,
     reading_sigma,
     tape_zero_parts,
+    unit_scatter,
 )
 from surveyapp.core.resolution import reading_resolution
-from surveyapp.core.sights import moments
+from surveyapp.core.sights import TripodTwist, moments
 from surveyapp.core.tapezero import (
     TapeZero,
     TapeZeroCoefficient,
@@ -131,6 +132,14 @@ def without_tape_drift(
     return replace(points, values=points.values + coefficient.value * zero.drift_at(times))
 
 
+def without_twist(points: TurningPoints, twist: TripodTwist | None) -> TurningPoints:
+    """Refer every turning point to the circle as it stood at the middle of the observation."""
+    times = moments(points.rows)
+    if twist is None or times is None:
+        return points
+    return replace(points, values=points.values - twist.at(times))
+
+
 def period_from_times(rows: Sequence[Reading], index: Floats) -> float | None:
     """Full period [s] from the moments of the turning points, None without them."""
     times = moments(rows)
@@ -148,6 +157,7 @@ def reduce_tracking(
     latitude: float | None,
     estimator: str | None,
     run_model: RunModel | None = None,
+    twist: TripodTwist | None = None,
 ) -> Reduction:
     """Reduce one session of turning points.
 
@@ -161,6 +171,10 @@ def reduce_tracking(
         [rad].
     estimator : str or None
         ``least-squares`` or ``schuler``; None chooses least squares from six points on.
+    run_model : callable or None
+        Estimates a run with adopted effects.
+    twist : TripodTwist or None
+        Turning of the tripod that the sights tell: taken out of the turning points.
 
     Raises
     ------
@@ -172,7 +186,7 @@ def reduce_tracking(
         return _pre_orientation(session, card)
     points = turning_points(session)
     zero, coefficient, correction, warnings = tape_zero_of(session, card, points.rows, latitude)
-    points = without_tape_drift(points, zero, coefficient)
+    points = without_twist(without_tape_drift(points, zero, coefficient), twist)
     chosen = estimator or (
         "least-squares" if points.values.size >= LEAST_SQUARES_FROM else "schuler"
     )
@@ -223,6 +237,7 @@ def reduce_tracking(
         points=_point_results(points, fit),
         schuler_means=tuple(wrap_two_pi(points.origin + mean) for mean in means.tolist()),
         warnings=(*warnings, *_sigma_warnings(session, sigma)),
+        unit=None if session.effects else unit_scatter("turning points", sigma),
     )
 
 

@@ -31,12 +31,15 @@ class Source:
         Degrees of freedom of its estimate; infinite where it was stated beforehand.
     detail : str
         Tells several errors of one kind and entity apart.
+    weight_ratio : float
+        By which the contribution is multiplied where weights are made of it, and nowhere else.
     """
 
     name: str
     entity: str
     dof: float = math.inf
     detail: str = ""
+    weight_ratio: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)
