@@ -8,7 +8,7 @@ from surveyapp.core.automatic import stated_rounds
 from surveyapp.core.instrument_constant import Calibration
 from surveyapp.core.lines import LineGeometry, known_astronomic
 from surveyapp.core.scatter import RunScatter
-from surveyapp.core.sequence import phase_of, session_moments
+from surveyapp.core.sequence import phase_of, session_moments, surveys_before
 from surveyapp.core.session import ReducedSession
 from surveyapp.domain.project import (
     Centring,
@@ -64,6 +64,7 @@ def calibrations_of(
                     target=target.target,
                     value=value.shifted(wrap_pi(value.value) - value.value),
                     phase=phase_of(keys[session.id], surveys),
+                    block=surveys_before(keys[session.id], surveys),
                     moment=keys[session.id][0] if distinct else None,
                     rounds=rounds_of(item),
                     known_azimuth=grid_azimuth,

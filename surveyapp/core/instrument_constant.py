@@ -10,7 +10,7 @@ Source: physics.md 3.1 and 3.2; Regulation for coal-mine surveying (1989), artic
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -39,6 +39,8 @@ class Calibration:
         True minus gyro [rad], wrapped to (-pi, pi].
     phase : str
         before, between or after the survey sessions.
+    block : int
+        Number of survey sessions before it: one block of calibrations has no survey in it.
     moment : float or None
         Abscissa for interpolation: seconds, or the stated order.
     rounds : int
@@ -58,6 +60,7 @@ class Calibration:
     known_azimuth: float
     from_coordinates: float | None
     distance_m: float | None
+    block: int = 0
 
     @property
     def line(self) -> str:
@@ -164,18 +167,16 @@ def compare_groups(groups: Sequence[tuple[str, Uncertain]]) -> Agreement | None:
 def determine(instrument: Instrument, calibrations: Sequence[Calibration]) -> InstrumentConstant:
     """Group the determinations by line and by epoch and test their agreement."""
     by_line: dict[str, list[Uncertain]] = {}
-    by_phase: dict[str, list[Uncertain]] = {}
+    by_block: dict[int, list[Calibration]] = {}
     for item in calibrations:
         by_line.setdefault(item.line, []).append(item.value)
-        by_phase.setdefault(item.phase, []).append(item.value)
+        by_block.setdefault(item.block, []).append(item)
     lines = tuple((name, weighted_mean(items)) for name, items in by_line.items())
     epochs = [
-        (name, weighted_mean(by_phase[name])) for name in ("before", "after") if name in by_phase
+        (_epoch_name(number, by_block), weighted_mean([item.value for item in by_block[number]]))
+        for number in sorted(by_block)
     ]
-    same_lines = all(
-        {item.line for item in calibrations if item.phase == name} == set(by_line)
-        for name, _ in epochs
-    )
+    same_lines = all({item.line for item in items} == set(by_line) for items in by_block.values())
     known = None
     if instrument.known_constant is not None:
         value, sigma = instrument.known_constant
@@ -188,6 +189,13 @@ def determine(instrument: Instrument, calibrations: Sequence[Calibration]) -> In
         phase_agreement=compare_groups(epochs) if same_lines else None,
         known=known,
     )
+
+
+def _epoch_name(number: int, blocks: Mapping[int, Sequence[Calibration]]) -> str:
+    """before, after, or the place of a block between surveys."""
+    phase = blocks[number][0].phase
+    between = [n for n in sorted(blocks) if blocks[n][0].phase == "between"]
+    return f"between {between.index(number) + 1}" if phase == "between" else phase
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,6 +212,7 @@ def choose(
     choice: str,
     *,
     moment: float | None,
+    block: int,
     distance_to: Callable[[str], float | None],
     where: str,
 ) -> Chosen:
@@ -216,6 +225,8 @@ def choose(
         pooled | interpolated | nearest | line:A-B | known.
     moment : float or None
         When the survey session took place.
+    block : int
+        Number of survey sessions before it.
     distance_to : callable
         Distance [m] from the survey station to the station of a name.
     where : str
@@ -237,7 +248,7 @@ def choose(
     if not constant.calibrations:
         return Chosen(None, None)
     if choice == "interpolated":
-        return _interpolated(constant, moment, where)
+        return _interpolated(constant, moment, where, block=block)
     if choice == "nearest":
         return _nearest(constant, distance_to, where)
     return Chosen(constant.pooled, "pooled")
@@ -279,11 +290,18 @@ def _nearest(
     return Chosen(dict(constant.lines)[nearest], f"nearest (line:{nearest})")
 
 
-def _interpolated(constant: InstrumentConstant, moment: float | None, where: str) -> Chosen:
-    """Linear in time between the means before and after (physics.md 3.2)."""
+def _interpolated(
+    constant: InstrumentConstant, moment: float | None, where: str, *, block: int
+) -> Chosen:
+    """Linear in time between the nearest calibrations before and after (physics.md 3.2)."""
+    numbers = {item.block for item in constant.calibrations}
+    nearest = {
+        "before": max((n for n in numbers if n <= block), default=None),
+        "after": min((n for n in numbers if n > block), default=None),
+    }
     groups = {
-        phase: [item for item in constant.calibrations if item.phase == phase]
-        for phase in ("before", "after")
+        phase: [item for item in constant.calibrations if item.block == number]
+        for phase, number in nearest.items()
     }
     if moment is None or not all(groups.values()):
         return _not_interpolated(constant, where)

@@ -34,7 +34,7 @@ from surveyapp.core.lines import (
 from surveyapp.core.plausibility import place_warnings, refuse_one_place
 from surveyapp.core.pooled_weights import with_pooled_weights
 from surveyapp.core.scatter import RunScatter, run_scatter
-from surveyapp.core.sequence import phase_of, session_moments
+from surveyapp.core.sequence import session_moments, surveys_before
 from surveyapp.core.session import (
     ReducedSession,
     SightSigma,
@@ -281,7 +281,7 @@ def _scatter_of(project: Project, reduced: Sequence[ReducedSession], instrument:
             if target.gyro_azimuth is not None:
                 phase: str = item.session.purpose
                 if phase == "calibration":
-                    phase = phase_of(keys[item.session.id], surveys)
+                    phase = f"block {surveys_before(keys[item.session.id], surveys)}"
                 key = (item.session.station, target.target, phase)
                 groups.setdefault(key, []).append(target.gyro_azimuth)
     aligned = []

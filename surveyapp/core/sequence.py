@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from surveyapp.core.instrument_constant import Phase
 from surveyapp.domain.project import OrientationSession, Project
@@ -42,3 +43,25 @@ def phase_of(key: tuple[float, int], surveys: Sequence[tuple[float, int]]) -> Ph
     if not surveys or key < min(surveys):
         return "before"
     return "after" if key > max(surveys) else "between"
+
+
+@dataclass(frozen=True, slots=True)
+class SessionOrder:
+    """When the sessions of one instrument took place, and which of them are surveys."""
+
+    keys: Mapping[str, tuple[float, int]]
+    surveys: frozenset[str]
+
+    def moment(self, session: str) -> float | None:
+        """Abscissa for interpolation, None where nothing tells the moments apart."""
+        distinct = len({key[0] for key in self.keys.values()}) > 1
+        return self.keys[session][0] if distinct else None
+
+    def block(self, session: str) -> int:
+        """Number of survey sessions before a session."""
+        return surveys_before(self.keys[session], [self.keys[name] for name in self.surveys])
+
+
+def surveys_before(key: tuple[float, int], surveys: Sequence[tuple[float, int]]) -> int:
+    """Number of survey sessions before a session; calibrations that share it are one block."""
+    return sum(other < key for other in surveys)

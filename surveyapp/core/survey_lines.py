@@ -9,7 +9,7 @@ from surveyapp.core.instrument_constant import Chosen, InstrumentConstant, choos
 from surveyapp.core.lines import LineGeometry, OrientedLine, Round, orient_line
 from surveyapp.core.plausibility import azimuth_warnings
 from surveyapp.core.scatter import RunScatter
-from surveyapp.core.sequence import session_moments
+from surveyapp.core.sequence import SessionOrder, session_moments
 from surveyapp.core.session import ReducedSession
 from surveyapp.core.uncertain import Uncertain
 from surveyapp.domain.project import Project, ResultWarning, Station, grid_distance_m
@@ -39,6 +39,7 @@ def oriented_lines(
     """
     calibration_ids = frozenset(s.id for s in project.sessions if s.purpose == "calibration")
     by_instrument = {constant.instrument.id: constant for constant in constants}
+    orders = {identity: _order(project, identity) for identity in by_instrument}
     groups: dict[tuple[str, str, str], list[tuple[ReducedSession, Uncertain]]] = {}
     for item in reduced:
         session = item.session
@@ -55,12 +56,11 @@ def oriented_lines(
         try:
             rounds = [
                 _round(
-                    project,
                     item,
                     azimuth,
-                    by_instrument[instrument],
-                    scatters[instrument],
-                    stations,
+                    (by_instrument[instrument], scatters[instrument]),
+                    orders[instrument],
+                    stations=stations,
                 )
                 for item, azimuth in members
             ]
@@ -85,17 +85,23 @@ def oriented_lines(
     return tuple(lines), warnings
 
 
+def _order(project: Project, instrument: str) -> SessionOrder:
+    surveys = [
+        s.id for s in project.sessions if s.instrument == instrument and s.purpose == "survey"
+    ]
+    return SessionOrder(session_moments(project, instrument), frozenset(surveys))
+
+
 def _round(
-    project: Project,
     item: ReducedSession,
     azimuth: Uncertain,
-    constant: InstrumentConstant,
-    scatter: RunScatter,
+    known: tuple[InstrumentConstant, RunScatter],
+    order: SessionOrder,
+    *,
     stations: Mapping[str, Station],
 ) -> Round:
     session = item.session
-    keys = session_moments(project, session.instrument)
-    distinct = len({key[0] for key in keys.values()}) > 1
+    constant, scatter = known
 
     def distance_to(name: str) -> float | None:
         return grid_distance_m(stations[session.station], stations[name])
@@ -103,7 +109,8 @@ def _round(
     chosen: Chosen = choose(
         constant,
         session.constant_choice or constant.instrument.constant_choice,
-        moment=keys[session.id][0] if distinct else None,
+        moment=order.moment(session.id),
+        block=order.block(session.id),
         distance_to=distance_to,
         where=f"session {session.id}",
     )
