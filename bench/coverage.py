@@ -18,16 +18,23 @@ from numpy.typing import NDArray
 
 from surveyapp import api
 from surveyapp.core.simulate.project import (
+    ProjectSession,
+    SimulatedProject,
+    card_text,
     project_files,
     project_truth,
-    simulate_reversal_project,
 )
+from surveyapp.core.simulate.session import simulate_sessions
 from surveyapp.core.simulate.specification import SessionSpec, SwingMethod
 from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, wrap_pi
 
 LATITUDES_DEG = (-33.0, -10.0, 23.0, 47.0, 62.0)
 METHODS: tuple[SwingMethod, ...] = ("tracking", "amplitude", "transit", "full_fit")
 POINTS = {"tracking": 8, "amplitude": 8, "transit": 5, "full_fit": 5}
+LINES_DIV = {"full_fit": (-3.0, 0.0, 3.0)}
+"""The full fit times three lines of the scale, the transit method its middle alone."""
+ENSEMBLE = 8
+"""Runs that share damping, clamp and tape zero; everything random is drawn anew for each."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +70,7 @@ def specification(
         circle_of_north=float(rng.uniform(0.0, 2.0 * math.pi)),
         line_azimuth=float(rng.uniform(0.0, 2.0 * math.pi)),
         tape_zero_div=(first_zero, first_zero + float(rng.uniform(-0.15, 0.15))),
+        lines_div=LINES_DIV.get(method, (0.0,)),
     )
 
 
@@ -70,24 +78,31 @@ def runs(method: SwingMethod, count: int, seed: int) -> Iterator[tuple[dict[str,
     """Yield (error, sigma, interval) of gyro north and of the gyro azimuth for each run."""
     rng = np.random.default_rng(seed)
     with tempfile.TemporaryDirectory() as folder:
-        for number in range(count):
+        for number in range(math.ceil(count / ENSEMBLE)):
             spec = specification(method, LATITUDES_DEG[number % len(LATITUDES_DEG)], rng)
-            project = simulate_reversal_project(spec, rng, calibrations=0, surveys=1)
-            for name, text in project_files(project).items():
-                path = Path(folder) / name
-                path.parent.mkdir(exist_ok=True)
-                path.write_text(text, encoding="utf-8")
-            result = api.orient(folder).to_dict()["sessions"][0]
-            truth = project_truth(project)["sessions"]["run-1"]  # type: ignore[index]
-            yield tuple(
-                {
-                    "error": wrap_pi(math.radians(result[name]["deg"] - truth[f"{name}_deg"]))
-                    * RHO_ARCSEC,
-                    "sigma": result[name]["sigma_arcsec"],
-                    "interval": result[name]["interval95_arcsec"],
-                }
-                for name in ("gyro_north", "gyro_azimuth")
-            )
+            size = min(ENSEMBLE, count - number * ENSEMBLE)
+            for simulated in simulate_sessions(spec, size, rng):
+                session = ProjectSession("run-1", "survey", "U1", "U2", simulated)
+                project = SimulatedProject("Coverage", (session,), card_text(spec, rng))
+                yield one_run(Path(folder), project)
+
+
+def one_run(folder: Path, project: SimulatedProject) -> tuple[dict[str, float], ...]:
+    """Write, orient, compare: error, sigma and interval of gyro north and of the gyro azimuth."""
+    for name, text in project_files(project).items():
+        path = folder / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+    result = api.orient(folder).to_dict()["sessions"][0]
+    truth = project_truth(project)["sessions"]["run-1"]  # type: ignore[index]
+    return tuple(
+        {
+            "error": wrap_pi(math.radians(result[name]["deg"] - truth[f"{name}_deg"])) * RHO_ARCSEC,
+            "sigma": result[name]["sigma_arcsec"],
+            "interval": result[name]["interval95_arcsec"],
+        }
+        for name in ("gyro_north", "gyro_azimuth")
+    )
 
 
 def campaign(method: SwingMethod, count: int, seed: int) -> tuple[Coverage, Coverage]:

@@ -109,7 +109,7 @@ def simulate_reversal_project(
         sessions.append(
             ProjectSession(f"run-{index + 1}", "survey", "U1", "U2", simulate_session(spec, rng))
         )
-    return SimulatedProject(name, tuple(sessions), _card(known, rng))
+    return SimulatedProject(name, tuple(sessions), card_text(known, rng))
 
 
 def _moved(spec: SessionSpec, index: int, rng: np.random.Generator) -> SessionSpec:
@@ -147,7 +147,8 @@ def project_truth(project: SimulatedProject) -> dict[str, object]:
     }
 
 
-def _card(spec: SessionSpec, rng: np.random.Generator) -> str:
+def card_text(spec: SessionSpec, rng: np.random.Generator) -> str:
+    """Card of the simulated instrument, its periods measured with their stated sigma."""
     periods = [
         period + float(rng.normal(scale=PERIOD_SIGMA_S))
         for period in (
