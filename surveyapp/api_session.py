@@ -276,14 +276,19 @@ def orient_observed(project: Project) -> tuple[OrientationResult, tuple[str, ...
     SurveyError
         If what has enough readings cannot be oriented.
     """
-    enough = {
-        item.id
-        for item in project.sessions
-        if _swing_count(item) >= (1 if item.method == "automatic" else NEEDED_POINTS)
-    }
-    left_out = tuple(item.id for item in project.sessions if item.id not in enough)
+    try:
+        return api.orient(project), ()
+    except SurveyError:
+        enough = {
+            item.id
+            for item in project.sessions
+            if _swing_count(item) >= (1 if item.method == "automatic" else NEEDED_POINTS)
+        }
+        if len(enough) == len(project.sessions):
+            raise
     kept = tuple(item for item in project.sessions if item.id in enough)
-    return api.orient(replace(project, sessions=kept) if left_out else project), left_out
+    left_out = tuple(item.id for item in project.sessions if item.id not in enough)
+    return api.orient(replace(project, sessions=kept)), left_out
 
 
 def _swing_count(session: OrientationSession) -> int:

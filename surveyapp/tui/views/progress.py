@@ -5,7 +5,6 @@ from __future__ import annotations
 from surveyapp.core.forecast import PointForecast
 from surveyapp.core.progress import Progress
 from surveyapp.core.run_alert import Alert
-from surveyapp.core.tracking import MIN_POINTS
 from surveyapp.tui import texts
 from surveyapp.tui.views.form import arcsec_text
 from surveyapp_models.angles import AngleUnit, format_angle
@@ -40,7 +39,7 @@ def forecast_text(progress: Progress, unit: AngleUnit) -> str:
 def north_text(progress: Progress, unit: AngleUnit) -> str:
     """Gyro north with its interval."""
     if progress.north is None:
-        return texts.NORTH_NONE.format(needed=MIN_POINTS)
+        return texts.NORTH_NONE
     north = format_angle(progress.north, unit)
     if progress.interval95 is None:
         return texts.NORTH_OPEN.format(north=north)
