@@ -95,7 +95,7 @@ class Observation:
         self.folder = Path(folder)
         self.session_id = session
         self._lock = ProjectLock(self.folder)
-        self._closed = is_closed(self.folder, session)
+        self.closed = is_closed(self.folder, session)
         try:
             self.project = api.open_project(self.folder)
             self.clock = SessionClock(self.session.book.rows, now=now, steady=steady)
@@ -106,7 +106,7 @@ class Observation:
     @property
     def writable(self) -> bool:
         """Whether rows may be written: not by a second opener, and not after closing."""
-        return self._lock.writable and not self._closed
+        return self._lock.writable and not self.closed
 
     @property
     def session(self) -> OrientationSession:
@@ -163,7 +163,7 @@ class Observation:
             disk refuses; the book is as it was in each case.
         """
         if not self.writable:
-            raise SurveyError(_read_only(self.folder))
+            raise SurveyError(_read_only(self.folder, closed=self.closed))
         moment = stamp or self.clock.stamp()
         latest = max((r.elapsed_s for r in self.book.rows if r.elapsed_s is not None), default=0.0)
         elapsed = max(moment.elapsed_s, latest)
@@ -297,6 +297,23 @@ def _swing_count(session: OrientationSession) -> int:
     return sum(row.kind not in quiet for row in rows)
 
 
+def write_record(folder: api.Folder) -> str:
+    """Write the record of a project as PDF to its results folder, and return the path.
+
+    Raises
+    ------
+    SurveyError
+        If the project cannot be used or the folder cannot be written to.
+    """
+    path = Path(folder) / "results"
+    try:
+        path.mkdir(exist_ok=True)
+    except OSError as error:
+        what = f"the record cannot be written ({error.strerror or error})"
+        raise SurveyError(Problem(what, str(path))) from None
+    return str(api.report(folder, path / "record.pdf").path)
+
+
 def unfinished_session(project: Project) -> str | None:
     """The session to go on with: the one with the latest row that was begun here and not ended."""
     best: tuple[float, str] | None = None
@@ -311,7 +328,15 @@ def unfinished_session(project: Project) -> str | None:
     return None if best is None else best[1]
 
 
-def _read_only(folder: Path) -> Problem:
+def _read_only(folder: Path, *, closed: bool) -> Problem:
+    if closed:
+        return Problem(
+            "this session is closed and signed",
+            folder.name,
+            "a closing in the ledger",
+            "an open session",
+            "surveyapp reopen opens it again and keeps the reason.",
+        )
     return Problem(
         "this project cannot be written to now",
         folder.name,

@@ -48,6 +48,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("models", "models", "instrument cards and what is known of them"),
     Command("plan", "plan", "method, points and minutes for a wanted interval at this latitude"),
     Command("simulate", "simulate", "a simulated project with any effect, its truth apart"),
+    Command("practise", "practise", "observe a simulated instrument, then see the truth"),
     Command("demo", "demo", "orient the measured samples: printed against computed"),
 )
 

@@ -12,12 +12,14 @@ from textual.app import App, SystemCommand
 from textual.binding import Binding, BindingType
 from textual.screen import Screen
 
-from surveyapp import api_home
+from surveyapp import api_home, api_practice
+from surveyapp.api_practice import Practice
 from surveyapp.api_session import Observation
 from surveyapp.errors import SurveyError
 from surveyapp.io.clock import local_now, steady_seconds
 from surveyapp.io.settings import read_settings
 from surveyapp.tui import texts
+from surveyapp.tui.messages import ResultWanted, SessionLeft
 from surveyapp.tui.screens.home import HomeScreen
 from surveyapp.tui.screens.project import ProjectScreen
 from surveyapp.tui.screens.result import ResultScreen
@@ -34,6 +36,8 @@ class SurveyApp(App[int]):
         Project folder to open; None begins with the home screen.
     now, steady : callable
         Wall clock, and seconds that never go back; for tests and pictures.
+    practice : Practice or None
+        A practice session to begin with.
     """
 
     CSS_PATH = "app.tcss"
@@ -51,10 +55,13 @@ class SurveyApp(App[int]):
         *,
         now: Callable[[], datetime] = local_now,
         steady: Callable[[], float] = steady_seconds,
+        practice: Practice | None = None,
     ) -> None:
         super().__init__()
         self.folder = folder
+        self.clocks = now, steady
         self.now, self.steady = now, steady
+        self.practice = practice
         self.drafts: dict[str, str] = {}
         self.settings = read_settings()
 
@@ -66,6 +73,8 @@ class SurveyApp(App[int]):
         self.theme = self.settings.theme if self.settings.theme in known else known[0]
         if self.folder is None:
             self.push_screen(HomeScreen())
+            if self.practice is not None:
+                self.observe_practice(self.practice)
         else:
             self.open_folder(self.folder)
 
@@ -86,6 +95,8 @@ class SurveyApp(App[int]):
     def open_folder(self, folder: str) -> None:
         """Open a project and remember it."""
         self.folder = str(Path(folder).expanduser())
+        self.practice = None
+        self.now, self.steady = self.clocks
         self.settings = api_home.remember(self.folder)
         self.push_screen(ProjectScreen(self.folder, Path(self.folder).resolve().name))
 
@@ -102,13 +113,14 @@ class SurveyApp(App[int]):
         except SurveyError as error:
             self.notify(str(error), severity="error", markup=False)
             return
-        self.push_screen(SessionScreen(observation, self.drafts.pop(session, "")))
+        draft = self.drafts.pop(session, "")
+        self.push_screen(SessionScreen(observation, draft, self.practice))
 
     def on_project_screen_session_chosen(self, message: ProjectScreen.SessionChosen) -> None:
         """Observe a session of the project."""
         self.open_session(message.session)
 
-    async def on_session_screen_left(self, message: SessionScreen.Left) -> None:
+    async def on_session_left(self, message: SessionLeft) -> None:
         """Back to the project; what was half typed waits for the next opening."""
         if message.draft:
             self.drafts[message.session] = message.draft
@@ -116,10 +128,30 @@ class SurveyApp(App[int]):
         if isinstance(self.screen, ProjectScreen):
             self.screen.action_reload()
 
-    def on_session_screen_result_wanted(self, message: SessionScreen.ResultWanted) -> None:
-        """Show what the session says."""
-        if self.folder is not None:
-            self.push_screen(ResultScreen(self.folder, message.session))
+    async def on_result_wanted(self, message: ResultWanted) -> None:
+        """Show what the session says; the right to write is given back first."""
+        if self.folder is not None and isinstance(self.screen, SessionScreen):
+            self.screen.observation.close()
+            await self.switch_screen(ResultScreen(self.folder, message.session, self.practice))
+
+    def observe_practice(self, practice: Practice) -> None:
+        """Open the session screen on a simulated instrument."""
+        self.practice = practice
+        self.folder = practice.folder
+        self.now, self.steady = practice.now, practice.steady
+        self.open_session(api_practice.SESSION)
+
+    def on_home_screen_practice_chosen(self, message: HomeScreen.PracticeChosen) -> None:
+        """Practise at the usual speed."""
+        folder = api_practice.practice_folder()
+        try:
+            practice = api_practice.begin(
+                folder, speed=api_practice.USUAL_SPEED, disturbed=message.disturbed
+            )
+        except SurveyError as error:
+            self.notify(str(error), severity="error", markup=False)
+            return
+        self.observe_practice(practice)
 
     def on_run_pane_near(self) -> None:
         """The next turning point is near: make it heard."""
@@ -148,4 +180,10 @@ def run_app(folder: str | None) -> int:
         Exit code of the program.
     """
     result = SurveyApp(folder).run()
+    return 0 if result is None else result
+
+
+def run_practice(practice: Practice) -> int:
+    """Run the screens on a practice session until they are left; the exit code."""
+    result = SurveyApp(None, practice=practice).run()
     return 0 if result is None else result

@@ -343,3 +343,28 @@ NOTHING_TO_ADOPT: Final = "No effect is named here: there is nothing to adopt."
 ADOPT_ASK: Final = "Adopt {names}? It is written into project.toml, and the next result uses it."
 CONFIRM_KEYS: Final = "Enter: yes   Escape: no"
 ADOPTED: Final = "written: {place}"
+
+# practice
+PRACTICE_INSTRUMENT: Final = "instrument, {speed:g} x"
+PRACTICE_CIRCLE: Final = "circle {reading}"
+PRACTICE_SCALE: Final = "scale {div} div"
+PRACTICE_NOTHING: Final = "nothing to read"
+PRACTICE_TRUTH: Final = (
+    'Truth: gyro north {north}; yours is {error}" off, your 95 % ±{interval}" {verdict}.'
+)
+PRACTICE_HOLDS: Final = "holds it"
+PRACTICE_MISSES: Final = "does NOT hold it"
+PRACTICE_CLEAN: Final = "Nothing was hidden in this run."
+PRACTICE_HIDDEN: Final = "Hidden in this run: {effect}."
+HOME_PRACTISE_HIDDEN: Final = "Practise with something hidden ..."
+
+# closing
+SIGN_TITLE: Final = "Close and sign this session"
+SIGN_MEANING: Final = (
+    "Its book and its table are sealed in the ledger. Nothing is hidden or locked away:\n"
+    "`surveyapp reopen` opens it again and keeps the reason."
+)
+SIGN_NAME: Final = "your name; Enter signs, Escape does not"
+SIGNED: Final = "closed and signed by {name}, {files} files sealed"
+CLOSED_SESSION: Final = "READING ONLY: closed and signed"
+KEY_SIGN: Final = "Close and sign"

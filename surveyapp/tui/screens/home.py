@@ -38,6 +38,13 @@ class HomeScreen(Screen[None]):
             super().__init__()
             self.folder = folder
 
+    class PracticeChosen(Message):
+        """A practice session is to begin."""
+
+        def __init__(self, *, disturbed: bool) -> None:
+            super().__init__()
+            self.disturbed = disturbed
+
     def __init__(self) -> None:
         super().__init__()
         self.recent = api_home.recent_projects()
@@ -74,6 +81,8 @@ class HomeScreen(Screen[None]):
         options += [_heading(""), _heading(texts.HOME_MORE)]
         options.append(Option(f"  {texts.HOME_NEW}", id="new:"))
         options.append(Option(f"  {texts.HOME_OPEN}", id="folder:"))
+        options.append(Option(f"  {texts.HOME_PRACTISE}", id="practise:"))
+        options.append(Option(f"  {texts.HOME_PRACTISE_HIDDEN}", id="practise:hidden"))
         places.add_options(options)
         places.focus()
         places.action_first()
@@ -85,6 +94,8 @@ class HomeScreen(Screen[None]):
             self.action_new()
         elif kind == "folder":
             self.action_folder()
+        elif kind == "practise":
+            self.post_message(self.PracticeChosen(disturbed=value == "hidden"))
         elif kind == "sample":
             try:
                 self.post_message(self.FolderChosen(api_home.sample_copy(value)))

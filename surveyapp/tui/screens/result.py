@@ -13,13 +13,16 @@ from textual.message import Message
 from textual.screen import Screen
 from textual.widgets import Footer, Static
 
-from surveyapp import api
+from surveyapp import api, api_session
+from surveyapp.api_practice import Practice
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import SurveyError
 from surveyapp.tui import texts
+from surveyapp.tui.desk import problem_text
+from surveyapp.tui.screens.signature import SignatureScreen
 from surveyapp.tui.views.checks import summary
-from surveyapp.tui.views.result import result_headline, result_sections
+from surveyapp.tui.views.result import result_headline, result_sections, truth_text
 from surveyapp.tui.widgets.problems import problems_text
 from surveyapp.tui.widgets.records import table_text
 from surveyapp.tui.widgets.titlebar import TitleBar
@@ -29,6 +32,8 @@ class ResultScreen(Screen[None]):
     """Shows what one session says; it changes nothing."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("f4", "record", texts.KEY_PDF),
+        Binding("f6", "sign", texts.KEY_SIGN),
         Binding("f5", "reload", texts.KEY_RELOAD),
         Binding("escape", "leave", texts.KEY_BACK),
     ]
@@ -48,8 +53,16 @@ class ResultScreen(Screen[None]):
             super().__init__()
             self.error = error
 
-    def __init__(self, folder: str, session: str) -> None:
+    class Told(Message):
+        """Something was done, or could not be."""
+
+        def __init__(self, text: str) -> None:
+            super().__init__()
+            self.text = text
+
+    def __init__(self, folder: str, session: str, practice: Practice | None = None) -> None:
         super().__init__()
+        self.practice = practice
         self.folder = folder
         self.session = session
         self.result: OrientationResult | None = None
@@ -58,8 +71,10 @@ class ResultScreen(Screen[None]):
         """Title, headline, sections, keys."""
         yield TitleBar(texts.RESULT_TITLE.format(project="", session=self.session).strip())
         yield Static(id="headline", markup=False)
+        yield Static(id="truth", markup=False)
         with VerticalScroll():
             yield Static(id="sections", markup=False)
+        yield Static(id="told", markup=False)
         yield Footer(show_command_palette=False)
 
     def on_mount(self) -> None:
@@ -90,6 +105,9 @@ class ResultScreen(Screen[None]):
         self.query_one("#headline", Static).update(
             result_headline(message.result, self.session, unit)
         )
+        if self.practice is not None:
+            truth = truth_text(self.practice.outcome(message.result), unit)
+            self.query_one("#truth", Static).update(truth)
         text = Text()
         for heading, rows in result_sections(message.result, self.session, unit):
             text.append(f"{heading}\n", style="bold")
@@ -102,6 +120,33 @@ class ResultScreen(Screen[None]):
         self.query_one(TitleBar).state = ""
         self.query_one("#headline", Static).update("")
         self.query_one("#sections", Static).update(problems_text(message.error))
+
+    @work(thread=True, exclusive=True, group="record")
+    def action_record(self) -> None:
+        """Write the record as PDF in a thread, and show its path."""
+        try:
+            path = api_session.write_record(self.folder)
+            self.post_message(self.Told(texts.PDF_WRITTEN.format(path=path)))
+        except SurveyError as error:
+            self.post_message(self.Told(problem_text(error)))
+
+    def action_sign(self) -> None:
+        """Close the session."""
+        self.app.push_screen(SignatureScreen(), self._signed)
+
+    def _signed(self, name: str | None) -> None:
+        if name is None:
+            return
+        try:
+            closed = api.close(self.folder, session=self.session, by=name)
+        except SurveyError as error:
+            self.post_message(self.Told(problem_text(error)))
+            return
+        self.post_message(self.Told(texts.SIGNED.format(name=name, files=closed.files)))
+
+    def on_result_screen_told(self, message: Told) -> None:
+        """Say what became of it."""
+        self.query_one("#told", Static).update(message.text)
 
     def action_leave(self) -> None:
         """Back to the session."""

@@ -11,20 +11,22 @@ from typing import ClassVar
 
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
-from textual.containers import Horizontal
-from textual.message import Message
+from textual.containers import Horizontal, Vertical
 from textual.screen import Screen
 from textual.widgets import Footer, Input
 
+from surveyapp.api_practice import Practice
 from surveyapp.api_session import Observation
 from surveyapp.core.steps import Step
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.tui import texts
 from surveyapp.tui.desk import Desk, NotWrittenError
+from surveyapp.tui.messages import ResultWanted, SessionLeft
 from surveyapp.tui.screens.help import HelpScreen
 from surveyapp.tui.screens.strike import StrikeScreen
 from surveyapp.tui.session_keys import HIDDEN, KEYS, ORDERED
 from surveyapp.tui.widgets.entry import EntryLine, ReadingInput
+from surveyapp.tui.widgets.instrument import InstrumentPane
 from surveyapp.tui.widgets.run import RunPane
 from surveyapp.tui.widgets.steps import StepList
 from surveyapp.tui.widgets.titlebar import TitleBar
@@ -39,6 +41,8 @@ class SessionScreen(Screen[None]):
         Open; the screen closes it when it is left.
     draft : str
         What was half typed when the session was left.
+    practice : Practice or None
+        The simulated instrument that is shown, in practice.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -46,23 +50,11 @@ class SessionScreen(Screen[None]):
         for key, (action, name) in KEYS.items()
     ]
 
-    class Left(Message):
-        """The session is left; what was half typed goes with it."""
-
-        def __init__(self, session: str, draft: str) -> None:
-            super().__init__()
-            self.session = session
-            self.draft = draft
-
-    class ResultWanted(Message):
-        """The result of the session is to be shown."""
-
-        def __init__(self, session: str) -> None:
-            super().__init__()
-            self.session = session
-
-    def __init__(self, observation: Observation, draft: str = "") -> None:
+    def __init__(
+        self, observation: Observation, draft: str = "", practice: Practice | None = None
+    ) -> None:
         super().__init__()
+        self.practice = practice
         self.observation = observation
         self.desk = Desk(observation)
         self.draft = draft
@@ -80,7 +72,10 @@ class SessionScreen(Screen[None]):
         )
         yield TitleBar(title)
         with Horizontal(id="work"):
-            yield StepList(session.method)
+            with Vertical(id="side"):
+                yield StepList(session.method)
+                if self.practice is not None:
+                    yield InstrumentPane(self.practice, self.desk)
             yield RunPane(self.desk)
         yield EntryLine(self.enter, ORDERED)
         yield Footer(show_command_palette=False)
@@ -88,7 +83,8 @@ class SessionScreen(Screen[None]):
     def on_mount(self) -> None:
         """Show where the book stands."""
         writable = self.observation.writable
-        self.query_one(TitleBar).state = texts.WRITING if writable else texts.READING_ONLY
+        closed = texts.CLOSED_SESSION if self.observation.closed else texts.READING_ONLY
+        self.query_one(TitleBar).state = texts.WRITING if writable else closed
         entry = self.query_one(EntryLine)
         back = self.observation.clock.set_back_s
         if back:
@@ -122,7 +118,7 @@ class SessionScreen(Screen[None]):
     def enter(self, text: str) -> bool:
         """Write the reading; whether it is on the disk."""
         if self.desk.step is Step.RESULT:
-            self.post_message(self.ResultWanted(self.observation.session_id))
+            self.post_message(ResultWanted(self.observation.session_id))
             return False
         return bool(text.strip()) and self.attempt(lambda: self.desk.enter(text))
 
@@ -179,7 +175,7 @@ class SessionScreen(Screen[None]):
     def action_step(self, places: int) -> None:
         """Go on, or back, by one step."""
         if places > 0 and self.desk.step is Step.RESULT:
-            self.post_message(self.ResultWanted(self.observation.session_id))
+            self.post_message(ResultWanted(self.observation.session_id))
         else:
             self.attempt(lambda: self.desk.go(places))
 
@@ -195,4 +191,4 @@ class SessionScreen(Screen[None]):
             self.query_one(EntryLine).tell(texts.DRAFT_KEPT)
             return
         self.observation.close()
-        self.post_message(self.Left(self.observation.session_id, text))
+        self.post_message(SessionLeft(self.observation.session_id, text))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from surveyapp.core.practice import PracticeOutcome
 from surveyapp.domain.results import (
     AngleResult,
     Check,
@@ -89,3 +90,18 @@ def _points(own: SessionResult, unit: AngleUnit) -> list[tuple[str, ...]]:
                 (f"{point.index + 1} {point.side}", reading, arcsec_text(point.residual, sign=True))
             )
     return rows
+
+
+def truth_text(outcome: PracticeOutcome | None, unit: AngleUnit) -> str:
+    """Truth against the result of a practice session."""
+    if outcome is None:
+        return ""
+    verdict = texts.PRACTICE_HOLDS if outcome.inside else texts.PRACTICE_MISSES
+    truth = texts.PRACTICE_TRUTH.format(
+        north=format_angle(outcome.north, unit),
+        error=arcsec_text(outcome.error, sign=True),
+        interval=arcsec_text(outcome.interval95),
+        verdict=verdict,
+    )
+    hidden = texts.PRACTICE_HIDDEN.format(effect=outcome.effect.replace("_", " "))
+    return f"{truth}\n{hidden if outcome.effect else texts.PRACTICE_CLEAN}"

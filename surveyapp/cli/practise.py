@@ -1,0 +1,26 @@
+"""``surveyapp practise``: a simulated instrument to observe, and the truth afterwards."""
+
+from __future__ import annotations
+
+import argparse
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    parser.add_argument("--speed", type=float, default=1.0, help="times faster than life")
+    parser.add_argument("--hidden", action="store_true", help="with a hidden disturbance")
+    parser.add_argument("--seed", type=int, help="the same seed, the same instrument")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Open the session screen on a simulated instrument; bad input is told before that."""
+    from surveyapp import api_practice
+    from surveyapp.tui.app import run_practice
+
+    practice = api_practice.begin(
+        api_practice.practice_folder(),
+        speed=options.speed,
+        disturbed=options.hidden,
+        seed=options.seed,
+    )
+    return run_practice(practice)

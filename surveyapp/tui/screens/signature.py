@@ -1,0 +1,37 @@
+"""Close a session: who signs."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Vertical
+from textual.screen import ModalScreen
+from textual.widgets import Input, Static
+
+from surveyapp.tui import texts
+
+
+class SignatureScreen(ModalScreen[str | None]):
+    """Returns the name, or None."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", texts.KEY_LEAVE)]
+
+    def compose(self) -> ComposeResult:
+        """What closing means, and one line."""
+        with Vertical(id="dialog"):
+            yield Static(texts.SIGN_TITLE, classes="heading", markup=False)
+            yield Static(texts.SIGN_MEANING, markup=False)
+            line = Input(placeholder=texts.SIGN_NAME, compact=True)
+            line.cursor_blink = False
+            yield line
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        """Sign."""
+        if event.value.strip():
+            self.dismiss(event.value.strip())
+
+    def action_leave(self) -> None:
+        """Sign nothing."""
+        self.dismiss(None)
