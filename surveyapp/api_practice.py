@@ -98,10 +98,12 @@ class Practice:
 
     def outcome(self, result: OrientationResult) -> PracticeOutcome | None:
         """Truth against result; None where there is no gyro north with an interval."""
-        north = result.sessions[0].gyro_north if result.sessions else None
-        if north is None or not math.isfinite(north.interval95):
+        session = result.sessions[0] if result.sessions else None
+        north = session.gyro_north if session is not None else None
+        if session is None or north is None or not math.isfinite(north.interval95):
             return None
-        return judge(self.instrument, north=north.value, interval95=north.interval95)
+        passed = max((point.index for point in session.points), default=0) + 1
+        return judge(self.instrument, north=north.value, interval95=north.interval95, points=passed)
 
 
 def begin(

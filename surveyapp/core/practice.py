@@ -21,16 +21,15 @@ from surveyapp.core.steps import Step
 from surveyapp.domain.readings import Face
 from surveyapp_models.angles import wrap_pi, wrap_two_pi
 
-POINTS: Final = 40
+POINTS: Final = 24
 LEAD_S: Final = 45.0
 """From lowering the gyro to the first turning point [s]."""
 DISTURBANCES: Final = (
-    "midpoint_step=90",
-    "midpoint_step=-120",
-    "damping_break=0.02",
+    "midpoint_step=90,at=5",
+    "midpoint_step=-120,at=7",
+    "damping_break=0.02,at=6",
     "midpoint_drift=6",
-    "gross_error=90",
-    "secondary_oscillation=40",
+    "secondary_oscillation=40,period=10",
     "warm_up=120",
 )
 """One of these is hidden, large enough to be found with a dozen turning points."""
@@ -68,8 +67,8 @@ class PracticeInstrument:
         From lowering the gyro [s].
     sights : tuple of float
         Errors of single pointings [rad], used one after the other.
-    north : float
-        Truth: gyro north averaged over the run [rad].
+    norths : tuple of float
+        Truth: gyro north at each turning point [rad].
     effect : str
         Id of what is hidden, empty for a clean run.
     """
@@ -78,7 +77,7 @@ class PracticeInstrument:
     readings: tuple[float, ...]
     moments_s: tuple[float, ...]
     sights: tuple[float, ...]
-    north: float
+    norths: tuple[float, ...]
     effect: str
 
     def swing(self, elapsed_s: float) -> View:
@@ -123,6 +122,11 @@ class PracticeInstrument:
             return self.tape_zero(elapsed_s, after=step is Step.ZERO_AFTER)
         return self.swing(elapsed_s) if step is Step.SWING else View()
 
+    def north(self, points: int) -> float:
+        """Truth: gyro north averaged over the first turning points [rad]."""
+        observed = self.norths[: max(points, 1)]
+        return math.fsum(observed) / len(observed)
+
 
 @dataclass(frozen=True, slots=True)
 class PracticeOutcome:
@@ -149,11 +153,23 @@ class PracticeOutcome:
     effect: str
 
 
-def judge(instrument: PracticeInstrument, *, north: float, interval95: float) -> PracticeOutcome:
-    """Compare a result with the truth."""
-    error = wrap_pi(north - instrument.north)
+def judge(
+    instrument: PracticeInstrument, *, north: float, interval95: float, points: int
+) -> PracticeOutcome:
+    """Compare a result with the truth.
+
+    Parameters
+    ----------
+    instrument : PracticeInstrument
+    north, interval95 : float
+        Of the result [rad].
+    points : int
+        Turning points that passed while it was observed, missed ones counted.
+    """
+    truth = instrument.north(points)
+    error = wrap_pi(north - truth)
     return PracticeOutcome(
-        north=wrap_two_pi(instrument.north),
+        north=wrap_two_pi(truth),
         error=error,
         interval95=interval95,
         inside=abs(error) <= interval95,
@@ -186,6 +202,6 @@ def simulate_instrument(rng: np.random.Generator, *, disturbed: bool) -> Practic
         readings=tuple(points.readings[0].tolist()),
         moments_s=tuple(moments.tolist()),
         sights=tuple(rng.normal(scale=spec.noise.sight, size=100).tolist()),
-        north=float(points.run_north[0].mean()),
+        norths=tuple(points.run_north[0].tolist()),
         effect=effects[0].id if effects else "",
     )

@@ -349,9 +349,7 @@ PRACTICE_INSTRUMENT: Final = "instrument, {speed:g} x"
 PRACTICE_CIRCLE: Final = "circle {reading}"
 PRACTICE_SCALE: Final = "scale {div} div"
 PRACTICE_NOTHING: Final = "nothing to read"
-PRACTICE_TRUTH: Final = (
-    'Truth: gyro north {north}; yours is {error}" off, your 95 % ±{interval}" {verdict}.'
-)
+PRACTICE_TRUTH: Final = 'Truth {north}; yours is {error}" off: ±{interval}" {verdict}.'
 PRACTICE_HOLDS: Final = "holds it"
 PRACTICE_MISSES: Final = "does NOT hold it"
 PRACTICE_CLEAN: Final = "Nothing was hidden in this run."

@@ -107,5 +107,5 @@ async def test_practice_runs_the_same_session_screen_and_ends_with_the_truth(
             await settle(pilot)
         assert isinstance(app.screen, ResultScreen)
         truth = str(app.screen.query_one("#truth", Static).content)
-    assert format_angle(practice.instrument.north % (2 * math.pi), AngleUnit.DMS) in truth
+    assert format_angle(practice.instrument.north(6) % (2 * math.pi), AngleUnit.DMS) in truth
     assert practice.instrument.effect.replace("_", " ") in truth
