@@ -227,7 +227,9 @@ def changes(folder: Path, entry: LedgerEntry) -> list[str]:
 
 
 def seal_checks(folder: Path) -> tuple[Check, ...]:
-    """Checks of the ledger and of every closing in force; none without a ledger.
+    """Checks of the ledger and of every closing in force.
+
+    None without a ledger, and none for a whole one in which nothing was ever closed.
 
     Raises
     ------
@@ -237,7 +239,9 @@ def seal_checks(folder: Path) -> tuple[Check, ...]:
     if not (folder / LEDGER_FILE).exists():
         return ()
     ledger = read_ledger(folder)
-    checks = [_ledger_check(ledger)]
+    damaged = bool(ledger.faults) or ledger.tail_altered
+    closed_once = any(entry.kind == CLOSING for entry in ledger.entries)
+    checks = [_ledger_check(ledger)] if damaged or closed_once else []
     if ledger.tail and not ledger.tail_altered:
         text = "the last line of the ledger was never finished and does not count"
         checks.append(_check("ledger.tail", [text], confirmed=False, where=LEDGER_FILE))

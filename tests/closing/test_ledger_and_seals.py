@@ -90,7 +90,9 @@ def folder(tmp_path: Path) -> Path:
 @pytest.fixture(scope="module")
 def closed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = make(tmp_path_factory.mktemp("closed"))
-    append_entry(folder, "diagnosis", {"verdict": "adequate"}, at="2026-02-01", software="s")
+    append_entry(
+        folder, "diagnosis", {"verdict": "adequate", "p": 1e-05}, at="2026-02-01", software="s"
+    )
     api.close(folder, by="Γεωργίου", now=now)
     return folder
 
@@ -334,3 +336,12 @@ def test_a_new_project_can_be_closed() -> None:
         atomic_write(folder / "project.toml", b"format = 1\n")
         assert found_by_check(folder)
         shutil.rmtree(folder)
+
+
+def test_a_ledger_in_which_nothing_was_closed_adds_no_check(folder: Path) -> None:
+    before = api.check(folder)
+    append_entry(folder, "diagnosis", {"n": 1}, at="2026-01-01", software="s")
+    assert api.check(folder) == before
+    path = folder / LEDGER_FILE
+    path.write_bytes(path.read_bytes().replace(b'"n":1', b'"n":3'))
+    assert found_by_check(folder)
