@@ -111,7 +111,21 @@ def _constants(result: OrientationResult) -> str:
                 ]
             )
     head = ["instrument", "line", 'constant "', '±"', "n", "rounds", "length m"]
-    return "Instrument constant (true minus gyro)\n" + table(head, rows) if rows else ""
+    if not rows:
+        return ""
+    lines = ["Instrument constant (true minus gyro)", table(head, rows)]
+    return "\n".join([*lines, *(paragraph(text) for text in _known_azimuths(result))])
+
+
+def _known_azimuths(result: OrientationResult) -> list[str]:
+    """Known azimuths beside those from the coordinates, where both are there and differ."""
+    return [
+        f"{item.session}: the known azimuth of {item.station}-{item.target} is "
+        f"{small_angle(apart)} from that of the coordinates"
+        for constant in result.constants
+        for item in constant.determinations
+        if (apart := item.known_minus_coordinates) is not None and apart != 0.0
+    ]
 
 
 def _line(line: LineResult, unit: AngleUnit) -> str:

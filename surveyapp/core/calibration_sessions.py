@@ -17,7 +17,10 @@ from surveyapp.domain.project import (
     ResultWarning,
     grid_bearing,
 )
-from surveyapp_models.angles import ARCSEC, wrap_pi
+from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, wrap_pi
+
+LARGEST_SHIFT_M = 0.1
+"""Coordinates of mine stations are wrong by less [m]: beyond, one of the two is mistyped."""
 
 
 def calibrations_of(
@@ -55,6 +58,8 @@ def calibrations_of(
             if true is None:
                 warnings.append(_unusable(session, target.target, "no crs gives its convergence"))
                 continue
+            if own is not None and bearing is not None:
+                warnings += _contradiction(session, line, wrap_pi(own - bearing))
             gyro = scatter.applied(target.gyro_azimuth, session.id)
             value = true - gyro + line.centring(centring_of(project, session))
             found.append(
@@ -78,6 +83,20 @@ def calibrations_of(
 def _unusable(session: OrientationSession, target: str, why: str) -> ResultWarning:
     text = f"session {session.id}, line {session.station}-{target}: no constant from it: {why}"
     return ResultWarning("calibration_unusable", text)
+
+
+def _contradiction(
+    session: OrientationSession, line: LineGeometry, apart: float
+) -> list[ResultWarning]:
+    """Tell of a known azimuth that no error of the coordinates explains."""
+    if not line.distance_m or abs(apart) * line.distance_m <= LARGEST_SHIFT_M:
+        return []
+    text = (
+        f"session {session.id}: the known azimuth of {session.station}-{session.target} wins over "
+        f'the coordinates, which give {-apart * RHO_ARCSEC:+.1f}": '
+        f"{abs(apart) * line.distance_m:.2f} m at the target"
+    )
+    return [ResultWarning("azimuth_known_differs", text)]
 
 
 def rounds_of(item: ReducedSession) -> int:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from surveyapp.core.cardphysics import card_at
 from surveyapp.core.clamped import Observed, clamp_reading, observe, session_problem
 from surveyapp.core.goodness import FitTest, goodness_of_fit
-from surveyapp.core.gyrofit import design, fit_swing, schuler_means
+from surveyapp.core.gyrofit import damping_left, design, fit_swing, schuler_means
 from surveyapp.core.reduction import (
     Reduction,
     UnitScatter,
@@ -117,14 +117,17 @@ def _scale_middle(
         resolution=reading_resolution(observed.readings),
     )
     means, weights = schuler_means(swing.readings, swing.index)
+    left = 0.0
     if estimator == "amplitude" and means.size:
         value, norm = float(means.mean()), float(np.sqrt(weights @ weights))
+        left = damping_left(fit, weights, index=swing.index, sides=swing.sides)
     else:
         value, norm = fit.north, math.sqrt(fit.cofactor[0, 0])
         estimator = "least-squares"
     source = "scale readings"
     unit = unit_scatter(source, sigma)
-    return Middle(value, norm * sigma.value, sigma.dof, sigma.origin, estimator, source, unit)
+    spread = math.hypot(norm * sigma.value, left)
+    return Middle(value, spread, sigma.dof, sigma.origin, estimator, source, unit)
 
 
 def _full_middle(observed: Observed, period: float) -> tuple[Middle, ClampedFit] | None:

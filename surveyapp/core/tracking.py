@@ -14,7 +14,14 @@ from numpy.typing import NDArray
 
 from surveyapp.core.clamped import session_problem
 from surveyapp.core.goodness import FitTest, goodness_of_fit
-from surveyapp.core.gyrofit import SwingFit, design, fit_swing, schuler_means, unwrap
+from surveyapp.core.gyrofit import (
+    SwingFit,
+    damping_left,
+    design,
+    fit_swing,
+    schuler_means,
+    unwrap,
+)
 from surveyapp.core.preorientation import two_turning_points
 from surveyapp.core.reduction import (
     ReadingSigma,
@@ -196,8 +203,12 @@ def reduce_tracking(
         if estimator is not None:
             raise SurveyError(_no_triple(session))
         chosen = "least-squares"
+    left = 0.0
     if chosen == "schuler":
         observed, norm = float(means.mean()), float(np.sqrt(weights @ weights))
+        left = damping_left(fit, weights, index=points.index, sides=points.sides)
+    elif not fit.converged:
+        raise SurveyError(_no_fit(session, points))
     else:
         observed, norm = fit.north, math.sqrt(fit.cofactor[0, 0])
     sigma = reading_sigma(
@@ -209,7 +220,10 @@ def reduce_tracking(
     )
     north = Uncertain(
         points.origin + observed,
-        {Source("turning points", session.id, sigma.dof): norm * sigma.value},
+        {
+            Source("turning points", session.id, sigma.dof): norm * sigma.value,
+            Source("damping", session.id): left,
+        },
     )
     if session.effects and run_model is not None:
         modelled = run_model(session, card, latitude)
@@ -266,14 +280,16 @@ def _fit(session: OrientationSession, points: TurningPoints) -> SwingFit:
     fit = fit_swing(points.values, points.index, points.sides)
     if fit.converged or points.values.size < LEAST_SQUARES_FROM:
         return fit
-    raise SurveyError(
-        Problem(
-            what="the damped swing does not fit: the turning points do not swing about one middle",
-            where=f"session {session.id}, {session.book_path}",
-            found=f"{points.values.size} turning points whose amplitude does not decay smoothly",
-            expected="readings alternating about north with slowly falling amplitude",
-            hint="Look for a mistyped degree or a missed turning point.",
-        )
+    raise SurveyError(_no_fit(session, points))
+
+
+def _no_fit(session: OrientationSession, points: TurningPoints) -> Problem:
+    return Problem(
+        what="the damped swing does not fit: the turning points do not swing about one middle",
+        where=f"session {session.id}, {session.book_path}",
+        found=f"{points.values.size} turning points whose amplitude does not decay smoothly",
+        expected="readings alternating about north with slowly falling amplitude",
+        hint="Look for a mistyped degree or a missed turning point.",
     )
 
 

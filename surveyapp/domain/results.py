@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from surveyapp.domain.project import ResultWarning
-from surveyapp_models.angles import RHO_ARCSEC, wrap_two_pi
+from surveyapp_models.angles import RHO_ARCSEC, wrap_pi, wrap_two_pi
 
 Reference = Literal["GYRO", "ASTRONOMIC", "GEODETIC", "GRID", "MAGNETIC"]
 
@@ -300,6 +300,26 @@ class Determination:
     known_azimuth: float
     from_coordinates: float | None
 
+    @property
+    def known_minus_coordinates(self) -> float | None:
+        """Known grid azimuth minus the one from the coordinates [rad], None without those."""
+        if self.from_coordinates is None:
+            return None
+        return wrap_pi(self.known_azimuth - self.from_coordinates)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON."""
+        return {
+            "session": self.session,
+            "station": self.station,
+            "target": self.target,
+            "arcsec": to_arcsec(self.value),
+            "sigma_arcsec": to_arcsec(self.sigma),
+            "phase": self.phase,
+            "azimuth_known_deg": to_degrees(self.known_azimuth),
+            "known_minus_coordinates_arcsec": to_arcsec(self.known_minus_coordinates),
+        }
+
 
 @dataclass(frozen=True, slots=True)
 class ConstantResult:
@@ -326,6 +346,7 @@ class ConstantResult:
             "stable": self.stable,
             "choice": self.choice,
             "by_line": [line.to_dict() for line in self.by_line],
+            "determinations": [item.to_dict() for item in self.determinations],
         }
 
 

@@ -242,3 +242,33 @@ def test_the_scatter_of_the_collimation_tells_the_pointing_error(tmp_path: Path)
     sigma = math.degrees(reading.sigma) * 3600.0 * math.sqrt(2.0)
     assert 0.5 < sigma < 3.0  # 1.5" with 4 degrees of freedom, 99.9 %; the card says 5"
     assert reading.dof == pytest.approx(4.0)
+
+
+@pytest.mark.parametrize(("points", "loss"), [(3, 0.05), (3, 0.1), (5, 0.1), (5, 0.15)])
+def test_what_the_damping_leaves_in_a_short_run_is_in_its_interval(
+    tmp_path: Path, points: int, loss: float
+) -> None:
+    """Three or five Schuler points of a swing that loses 5 % and more are off by many seconds."""
+    values = [20.0 + 2.0 * (-(1.0 - loss)) ** k for k in range(points)]
+    entries = [(None, "reversal", dms(value), "", "") for value in values]
+    book = timed([*sights(0.0, 75.0), *entries])
+    result = api.orient(write(tmp_path, GYRO + SIDE + run("s"), {"s": book})).sessions[0]
+    assert result.estimator == "schuler"
+    assert result.gyro_north is not None
+    off = abs(math.degrees(result.gyro_north.value) - 20.0) * 3600.0
+    assert off > 3.0
+    assert result.interval95 is not None
+    assert off < math.degrees(result.interval95) * 3600.0
+
+
+def test_a_known_azimuth_is_shown_beside_the_coordinates(tmp_path: Path) -> None:
+    """It wins, and the difference stands in the result; a mistyped one is told as a warning."""
+    for text, arcsec, told in (("090-00-05", 5.0, False), ("090-10-00", 600.0, True)):
+        more = ('purpose = "calibration"', f'azimuth_known = "{text}"')
+        toml = GYRO + SIDE + session("c", "A", "B", more=more)
+        folder = write(tmp_path / text, toml, {"c": azimuths("89-00-00", "89-00-02")}, head=CRS)
+        result = api.orient(folder)
+        found = result.to_dict()["constants"][0]["determinations"][0]
+        assert found["known_minus_coordinates_arcsec"] == pytest.approx(arcsec, abs=1e-3)
+        assert found["azimuth_known_deg"] == pytest.approx(90.0 + arcsec / 3600.0)
+        assert ("azimuth_known_differs" in {item.code for item in result.warnings}) is told
