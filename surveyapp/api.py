@@ -17,6 +17,7 @@ from surveyapp.api_office import blank_form as blank_form
 from surveyapp.api_office import close as close
 from surveyapp.api_office import compare as compare
 from surveyapp.api_office import export_csv as export_csv
+from surveyapp.api_office import export_gkf as export_gkf
 from surveyapp.api_office import export_json as export_json
 from surveyapp.api_office import export_zip as export_zip
 from surveyapp.api_office import reopen as reopen

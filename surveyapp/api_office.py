@@ -206,6 +206,22 @@ def export_csv(project: Project | Folder, output: Folder, *, table: str = "lines
     return _write_export("csv", text.encode("utf-8"), Path(output), count)
 
 
+def export_gkf(project: Project | Folder, output: Folder) -> ExportResult:
+    """Write the traverses of a project, gyro sides included, as a GNU Gama file.
+
+    Raises
+    ------
+    SurveyError
+        If there is no traverse, or the format has no words for something in it.
+    """
+    from surveyapp import api
+    from surveyapp.io.exporters.gkf import gkf_text
+
+    network = api.network(project)
+    data = gkf_text(network).encode("utf-8")
+    return _write_export("gkf", data, Path(output), len(network.observations))
+
+
 def export_json(project: Project | Folder, output: Folder) -> ExportResult:
     """Write the result with its files, cards and rule book, for a later ``compare``."""
     snapshot = _snapshot(project)

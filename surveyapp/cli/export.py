@@ -39,8 +39,15 @@ def _json(options: argparse.Namespace) -> ExportResult:
     return api.export_json(options.folder, options.file)
 
 
+def _gkf(options: argparse.Namespace) -> ExportResult:
+    from surveyapp import api
+
+    return api.export_gkf(options.folder, options.file)
+
+
 FORMATS: Final[Mapping[str, Format]] = {
     "csv": Format("results as a table", _csv),
+    "gkf": Format("traverses as a GNU Gama network", _gkf),
     "json": Format("result with cards, rule book and hashes, for a later compare", _json),
     "zip": Format("the whole project for hand-over", _zip),
 }

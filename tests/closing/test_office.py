@@ -221,3 +221,39 @@ def test_a_batch_on_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixtu
     printed = capsys.readouterr()
     assert f"failed: {tmp_path / 'none'}" in printed.err
     assert main(["batch", good, "-o", str(tmp_path / "no" / "t.csv")]) == 2
+
+
+TRAVERSE = """format = 1
+name = "Main drive"
+[[station]]
+name = "A"
+e = 1000.0
+n = 2000.0
+fixed = true
+[[station]]
+name = "B"
+e = 1000.0
+n = 2100.0
+fixed = true
+[[station]]
+name = "C"
+[[traverse]]
+name = "main"
+book = "main.csv"
+sigma_angle_arcsec = 7.0
+sigma_distance = { mm = 2.0, ppm = 2.0 }
+atmosphere_applied = true
+constant_applied = true
+"""
+
+
+def test_a_traverse_is_handed_over_as_a_network(tmp_path: Path) -> None:
+    (tmp_path / "project.toml").write_text(TRAVERSE, encoding="utf-8")
+    rows = "kind,at,from,to,value,unit\nangle,B,A,C,90-00-00,dms\ndistance,B,,C,50.000,m\n"
+    (tmp_path / "main.csv").write_text(rows, encoding="utf-8")
+    path = tmp_path / "main.gkf"
+    assert main(["export", "gkf", str(tmp_path), str(path)]) == 0
+    here, there = ({p.name: p for p in api.adjust(side).points} for side in (tmp_path, path))
+    assert there["C"].e == pytest.approx(here["C"].e, abs=1e-6)
+    assert there["C"].n == pytest.approx(here["C"].n, abs=1e-6)
+    assert main(["export", "gkf", str(ROOT / "projects" / SAMPLES[0]), str(path)]) == 2

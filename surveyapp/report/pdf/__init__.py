@@ -231,7 +231,7 @@ def _key_values(block: KeyValues, faces: Faces) -> Flowable:
         [Text(faces.markup(key), key_style), Text(faces.markup(value), value_style)]
         for key, value in block.pairs
     ]
-    tall = is_tall(value for _, value in block.pairs)
+    tall = is_tall(faces, block.pairs, (first, WIDTH - first), CELL + 0.5)
     grid = Grid(rows, colWidths=[first, WIDTH - first], hAlign="LEFT", splitInRow=int(tall))
     grid.setStyle(
         [

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Final
 
 from reportlab.lib.enums import TA_CENTER, TA_RIGHT
+from reportlab.lib.pagesizes import A4
 from reportlab.lib.units import mm
 from reportlab.platypus import Flowable
 from reportlab.platypus import Paragraph as Text
@@ -76,7 +77,7 @@ def table_flowable(block: Table, faces: Faces) -> Flowable:
     heights = None
     if block.row_height_mm is not None:
         heights = [*([None] if headed else []), *[block.row_height_mm * mm] * len(block.rows)]
-    tall = is_tall(text for row in block.rows for text in row)
+    tall = is_tall(faces, block.rows, widths, size)
     grid = Grid(
         rows,
         colWidths=widths,
@@ -89,12 +90,20 @@ def table_flowable(block: Table, faces: Faces) -> Flowable:
     return grid
 
 
-def is_tall(cells: Iterable[str]) -> bool:
+def is_tall(
+    faces: Faces, rows: Iterable[Sequence[str]], widths: Sequence[float], size: float
+) -> bool:
     """Whether a cell may become taller than a page: only then a row is divided between two."""
-    return any(len(text) > _LONG_CELL for text in cells)
+    room = 0.7 * A4[1] / (1.32 * size)
+    return any(
+        faces.width(text, size) / max(width - 2.0 * _PADDING, 1.0) > room
+        for row in rows
+        for text, width in zip(row, widths, strict=True)
+        if len(text) > _LONG_CELL
+    )
 
 
-_LONG_CELL: Final = 1000
+_LONG_CELL: Final = 200
 
 
 def _cell_maker(

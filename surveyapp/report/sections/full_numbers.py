@@ -8,7 +8,7 @@ from typing import Any
 from surveyapp.domain.results import OrientationResult
 from surveyapp.report.blocks import Block, Heading, PageBreak, Paragraph, Table
 
-_NUMBERS_A_ROW = 40
+_NUMBERS_A_ROW = 24
 _TEXTS = frozenset({"schema", "project", "software", "input_sha256", "warnings", "text"})
 
 
