@@ -58,6 +58,9 @@ class NewProject:
     stations : tuple of NewStation
     instruments : tuple of (str, str, str)
         Id, card and serial number.
+    constant : str
+        Known instrument constant of the first of them and its sigma, two numbers in arc-seconds;
+        empty where calibration sessions are to tell it.
     """
 
     folder: str
@@ -68,6 +71,7 @@ class NewProject:
     rule_book: str = ""
     stations: tuple[NewStation, ...] = ()
     instruments: tuple[tuple[str, str, str], ...] = ()
+    constant: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,6 +224,7 @@ def create_project(form: NewProject) -> str:
     """
     from surveyapp.io.writing import append_table, set_value
 
+    constant = _constant(form.constant)
     folder = api.new_project(
         Path(form.folder).expanduser(),
         name=form.name,
@@ -231,13 +236,33 @@ def create_project(form: NewProject) -> str:
         set_value(path, ("angle_typing",), form.angle_typing)
     if form.rule_book:
         set_value(path, ("rule_book",), form.rule_book)
-    for identity, card, serial in form.instruments:
-        append_table(path, "instrument", {"id": identity, "card": card, "serial": serial or None})
+    for number, (identity, card, serial) in enumerate(form.instruments):
+        table = {"id": identity, "card": card, "serial": serial or None}
+        known = constant if number == 0 else None
+        append_table(path, "instrument", {**table, "constant": known})
     for station in form.stations:
         values = {key: getattr(station, key) for key in ("name", "e", "n", "lat", "lon", "h")}
         append_table(path, "station", values)
     api.open_project(folder)
     return str(folder)
+
+
+def _constant(text: str) -> dict[str, float] | None:
+    if not text.strip():
+        return None
+    try:
+        value, sigma = (float(part) for part in text.replace(",", " ").replace("±", " ").split())
+    except ValueError:
+        raise SurveyError(
+            Problem(
+                "this is no instrument constant",
+                "constant",
+                text,
+                "constant and sigma in arc-seconds, like -9.7 3.0",
+                "decimals are written with a point",
+            )
+        ) from None
+    return {"arcsec": value, "sigma_arcsec": sigma}
 
 
 def create_session(folder: api.Folder, form: NewSession) -> None:

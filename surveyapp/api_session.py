@@ -29,7 +29,7 @@ from surveyapp.domain.readings import FieldBook, Reading, ReadingKind
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.clock import SessionClock, Stamp, local_now, steady_seconds
-from surveyapp.io.fieldbook import append_row, read_field_book
+from surveyapp.io.fieldbook import append_row, book_columns, read_field_book
 from surveyapp.io.lock import ProjectLock
 from surveyapp.io.seals import is_closed
 from surveyapp_models.angles import ARCSEC
@@ -98,6 +98,8 @@ class Observation:
         self.closed = is_closed(self.folder, session)
         try:
             self.project = api.open_project(self.folder)
+            self._columns = book_columns(self.folder / self.session.book_path)
+            self._step: Step | None = None
             self.clock = SessionClock(self.session.book.rows, now=now, steady=steady)
         except BaseException:
             self._lock.release()
@@ -128,6 +130,8 @@ class Observation:
     @property
     def step(self) -> Step:
         """The step that the book stands at."""
+        if self._step is not None:
+            return self._step
         return current_step(self.book, self.session.method)
 
     def steps(self) -> tuple[StepState, ...]:
@@ -181,14 +185,17 @@ class Observation:
         path = self.folder / self.session.book_path
         seq = append_row(path, self._fitting(cells), angle_unit=self.project.angle_unit)
         self._read_again(path)
+        if row.kind is not ReadingKind.STRIKE:
+            self._step = None
         return seq
 
     def _fitting(self, cells: dict[str, str]) -> dict[str, str]:
         """Cells without the moment where an older book has no column for it."""
-        rows = self.book.rows
-        if rows and not any(row.time is not None or row.elapsed_s is not None for row in rows):
-            return {name: text for name, text in cells.items() if name not in ("time", "elapsed_s")}
-        return cells
+        return {
+            name: text
+            for name, text in cells.items()
+            if name in self._columns or name not in ("time", "elapsed_s")
+        }
 
     def _read_again(self, path: Path) -> None:
         book = read_field_book(path, angle_unit=self.project.angle_unit, repair=False)
@@ -215,7 +222,11 @@ class Observation:
 
     def go_to(self, step: Step) -> None:
         """Note that the surveyor goes to a step, unless the book stands there already."""
-        if step is not self.step:
+        if step is self.step:
+            return
+        if "note" not in self._columns:  # an older book: the step is not remembered
+            self._step = step
+        else:
             self.record(NewRow(ReadingKind.NOTE, note=f"{STEP_NOTE}{step}"))
 
     def wanted_interval(self) -> float | None:

@@ -65,6 +65,14 @@ def append_row(path: Path, row: Mapping[str, str], *, angle_unit: AngleUnit = An
     return seq
 
 
+def book_columns(path: Path) -> tuple[str, ...]:
+    """Columns that a row of this book may have: its own, or those of the format for a new one."""
+    if not path.exists():
+        return COLUMNS
+    text, _ = split_tail(read_bytes(path, where=path.name), where=path.name)
+    return _header(text, path.name) or COLUMNS
+
+
 def _header(text: str, where: str) -> tuple[str, ...] | None:
     """Columns of an existing book in their order, None for a new one."""
     for line in text.removeprefix("\ufeff").split("\n"):

@@ -5,8 +5,16 @@ How rows are parsed, strikes resolved, sides found and lines written is told in 
 
 from __future__ import annotations
 
-from surveyapp.io.bookappend import append_row
+from surveyapp.io.bookappend import append_row, book_columns
 from surveyapp.io.bookreading import Judged, judge, parse_field_book, read_field_book
 from surveyapp.io.bookrows import COLUMNS
 
-__all__ = ["COLUMNS", "Judged", "append_row", "judge", "parse_field_book", "read_field_book"]
+__all__ = [
+    "COLUMNS",
+    "Judged",
+    "append_row",
+    "book_columns",
+    "judge",
+    "parse_field_book",
+    "read_field_book",
+]

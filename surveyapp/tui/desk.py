@@ -78,6 +78,8 @@ class Desk:
 
     def prompt(self) -> str:
         """What is asked for."""
+        if self.step is Step.RESULT:
+            return texts.STEP_NAMES[self.step]
         what = self.what()
         detail = ""
         if what.face is not None:

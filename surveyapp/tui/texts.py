@@ -128,6 +128,8 @@ F_STATIONS_HINT: Final = (
 F_INSTRUMENT: Final = "Instrument"
 F_INSTRUMENT_ID: Final = "Its id"
 F_SERIAL: Final = "Serial no."
+F_CONSTANT: Final = "Constant"
+F_CONSTANT_HINT: Final = "arc-seconds and sigma, like -9.7 3.0; empty: from calibrations"
 UNITS: Final = {
     "dms": "degrees, minutes, seconds",
     "gon": "gon",

@@ -212,6 +212,19 @@ def test_a_full_disk_loses_nothing_and_says_so(
     assert values == ["102-00-14", "98-01-04"]
 
 
+def test_an_older_book_without_moments_and_notes_can_be_observed(tmp_path: Path) -> None:
+    folder = make_project(tmp_path / "p")
+    book = folder / "observations" / "r1.csv"
+    book.write_text("seq,kind,value,side\n1,reversal,102-00-14,R\n", encoding="utf-8")
+    seen = observation(folder)
+    seen.record(NewRow(ReadingKind.REVERSAL, "98-01-04", ""))
+    seen.go_to(Step.ZERO_AFTER)
+    assert seen.step is Step.ZERO_AFTER
+    seen.record(NewRow(ReadingKind.TAPE_ZERO, "3.9", ""))
+    assert seen.step is Step.ZERO_AFTER
+    assert book.read_text(encoding="utf-8").endswith("2,reversal,98-01-04,\n3,tape_zero,3.9,\n")
+
+
 def test_the_session_to_go_on_with_is_the_latest_that_was_begun(tmp_path: Path) -> None:
     folder = make_project(tmp_path / "p")
     assert api_session.unfinished_session(api.open_project(folder)) is None

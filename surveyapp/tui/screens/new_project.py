@@ -60,6 +60,7 @@ class NewProjectScreen(Screen[str | None]):
             yield Static(id="card-told", classes="told", markup=False)
             yield TextField(texts.F_INSTRUMENT_ID, "instrument", value="G1")
             yield TextField(texts.F_SERIAL, "serial")
+            yield TextField(texts.F_CONSTANT, "constant", hint=texts.F_CONSTANT_HINT)
             books = {"": texts.NOT_DETERMINED, **{name: name for name in api_home.rule_books()}}
             yield ChoiceField(texts.F_RULES, "rules", books)
             yield Static(id="trouble", classes="told", markup=False)
@@ -133,6 +134,7 @@ class NewProjectScreen(Screen[str | None]):
             rule_book=chosen(self, "rules"),
             stations=self.stations(),
             instruments=(instrument,) if card and instrument[0] else (),
+            constant=typed(self, "constant"),
         )
 
     def action_make(self) -> None:
