@@ -18,8 +18,35 @@ from surveyapp.core.statistics.distributions import chi_square_quantile
 Floats = NDArray[np.float64]
 
 SIGNIFICANCE = 0.01
-"""Each test alone; the three together alarm in at most 3 % of clean runs."""
+"""Of each kind of test over ALL sessions of a project together: a clean project of ten sessions
+alarms as rarely as one of a single session (at most 3 % with the three kinds)."""
 DRAWS = 2000
+MOST_DRAWS = 40_000
+
+
+@dataclass(frozen=True, slots=True)
+class Judge:
+    """Who judges the fits of a project: its random numbers and how many sessions there are.
+
+    Parameters
+    ----------
+    rng : numpy.random.Generator
+    sessions : int
+        Sessions that are tested; the level of each test is divided by it (Bonferroni).
+    """
+
+    rng: np.random.Generator
+    sessions: int = 1
+
+    @property
+    def significance(self) -> float:
+        """Level of one test of one session."""
+        return SIGNIFICANCE / max(self.sessions, 1)
+
+    @property
+    def draws(self) -> int:
+        """Draws that resolve the level: ten beyond each critical value, if that is affordable."""
+        return min(max(DRAWS, round(20.0 / self.significance)), MOST_DRAWS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +87,7 @@ def run_count(residuals: Floats) -> Floats:
 def goodness_of_fit(
     residuals: Floats,
     jacobian: Floats,
-    rng: np.random.Generator,
+    judge: Judge,
     *,
     sigma: float | None,
     resolution: float,
@@ -73,7 +100,7 @@ def goodness_of_fit(
         Observed minus fitted, any unit.
     jacobian : ndarray, shape (n, p)
         Derivatives at the solution.
-    rng : numpy.random.Generator
+    judge : Judge
     sigma : float or None
         A-priori standard deviation of one reading from the card; without it there is no
         chi-square test.
@@ -93,20 +120,22 @@ def goodness_of_fit(
     squares = float(residuals @ residuals)
     if sigma is not None and sigma > 0.0:
         variance = sigma**2 + resolution**2 / 12.0
-        limit = chi_square_quantile(1.0 - SIGNIFICANCE, dof)
+        limit = chi_square_quantile(1.0 - judge.significance, dof)
         value = squares / variance
         tests.append(FitTest("chi_square", value, None, limit, value <= limit))
     if dof >= 3:
-        tests.extend(_serial_tests(residuals, jacobian, rng, resolution))
+        tests.extend(_serial_tests(residuals, jacobian, judge, resolution))
     return tuple(tests)
 
 
 def _serial_tests(
-    residuals: Floats, jacobian: Floats, rng: np.random.Generator, resolution: float
+    residuals: Floats, jacobian: Floats, judge: Judge, resolution: float
 ) -> list[FitTest]:
     count, parameters = jacobian.shape
     scale = float(np.sqrt(residuals @ residuals / (count - parameters)))
-    draws = rng.standard_normal((DRAWS, count)) * max(scale, resolution / np.sqrt(12.0), 1e-300)
+    draws = judge.rng.standard_normal((judge.draws, count)) * max(
+        scale, resolution / np.sqrt(12.0), 1e-300
+    )
     if resolution > 0.0:
         draws = np.round(draws / resolution) * resolution
     q = np.linalg.qr(jacobian)[0]
@@ -115,7 +144,7 @@ def _serial_tests(
     for name, statistic in (("lag1_correlation", lag1_correlation), ("runs", run_count)):
         value = float(statistic(residuals))
         low, high = np.quantile(
-            statistic(draws), [0.5 * SIGNIFICANCE, 1.0 - 0.5 * SIGNIFICANCE]
+            statistic(draws), [0.5 * judge.significance, 1.0 - 0.5 * judge.significance]
         ).tolist()
         tests.append(FitTest(name, value, low, high, low <= value <= high))
     return tests

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from surveyapp.core.cardphysics import card_at
 from surveyapp.core.clamped import Observed, clamp_reading, observe, session_problem
-from surveyapp.core.goodness import FitTest, goodness_of_fit
+from surveyapp.core.goodness import FitTest, Judge, goodness_of_fit
 from surveyapp.core.gyrofit import damping_left, design, fit_swing, schuler_means
 from surveyapp.core.reduction import (
     Reduction,
@@ -156,7 +156,7 @@ def _full_middle(observed: Observed, period: float) -> tuple[Middle, ClampedFit]
 def reduce_nontracking(
     session: OrientationSession,
     card: InstrumentCard,
-    rng: np.random.Generator,
+    judge: Judge,
     *,
     latitude: float | None,
     estimator: str | None,
@@ -236,7 +236,7 @@ def reduce_nontracking(
         tape_zero=zero,
         coefficient=coefficient,
         tape_zero_correction=correction,
-        tests=_tests(observed, fit, card, rng),
+        tests=_tests(observed, fit, card, judge),
         points=points,
         quantities=(
             ("clamp reading", math.degrees(clamp), "deg"),
@@ -391,7 +391,7 @@ def _residuals(
 
 
 def _tests(
-    observed: Observed, fit: ClampedFit | None, card: InstrumentCard, rng: np.random.Generator
+    observed: Observed, fit: ClampedFit | None, card: InstrumentCard, judge: Judge
 ) -> tuple[FitTest, ...]:
     swing = observed.swing
     if fit is not None:
@@ -403,7 +403,7 @@ def _tests(
         )
         known = card.sigma.scale_div is not None and card.sigma.time_s is not None
         return goodness_of_fit(
-            whitened, fit.jacobian, rng, sigma=1.0 if known else None, resolution=0.0
+            whitened, fit.jacobian, judge, sigma=1.0 if known else None, resolution=0.0
         )
     if swing.readings.size < 4:
         return ()
@@ -414,7 +414,7 @@ def _tests(
     return goodness_of_fit(
         own.residuals,
         jacobian,
-        rng,
+        judge,
         sigma=card.sigma.scale_div,
         resolution=reading_resolution(observed.readings),
     )

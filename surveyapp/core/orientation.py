@@ -22,6 +22,7 @@ from surveyapp.core.geodesy import (
     open_grid,
     position_of,
 )
+from surveyapp.core.goodness import Judge
 from surveyapp.core.instrument_constant import (
     InstrumentConstant,
     determine,
@@ -108,7 +109,9 @@ def orient_project(
         for station in project.stations
     }
     warnings = list(project.warnings)
-    setting = _Setting(project, positions, stations, rng, estimator, run_model)
+    tested = sum(session.method != "automatic" for session in project.sessions)
+    judge = Judge(rng, tested)
+    setting = _Setting(project, positions, stations, judge, estimator, run_model)
     reduced, sigmas = _reduce_all(setting)
     measured = reduced = with_pooled_weights(reduced)
     for instrument in project.instruments:
@@ -154,7 +157,7 @@ class _Setting:
     project: Project
     positions: Mapping[str, Position]
     stations: Mapping[str, Station]
-    rng: np.random.Generator
+    judge: Judge
     estimator: str | None
     run_model: RunModel | None
 
@@ -211,7 +214,7 @@ def _reduce_one(
     reduction = reduce_swing(
         session,
         card,
-        setting.rng,
+        setting.judge,
         latitude=latitude,
         estimator=setting.estimator,
         run_model=setting.run_model,

@@ -21,6 +21,7 @@ from surveyapp.core.forecast import (
     forecast_reading,
     swing_curve,
 )
+from surveyapp.core.goodness import Judge
 from surveyapp.core.gyrofit import SwingFit, design, fit_swing, schuler_means, unwrap
 from surveyapp.core.reduction import ReadingSigma, reading_sigma
 from surveyapp.core.resolution import reading_resolution
@@ -231,7 +232,7 @@ def _north(
 ) -> tuple[float | None, float | None, str | None]:
     """Gyro north and its interval exactly as the reduction gives them."""
     try:
-        reduction = reduce_tracking(session, card, rng, latitude=latitude, estimator=None)
+        reduction = reduce_tracking(session, card, Judge(rng), latitude=latitude, estimator=None)
     except SurveyError:
         return None, None, None
     north = reduction.north

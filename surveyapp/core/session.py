@@ -6,9 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from surveyapp.core.automatic import azimuth_targets, reduce_automatic
+from surveyapp.core.goodness import Judge
 from surveyapp.core.nontracking import reduce_nontracking
 from surveyapp.core.plausibility import refuse_wrong_faces
 from surveyapp.core.reduction import Reduction
@@ -108,7 +107,7 @@ def estimator_for(session: OrientationSession, estimator: str | None) -> str | N
 def reduce_swing(
     session: OrientationSession,
     card: InstrumentCard,
-    rng: np.random.Generator,
+    judge: Judge,
     *,
     latitude: float | None,
     estimator: str | None,
@@ -121,12 +120,12 @@ def reduce_swing(
         return reduce_automatic(session, card)
     if session.method != "tracking":
         return reduce_nontracking(
-            session, card, rng, latitude=latitude, estimator=chosen, twist=twist
+            session, card, judge, latitude=latitude, estimator=chosen, twist=twist
         )
     return reduce_tracking(
         session,
         card,
-        rng,
+        judge,
         latitude=latitude,
         estimator=chosen,
         run_model=run_model,

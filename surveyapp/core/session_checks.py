@@ -36,7 +36,7 @@ def statistical_checks(orientation: Orientation) -> list[Check]:
         checks += _fit_checks(item)
         checks += _tape_zero_checks(orientation, item)
         sigma = orientation.sight_sigmas[item.session.instrument]
-        checks += _sight_checks(item, sigma)
+        checks += _sight_checks(item, sigma, SIGNIFICANCE / len(orientation.sessions))
     for constant in orientation.constants:
         checks += _constant_checks(constant)
     for line in orientation.lines:
@@ -125,7 +125,7 @@ def _tape_zero_checks(orientation: Orientation, item: ReducedSession) -> list[Ch
     return checks
 
 
-def _sight_checks(item: ReducedSession, sigma: SightSigma) -> list[Check]:
+def _sight_checks(item: ReducedSession, sigma: SightSigma, level: float) -> list[Check]:
     checks = []
     for target in item.targets:
         sights = target.sights
@@ -134,7 +134,7 @@ def _sight_checks(item: ReducedSession, sigma: SightSigma) -> list[Check]:
         probability = drift_probability(sights, sigma=sigma.value, dof=sigma.dof)
         if probability is None:
             continue
-        limit = student_quantile(1.0 - 0.5 * SIGNIFICANCE, sigma.dof) * sigma.value
+        limit = student_quantile(1.0 - 0.5 * level, sigma.dof) * sigma.value
         limit *= math.sqrt(sights.drift_cofactor)
         checks.append(
             Check(
@@ -143,7 +143,7 @@ def _sight_checks(item: ReducedSession, sigma: SightSigma) -> list[Check]:
                 value=abs(sights.drift) * RHO_ARCSEC,
                 limit=limit * RHO_ARCSEC,
                 confirmed=True,
-                passed=probability >= SIGNIFICANCE,
+                passed=probability >= level,
                 unit="arcsec",
                 where=f"{item.session.id} to {target.target}",
                 text="sights after minus before: the tripod may have turned; it is taken out",

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.core.clamped import session_problem
-from surveyapp.core.goodness import FitTest, goodness_of_fit
+from surveyapp.core.goodness import FitTest, Judge, goodness_of_fit
 from surveyapp.core.gyrofit import (
     SwingFit,
     damping_left,
@@ -159,7 +159,7 @@ def period_from_times(rows: Sequence[Reading], index: Floats) -> float | None:
 def reduce_tracking(
     session: OrientationSession,
     card: InstrumentCard,
-    rng: np.random.Generator,
+    judge: Judge,
     *,
     latitude: float | None,
     estimator: str | None,
@@ -172,8 +172,8 @@ def reduce_tracking(
     ----------
     session : OrientationSession
     card : InstrumentCard
-    rng : numpy.random.Generator
-        For the null distributions of the tests of fit.
+    judge : Judge
+        Of the tests of fit.
     latitude : float or None
         [rad].
     estimator : str or None
@@ -247,7 +247,7 @@ def reduce_tracking(
         tape_zero=zero,
         coefficient=coefficient,
         tape_zero_correction=_correction_value(zero, correction),
-        tests=_tests(points, fit, rng, card),
+        tests=_tests(points, fit, judge, card),
         points=_point_results(points, fit),
         schuler_means=tuple(wrap_two_pi(points.origin + mean) for mean in means.tolist()),
         warnings=(*warnings, *_sigma_warnings(session, sigma)),
@@ -348,13 +348,13 @@ def _correction_value(zero: TapeZero | None, correction: Uncertain | None) -> fl
 
 
 def _tests(
-    points: TurningPoints, fit: SwingFit, rng: np.random.Generator, card: InstrumentCard
+    points: TurningPoints, fit: SwingFit, judge: Judge, card: InstrumentCard
 ) -> tuple[FitTest, ...]:
     jacobian = design(
         points.index, points.sides, amplitude=fit.amplitude, log_decrement=fit.log_decrement
     )
     return goodness_of_fit(
-        fit.residuals, jacobian, rng, sigma=card.sigma.reversal, resolution=points.resolution
+        fit.residuals, jacobian, judge, sigma=card.sigma.reversal, resolution=points.resolution
     )
 
 
