@@ -106,6 +106,12 @@ class Observation:
             raise
 
     @property
+    def torn(self) -> str | None:
+        """File beside the book that holds a torn last line, None where there is none."""
+        name = f"{self.session.book_path}.torn"
+        return name if (self.folder / name).exists() else None
+
+    @property
     def writable(self) -> bool:
         """Whether rows may be written: not by a second opener, and not after closing."""
         return self._lock.writable and not self.closed

@@ -52,7 +52,6 @@ COL_WARNING: Final = "warning"
 
 # details
 D_STATION: Final = "station"
-D_TARGET: Final = "line to"
 D_INSTRUMENT: Final = "instrument"
 D_PURPOSE: Final = "purpose"
 D_ESTIMATOR: Final = "estimator"
@@ -80,7 +79,6 @@ D_SOUTH: Final = "direction from south"
 D_EXISTING: Final = "azimuth from coordinates"
 D_BUDGET: Final = "budget"
 D_SHARE: Final = "share"
-POOLED: Final = "{choice}"
 STABLE: Final = "stable"
 NOT_STABLE: Final = "NOT STABLE"
 PURPOSES: Final = {"survey": "survey", "calibration": "calibration"}
@@ -145,7 +143,6 @@ CARD_AZIMUTH: Final = 'one azimuth ±{value}"'
 CARD_PERIOD: Final = "period {value} s at latitude {latitude}"
 CARD_SCALE: Final = 'scale {value}" a division'
 CARD_NOTHING: Final = "no values known; what is missing is taken from the residuals"
-MADE: Final = "made: {folder}"
 
 # new session
 NEW_SESSION_TITLE: Final = "New session"
@@ -237,10 +234,10 @@ CLOSED_BEFORE: Final = "the swing has begun: what is read now counts as after it
 CLOCK_SET: Final = (
     "the computer's clock was set by {seconds:+.0f} s; the session's time goes on unbroken"
 )
+TORN: Final = "a torn line stands in {file}: is that reading missing here?"
 CLOCK_BACK: Final = (
     "the computer's clock is {seconds:.0f} s before the last row; time goes on from that row"
 )
-TORN: Final = "a torn last line was moved aside to {book}.torn"
 QUESTIONS: Final = {
     "outside_forecast": "{difference} from the forecast, ±{limit}.",
     "wrong_side": "It lies on the other side.",
@@ -256,7 +253,6 @@ ALERTS: Final = {
 }
 LEDGER_COLUMNS: Final = ("row", "time", "kind", "reading", "", 'v "')
 LEDGER_STRUCK: Final = "struck"
-LEDGER_MISSED: Final = "missed"
 NEXT_POINT: Final = "next {side} in {time}"
 NEXT_NOW: Final = "next {side} NOW ({time})"
 NEXT_LONG_PAST: Final = "next {side} overdue (F5: missed)"
@@ -274,7 +270,6 @@ SCHULER: Final = "Schuler, without tape zero"
 CHANNEL_MIDPOINT: Final = 'v" midpoint '
 CHANNEL_AMPLITUDE: Final = 'v" amplitude'
 PLOT_EMPTY: Final = "The swing is drawn from the third turning point on."
-ROUNDS_EMPTY: Final = "Readings of this step are listed below."
 
 # strike
 STRIKE_TITLE: Final = "Strike a reading: it stays in the book and no longer counts"
@@ -310,7 +305,6 @@ KEY_PDF: Final = "PDF"
 KEY_OBSERVE: Final = "Observe"
 KEY_NEW: Final = "New"
 PDF_WRITTEN: Final = "written: {path}"
-PDF_WRITING: Final = "writing the record ..."
 KEY_NEW_PROJECT: Final = "New project"
 KEY_FOLDER: Final = "Folder"
 KEY_MAKE: Final = "Make it"

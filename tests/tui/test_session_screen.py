@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
+import errno
+import os
 from pathlib import Path
 
 import pytest
-from helpers_tui import SMALL, make_project, readings, rows_on_disk, simulated
+from helpers_tui import SMALL, Clock, make_project, readings, rows_on_disk, simulated
 from textual.pilot import Pilot
 from textual.widgets import Static
 
 from surveyapp import api
+from surveyapp.api_session import NewRow, Observation
 from surveyapp.core.simulate.session import book_text
 from surveyapp.core.steps import Step
+from surveyapp.domain.readings import ReadingKind
 from surveyapp.tui import texts
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.help import HelpScreen
 from surveyapp.tui.screens.result import ResultScreen
 from surveyapp.tui.screens.session import SessionScreen
 from surveyapp.tui.widgets.entry import EntryLine
+from surveyapp.tui.widgets.run import RunPane
+from surveyapp.tui.widgets.titlebar import TitleBar
 
 
 async def settle(pilot: Pilot[int]) -> None:
@@ -207,3 +213,79 @@ async def test_what_comes_after_the_first_turning_point_is_not_before_it(tmp_pat
         await enter(pilot, "175-00-09")
         assert told(screen) == texts.CLOSED_BEFORE
     assert readings(rows_on_disk(folder)) == [("reversal", "102-00-14")]
+
+
+async def test_a_full_disk_is_told_and_what_was_typed_stays(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = make_project(tmp_path / "p")
+    app = SurveyApp(str(folder))
+    async with app.run_test(size=SMALL) as pilot:
+        screen = await open_session(pilot)
+        await go_to(pilot, screen, Step.SWING)
+
+        def full(*_: object) -> int:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+        with monkeypatch.context() as patch:
+            patch.setattr(os, "fsync", full)
+            await pilot.press(*"102-00-14", "enter")
+            await pilot.pause()
+            assert told(screen).startswith("NOT written")
+            assert screen.query_one(EntryLine).text == "102-00-14"
+        await pilot.press("enter")
+        await settle(pilot)
+        assert told(screen).startswith("on disk")
+    assert readings(rows_on_disk(folder)) == [("reversal", "102-00-14")]
+
+
+async def test_the_second_opener_says_so_and_reads(tmp_path: Path) -> None:
+    folder = make_project(tmp_path / "p")
+    first = Observation(folder, "r1")
+    first.record(NewRow(ReadingKind.REVERSAL, "102-00-14", "dms"))
+    app = SurveyApp(str(folder))
+    async with app.run_test(size=SMALL) as pilot:
+        screen = await open_session(pilot)
+        assert screen.query_one(TitleBar).state == texts.READING_ONLY
+        await pilot.press(*"98-01-04", "enter")
+        await pilot.pause()
+        assert told(screen).startswith("NOT written")
+    first.close()
+    assert readings(rows_on_disk(folder)) == [("reversal", "102-00-14")]
+
+
+async def test_a_torn_line_is_told(tmp_path: Path) -> None:
+    folder = make_project(tmp_path / "p")
+    book = folder / "observations" / "r1.csv"
+    text = book.read_text(encoding="utf-8")
+    book.write_text(text + "1,,,reversal,102-00-14,dms,,,,,\n2,,,reversal,98-0", encoding="utf-8")
+    app = SurveyApp(str(folder))
+    async with app.run_test(size=SMALL) as pilot:
+        screen = await open_session(pilot)
+        assert "r1.csv.torn" in told(screen)
+    assert readings(rows_on_disk(folder)) == [("reversal", "102-00-14")]
+
+
+async def test_the_countdown_is_seen_and_heard(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder, clock = make_project(tmp_path / "p"), Clock()
+    seen = Observation(folder, "r1", now=clock.now, steady=clock.steady)
+    seen.go_to(Step.SWING)
+    for value in ("102-00-14", "98-01-04", "101-59-08"):
+        seen.record(NewRow(ReadingKind.REVERSAL, value, "dms"))
+        clock.pass_by(212.5)
+    seen.close()
+    rung = []
+    app = SurveyApp(str(folder), now=clock.now, steady=clock.steady)
+    monkeypatch.setattr(app, "bell", lambda: rung.append(True))
+    async with app.run_test(size=SMALL) as pilot:
+        await settle(pilot)
+        await settle(pilot)
+        await settle(pilot)
+        screen = app.screen
+        assert isinstance(screen, SessionScreen)
+        screen.query_one(RunPane).tick()
+        await pilot.pause()
+        assert "NOW" in str(screen.query_one("#countdown", Static).content)
+    assert rung == [True]

@@ -89,6 +89,9 @@ class SessionScreen(Screen[None]):
         back = self.observation.clock.set_back_s
         if back:
             entry.tell(texts.CLOCK_BACK.format(seconds=back), serious=True)
+        torn = self.observation.torn
+        if torn is not None:
+            entry.tell(texts.TORN.format(file=torn), serious=True)
         entry.text = self.draft
         self.query_one(ReadingInput).focus()
         self.show_book()
