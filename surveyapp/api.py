@@ -41,6 +41,8 @@ if TYPE_CHECKING:
 
 Folder = str | os.PathLike[str]
 
+SubjectKeyword = Literal["session", "campaign", "traverse"]
+
 SOFTWARE = f"surveyapp {__version__}"
 
 
@@ -351,6 +353,7 @@ def diagnose(
     *,
     session: str | None = None,
     campaign: str | None = None,
+    traverse: str | None = None,
     confirm: str | None = None,
     effects: Folder | None = None,
     adopt: bool = False,
@@ -365,9 +368,11 @@ def diagnose(
         Diagnose the turning points of this session.
     campaign : str or None
         Diagnose the determinations of this instrument.
+    traverse : str or None
+        Diagnose the conditions of this traverse.
     confirm : str or None
-        A second session that chose nothing; for a campaign the session from which on the
-        determinations only confirm.
+        A second session or traverse that chose nothing; for a campaign the session from which on
+        the determinations only confirm.
     effects : path or None
         A Python file with a tuple ``EFFECTS`` of the user's own effects.
     adopt : bool
@@ -381,31 +386,35 @@ def diagnose(
         For an unknown subject, too few observations, or a project that cannot be written.
     """
     from surveyapp.io.effects import load_effects
-    from surveyapp.workflows.diagnosing import Request, diagnose_project
+    from surveyapp.workflows.choosing import Request
+    from surveyapp.workflows.diagnosing import diagnose_project
 
     if not isinstance(project, Project):
         project = open_project(project)
     own = () if effects is None else load_effects(Path(effects))
     return diagnose_project(
         _computed(project),
-        Request(session, campaign, confirm, own),
+        Request(session, campaign, confirm, own, traverse),
         folder=Path(project.path) if project.path else None,
         adopt=adopt,
         software=SOFTWARE,
         log=log,
+        networks=lambda name: network(project, traverse=name),
     )
 
 
-def subjects(project: Project | Folder) -> tuple[tuple[Literal["session", "campaign"], str], ...]:
+def subjects(project: Project | Folder) -> tuple[tuple[SubjectKeyword, str], ...]:
     """What ``diagnose`` can take of a project: its keyword and the id."""
-    from surveyapp.workflows.diagnosing import subjects_of
+    from surveyapp.workflows.choosing import subjects_of
 
     if not isinstance(project, Project):
         project = open_project(project)
-    return tuple(
-        ("session" if item.option == "--session" else "campaign", item.id)
-        for item in subjects_of(project)
-    )
+    keywords: dict[str, SubjectKeyword] = {
+        "--session": "session",
+        "--campaign": "campaign",
+        "--traverse": "traverse",
+    }
+    return tuple((keywords[item.option], item.id) for item in subjects_of(project))
 
 
 def _computed(

@@ -80,6 +80,8 @@ def _diagnoses(project: Project | Folder) -> tuple[Extra, ...]:
         try:
             if option == "session":
                 made = api.diagnose(project, session=identity, log=False)
+            elif option == "traverse":
+                made = api.diagnose(project, traverse=identity, log=False)
             else:
                 made = api.diagnose(project, campaign=identity, log=False)
         except SurveyError:

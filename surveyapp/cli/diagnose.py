@@ -19,11 +19,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folder", metavar="DIR", help="project folder")
     parser.add_argument("--session", metavar="ID", help="the turning points of this session")
     parser.add_argument("--campaign", metavar="INSTRUMENT", help="its repeated determinations")
+    parser.add_argument("--traverse", metavar="NAME", help="the conditions of this traverse")
     parser.add_argument(
         "--confirm",
         metavar="ID",
-        help="a second session that chose nothing; for a campaign, from which session on "
-        "determinations only confirm",
+        help="a second session or traverse that chose nothing; for a campaign, from which session "
+        "on determinations only confirm",
     )
     parser.add_argument("--effects", metavar="FILE.py", help="your own effects")
     parser.add_argument("--adopt", action="store_true", help="write named effects to the project")
@@ -38,6 +39,7 @@ def run(options: argparse.Namespace) -> int:
         options.folder,
         session=options.session,
         campaign=options.campaign,
+        traverse=options.traverse,
         confirm=options.confirm,
         effects=options.effects,
         adopt=options.adopt,
@@ -63,7 +65,9 @@ def subjects_text(found: Diagnosed) -> str:
 
 def diagnosis_text(diagnosis: Diagnosis, words: Sequence[str]) -> str:
     """The whole diagnosis in words and tables."""
-    name = {"reversal_run": "run ", "campaign": ""}.get(diagnosis.subject, diagnosis.subject)
+    name = {"reversal_run": "run ", "campaign": "", "traverse": ""}.get(
+        diagnosis.subject, diagnosis.subject
+    )
     parts = [heading(f"{name}{diagnosis.identity}: {diagnosis.verdict.replace('_', ' ')}")]
     parts.append("\n".join(textwrap.fill(text, 79) for text in words))
     parts.append(_models(diagnosis))

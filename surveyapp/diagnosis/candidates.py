@@ -116,8 +116,10 @@ def missing_columns(effect: Effect, columns: Mapping[str, Array]) -> str:
     return "; ".join(lacking)
 
 
-CONSTANT_COLUMNS = frozenset({"first_amplitude", "decay", "side", "relative_amplitude"})
-"""Columns of the swing that may be constant."""
+CONSTANT_COLUMNS = frozenset(
+    {"first_amplitude", "decay", "side", "relative_amplitude", "own_sigma"}
+)
+"""Columns that may be constant."""
 
 
 def all_candidates(problem: Problem, theta: Array | None) -> tuple[Candidate, ...]:

@@ -200,7 +200,9 @@ def scan_law(
 
 
 def with_noise(problem: Problem, fit: Fit) -> tuple[Fit, ...]:
-    """The same model with each stochastic rival beside its members."""
+    """The same model with each stochastic rival beside its members; none without any order."""
+    if not problem.ordered:
+        return ()
     if problem.sigma_known or problem.size <= fit.design.shape[1] + 2:
         return ()
     found = best_noises(

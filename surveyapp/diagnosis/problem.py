@@ -112,6 +112,11 @@ class Problem:
         return self.side is not None
 
     @property
+    def ordered(self) -> bool:
+        """Whether the observations follow each other at all: conditions of a traverse do not."""
+        return self.size < 2 or float(np.ptp(self.position)) > 0.0
+
+    @property
     def base_parameters(self) -> int:
         """Parameters of the base model: linear ones, amplitude and damping of a swing."""
         return int(self.base.shape[1]) + (2 if self.has_swing else 0)

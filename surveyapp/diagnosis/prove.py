@@ -35,6 +35,12 @@ def flagged(fit: Fit) -> Array:
     return mask
 
 
+def uncontrolled(problem: Problem) -> Array:
+    """Observations that no other one controls, as a mask (n,): the result's own of a traverse."""
+    q, _ = np.linalg.qr(problem.base * problem.root_weights[:, None])
+    return np.asarray(1.0 - np.einsum("np,np->n", q, q) < 1e-6, dtype=np.float64)
+
+
 def _alternatives(problem: Problem, fit: Fit) -> list[Fit]:
     found = [fit]
     for member in fit.members:
@@ -75,6 +81,7 @@ def leave_one_out(problem: Problem, fit: Fit, skip: Array | None = None) -> floa
     pick = np.argmin(np.array(chosen), axis=0)
     error = np.array(errors)[pick, np.arange(problem.size)] / problem.root_weights
     mask = flagged(fit) if skip is None else np.maximum(flagged(fit), skip)
+    mask = np.maximum(mask, uncontrolled(problem))
     error = error[mask < 0.5]
     if error.size == 0 or not np.isfinite(error).all():
         return None
@@ -103,6 +110,8 @@ def forecast(problem: Problem, fit: Fit) -> float | None:
 
     None where an effect of the fit cannot be determined from the first three quarters.
     """
+    if not problem.ordered:
+        return None
     n = problem.size
     first = math.floor(FORECAST_SHARE * n)
     order = np.argsort(problem.position, kind="stable")

@@ -6,6 +6,8 @@ they are. No arithmetic beyond units.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from surveyapp.diagnosis.problem import Problem
 from surveyapp.diagnosis.result import Adoption, Diagnosis, ModelResult, Quantity
 from surveyapp_models.effects.effect import Effect
@@ -22,10 +24,19 @@ NOISE_AND_SHAPES = {
     "amplitude_step": "a sudden change of the amplitude without a known cause",
     "outlier": "a single determination that stands off",
 }
-RESULT_NAMES = {"reversal_run": "north over the run", "campaign": "the constant"}
+RESULT_NAMES = {
+    "reversal_run": "north over the run",
+    "campaign": "the constant",
+    "traverse": "the place of the least certain point",
+}
 
 
-def plain_words(result: Diagnosis, effects: tuple[Effect, ...]) -> list[str]:
+Labels = Mapping[str, Mapping[float, str]]
+
+
+def plain_words(
+    result: Diagnosis, effects: tuple[Effect, ...], labels: Labels | None = None
+) -> list[str]:
     """Tell a diagnosis in plain sentences.
 
     Parameters
@@ -33,6 +44,8 @@ def plain_words(result: Diagnosis, effects: tuple[Effect, ...]) -> list[str]:
     result : Diagnosis
     effects : tuple of Effect
         Those of the problem (``problem.effects``), for their titles and symptoms.
+    labels : mapping, optional
+        Names behind the numbers of scanned parameters (``problem.grid_labels``).
 
     Returns
     -------
@@ -41,7 +54,7 @@ def plain_words(result: Diagnosis, effects: tuple[Effect, ...]) -> list[str]:
     """
     known = {effect.id: effect for effect in effects}
     said = [_seen(result)]
-    said += [_adopted(result, item, known) for item in result.adopted]
+    said += [_adopted(result, item, known, labels or {}) for item in result.adopted]
     if not result.adopted and result.verdict != "adequate":
         said.append("No cause is named.")
     said += _ambiguous(result, known)
@@ -55,8 +68,8 @@ def plain_words(result: Diagnosis, effects: tuple[Effect, ...]) -> list[str]:
 
 
 def words_of(result: Diagnosis, problem: Problem) -> list[str]:
-    """Same as ``plain_words`` with the effects of a problem."""
-    return plain_words(result, problem.effects)
+    """Same as ``plain_words`` with the effects and labels of a problem."""
+    return plain_words(result, problem.effects, problem.grid_labels)
 
 
 def _unit(result: Diagnosis) -> str:
@@ -87,12 +100,14 @@ def _seen(result: Diagnosis) -> str:
     return f"The residuals of {error} are more than noise{tail}."
 
 
-def _adopted(result: Diagnosis, item: Adoption, known: dict[str, Effect]) -> str:
+def _adopted(result: Diagnosis, item: Adoption, known: dict[str, Effect], labels: Labels) -> str:
     symptom = known[item.effect].symptom if item.effect in known else item.title
     parts = [
         f"{c.name} {c.value:.3g} {c.unit} (sigma {c.sigma or 0.0:.1g})" for c in item.coefficients
     ]
-    where = ", ".join(f"{n.replace('_', ' ')} {v:g}" for n, v, _ in item.grid)
+    where = ", ".join(
+        f"{n.replace('_', ' ')} {labels.get(n, {}).get(v, format(v, 'g'))}" for n, v, _ in item.grid
+    )
     place = f" at {where}" if where else ""
     margin = ""
     if item.margin_bic is not None:

@@ -19,43 +19,16 @@ from surveyapp.diagnosis.battery import channels
 from surveyapp.diagnosis.engine import diagnose as run_engine
 from surveyapp.diagnosis.problem import Problem
 from surveyapp.diagnosis.result import Adoption, Diagnosis
-from surveyapp.diagnosis.subjects import (
-    LEAST_CAMPAIGN,
-    campaign_problem,
-    is_run,
-    run_problem,
-)
 from surveyapp.diagnosis.words import words_of
 from surveyapp.domain.project import Project
 from surveyapp.errors import Problem as InputProblem
-from surveyapp.errors import SurveyError, nearest_names
+from surveyapp.errors import SurveyError
 from surveyapp.io.ledger import append_entry
 from surveyapp.io.lock import ProjectLock
 from surveyapp.io.writing import append_subtable
-from surveyapp_models.effects.effect import Effect
+from surveyapp.workflows.choosing import Networks, Request, Subject, choose
 
 RANGE_COLUMNS = ("temperature_c", "latitude", "elapsed_days", "running_s")
-
-
-@dataclass(frozen=True, slots=True)
-class Subject:
-    """Something in a project that can be diagnosed.
-
-    Parameters
-    ----------
-    option : str
-        ``--session`` or ``--campaign``.
-    id : str
-    observations : int
-    """
-
-    option: str
-    id: str
-    observations: int
-
-    def to_dict(self) -> dict[str, Any]:
-        """Keys of the JSON."""
-        return {"option": self.option, "id": self.id, "observations": self.observations}
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,104 +67,6 @@ class Diagnosed:
         }
 
 
-def subjects_of(project: Project) -> tuple[Subject, ...]:
-    """Everything in a project that can be diagnosed by itself."""
-    found = [
-        Subject("--session", session.id, len(session.book.live))
-        for session in project.sessions
-        if is_run(session)
-    ]
-    for instrument in project.instruments:
-        count = sum(session.instrument == instrument.id for session in project.sessions)
-        if count >= LEAST_CAMPAIGN:
-            found.append(Subject("--campaign", instrument.id, count))
-    return tuple(found)
-
-
-@dataclass(frozen=True, slots=True)
-class Request:
-    """What is to be diagnosed.
-
-    Parameters
-    ----------
-    session, campaign : str or None
-        At most one of them.
-    confirm : str or None
-        A second run; for a campaign the session from which on determinations only confirm.
-    effects : tuple of Effect
-        The user's own.
-    """
-
-    session: str | None = None
-    campaign: str | None = None
-    confirm: str | None = None
-    effects: tuple[Effect, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Chosen:
-    """The problem and its confirming set, or the subjects where one must be chosen."""
-
-    problem: Problem | None
-    confirm: Problem | None = None
-    subjects: tuple[Subject, ...] = ()
-
-
-def choose(orientation: Orientation, request: Request) -> Chosen:
-    """Find what a request means in a project."""
-    project = orientation.project
-    if request.session is None and request.campaign is None:
-        subjects = subjects_of(project)
-        if len(subjects) != 1:
-            return Chosen(None, subjects=subjects)
-        only = subjects[0]
-        chosen = {"session" if only.option == "--session" else "campaign": only.id}
-        request = Request(**chosen, confirm=request.confirm, effects=request.effects)
-    if request.session is not None and request.campaign is not None:
-        raise SurveyError(
-            InputProblem("one subject at a time", "diagnose", "--session and --campaign", "one")
-        )
-    if request.campaign is not None:
-        names = [instrument.id for instrument in project.instruments]
-        _require(request.campaign, names, "--campaign", "instrument")
-        return Chosen(
-            *campaign_problem(
-                orientation,
-                request.campaign,
-                extra=request.effects,
-                confirm_from=request.confirm,
-            )
-        )
-    problem = _run(orientation, request.session or "", "--session", request.effects)
-    if request.confirm is None:
-        return Chosen(problem)
-    return Chosen(problem, _run(orientation, request.confirm, "--confirm", request.effects))
-
-
-def _run(
-    orientation: Orientation, identity: str, option: str, effects: tuple[Effect, ...]
-) -> Problem:
-    project = orientation.project
-    _require(identity, [session.id for session in project.sessions], option, "session")
-    session = project.session(identity)
-    return run_problem(
-        session,
-        project.instrument(session.instrument).card,
-        latitude=orientation.positions[session.station].latitude,
-        extra=effects,
-    )
-
-
-def _require(name: str, known: list[str], where: str, kind: str) -> None:
-    if name not in known:
-        hint = nearest_names(name, known)
-        raise SurveyError(
-            InputProblem(
-                f"there is no {kind} of this name", where, name, f"the name of a known {kind}", hint
-            )
-        )
-
-
 def diagnose_project(
     orientation: Orientation,
     request: Request,
@@ -201,6 +76,7 @@ def diagnose_project(
     software: str,
     log: bool = True,
     now: datetime | None = None,
+    networks: Networks | None = None,
 ) -> Diagnosed:
     """Diagnose, log, and adopt where asked.
 
@@ -218,13 +94,15 @@ def diagnose_project(
         Whether the diagnosis is appended to the ledger where the folder can be written.
     now : datetime, optional
         Moment of the adoption; the wall clock if absent.
+    networks : callable, optional
+        Networks of the traverses by name; needed to diagnose one.
 
     Raises
     ------
     SurveyError
         For an unknown subject, too few observations, or a folder that cannot be written.
     """
-    chosen = choose(orientation, request)
+    chosen = choose(orientation, request, networks)
     if chosen.problem is None:
         if adopt:
             raise SurveyError(
@@ -237,6 +115,8 @@ def diagnose_project(
                 )
             )
         return Diagnosed(None, chosen.subjects)
+    if adopt and chosen.problem.subject == "traverse":
+        _refuse_adoption(chosen.problem.identity)
     diagnosis = run_engine(chosen.problem, confirm=chosen.confirm)
     moment = (now or datetime.now(UTC)).isoformat(timespec="seconds")
     written: tuple[str, ...] = ()
@@ -253,6 +133,18 @@ def diagnose_project(
         )
     words = tuple(words_of(diagnosis, chosen.problem))
     return Diagnosed(diagnosis, (), written, words, _channels(diagnosis, chosen.problem))
+
+
+def _refuse_adoption(identity: str) -> None:
+    raise SurveyError(
+        InputProblem(
+            "an effect of a traverse is mended at its source, not adopted",
+            f"diagnose --adopt, {identity}",
+            "--adopt with --traverse",
+            "a corrected book, constant or setting",
+            "Follow the remedy, enter the corrected values, adjust and diagnose again.",
+        )
+    )
 
 
 def _channels(
@@ -281,6 +173,8 @@ def _need_writable(lock: ProjectLock, folder: Path) -> None:
 
 def _already(project: Project, diagnosis: Diagnosis) -> frozenset[str]:
     """Ids of the effects that the session (a run) or the instrument (a campaign) has already."""
+    if diagnosis.subject == "traverse":
+        return frozenset()
     if diagnosis.subject == "reversal_run":
         return frozenset(effect.id for effect in project.session(diagnosis.identity).effects)
     return frozenset(effect.id for effect in project.instrument(diagnosis.instrument).effects)

@@ -13,7 +13,7 @@ from surveyapp_models.effects.effect import Columns, Effect
 
 IDS = [f"{effect.subject}.{effect.id}" for effect in CATALOGUE]
 # Subjects whose columns this test knows how to make; other subjects bring their own test.
-PLAIN = {"reversal_run", "campaign"}
+PLAIN = {"reversal_run", "campaign", "traverse"}
 
 
 def columns_of(subject: str) -> Columns:
@@ -27,6 +27,18 @@ def columns_of(subject: str) -> Columns:
             "first_amplitude": np.full(19, 0.02),
             "decay": np.full(19, 0.02),
             "temperature_c": 20.0 + generator.normal(size=19),
+        }
+    if subject == "traverse":
+        kind = np.arange(30) % 3
+        gyro = (np.arange(30) % 10 == 9).astype(float)
+        return {
+            "distance_m": np.where(kind == 0, generator.uniform(30.0, 200.0, 30), 0.0),
+            "sights_turned": (kind == 1).astype(float),
+            "wall_length_m": np.where(kind == 1, generator.uniform(-90.0, 90.0, 30), 0.0),
+            "gyro_side": gyro * np.cumsum(gyro),
+            "gyro_group": gyro,
+            "observation": np.arange(1.0, 31.0),
+            "own_sigma": np.where(kind == 0, 0.002, 3e-5),
         }
     return {
         "elapsed_days": np.cumsum(generator.uniform(1.0, 20.0, 30)),

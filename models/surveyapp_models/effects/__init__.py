@@ -6,7 +6,7 @@ or handed over by the user does not exist.
 
 from __future__ import annotations
 
-from surveyapp_models.effects import campaign, reversal_run
+from surveyapp_models.effects import campaign, reversal_run, traverse
 from surveyapp_models.effects.campaign import circle_eccentricity as _c_circle_eccentricity
 from surveyapp_models.effects.campaign import gyro_block as _c_gyro_block
 from surveyapp_models.effects.campaign import latitude as _c_latitude
@@ -26,6 +26,13 @@ from surveyapp_models.effects.reversal_run import quadratic_drag as _r_quadratic
 from surveyapp_models.effects.reversal_run import secondary_oscillation as _r_secondary_oscillation
 from surveyapp_models.effects.reversal_run import temperature as _r_temperature
 from surveyapp_models.effects.reversal_run import warm_up as _r_warm_up
+from surveyapp_models.effects.traverse import angle_bias as _t_angle_bias
+from surveyapp_models.effects.traverse import distance_constant as _t_distance_constant
+from surveyapp_models.effects.traverse import distance_cyclic as _t_distance_cyclic
+from surveyapp_models.effects.traverse import distance_scale as _t_distance_scale
+from surveyapp_models.effects.traverse import gross_error as _t_gross_error
+from surveyapp_models.effects.traverse import gyro_constant_shift as _t_gyro_constant_shift
+from surveyapp_models.effects.traverse import lateral_refraction as _t_lateral_refraction
 
 CATALOGUE: tuple[Effect, ...] = (
     _r_damping_break.EFFECT,
@@ -46,6 +53,13 @@ CATALOGUE: tuple[Effect, ...] = (
     _c_line_offset.EFFECT,
     _c_gyro_block.EFFECT,
     _c_warm_up.EFFECT,
+    _t_distance_scale.EFFECT,
+    _t_distance_constant.EFFECT,
+    _t_distance_cyclic.EFFECT,
+    _t_angle_bias.EFFECT,
+    _t_lateral_refraction.EFFECT,
+    _t_gyro_constant_shift.EFFECT,
+    _t_gross_error.EFFECT,
 )
 
 
@@ -54,4 +68,4 @@ def of_subject(subject: Subject) -> tuple[Effect, ...]:
     return tuple(effect for effect in CATALOGUE if effect.subject == subject)
 
 
-__all__ = ["CATALOGUE", "Effect", "Subject", "campaign", "of_subject", "reversal_run"]
+__all__ = ["CATALOGUE", "Effect", "Subject", "campaign", "of_subject", "reversal_run", "traverse"]

@@ -106,6 +106,8 @@ class DiagnosisScreen(Screen[None]):
         try:
             if option == "session":
                 found = api.diagnose(self.folder, session=identity, adopt=adopt, log=adopt)
+            elif option == "traverse":
+                found = api.diagnose(self.folder, traverse=identity, adopt=adopt, log=adopt)
             else:
                 found = api.diagnose(self.folder, campaign=identity, adopt=adopt, log=adopt)
             self.post_message(self.Found(row, found))

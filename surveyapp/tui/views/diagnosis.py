@@ -27,7 +27,7 @@ def subject_rows(
         verdict = ""
         if made is not None and made.diagnosis is not None:
             verdict = made.diagnosis.verdict.replace("_", " ")
-        name = texts.SUBJECT_RUN if option == "session" else texts.SUBJECT_CAMPAIGN
+        name = texts.SUBJECTS.get(option, option)
         rows.append((name, identity, verdict))
     return rows
 

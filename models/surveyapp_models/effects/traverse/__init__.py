@@ -1,0 +1,1 @@
+"""Effects of the subject traverse, one physical cause per file."""

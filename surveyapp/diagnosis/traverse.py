@@ -1,0 +1,292 @@
+"""A traverse as a problem: what its misclosures say about instruments and field work.
+
+An adjusted network of n observations with p unknowns contradicts itself in n - p independent
+conditions only. They are what is diagnosed: the whitened residuals in an orthonormal base of what
+the unknowns leave free, each with a standard deviation of 1 if the stated sigmas are right. One row
+more carries the result: the place of the least certain point along the longest axis of its
+ellipse, in units of its own sigma, so that every effect shows what it does to the coordinates.
+
+The conditions have no order: there are no generic shapes over time and no wandering noise here;
+correlation is the business of the covariance blocks. Nothing is corrected: a distance whose
+atmosphere the instrument has corrected is taken as it stands.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from surveyapp.core.network.adjustment import solve_network
+from surveyapp.core.network.model import Model, compile_network
+from surveyapp.core.network.observation_equations import equations, linearised, misclosures
+from surveyapp.diagnosis.problem import Array, Problem
+from surveyapp.domain.observations import Observation, ObservationKind
+from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.traverse import Network
+from surveyapp.errors import Problem as InputProblem
+from surveyapp.errors import SurveyError
+from surveyapp_models.effects import of_subject
+from surveyapp_models.effects.effect import Columns, Effect
+
+K = ObservationKind
+MOST_OBSERVATIONS = 2000
+"""The conditions are held in a dense matrix; larger networks are diagnosed in parts."""
+RANK = 1e-9
+"""Singular values below this share of the largest are a free datum."""
+TRANSFORM = "conditions_of_observations"
+_LENGTHS = frozenset({K.DISTANCE, K.SLOPE_DISTANCE})
+_SIGHTS = frozenset({K.DIRECTION, K.AZIMUTH, K.GYRO})
+_WALL = re.compile(r"\bwall\s*[=: ]\s*(left|right)\b", re.IGNORECASE)
+
+
+def traverse(
+    network: Network,
+    *,
+    name: str = "",
+    atmosphere_applied: bool | None = None,
+    extra: tuple[Effect, ...] = (),
+) -> Problem:
+    """Make the problem of a network.
+
+    Parameters
+    ----------
+    network : Network
+        A sight along a wall says so in its note: ``wall=left`` or ``wall=right``.
+    name : str
+        For messages.
+    atmosphere_applied : bool or None
+        Whether the instrument has corrected the distances; None = nobody says.
+    extra : tuple of Effect
+        The user's own; their basis is in the unit of the observations [rad] and [m].
+
+    Returns
+    -------
+    Problem
+        ``columns`` are those of the observations, ``observations`` the conditions.
+
+    Raises
+    ------
+    SurveyError
+        What the adjustment refuses, no redundancy at all, or too many observations.
+    """
+    identity = name or network.name or "traverse"
+    if len(network.observations) > MOST_OBSERVATIONS:
+        raise SurveyError(
+            InputProblem(
+                "too many observations to diagnose them together",
+                identity,
+                str(len(network.observations)),
+                f"at most {MOST_OBSERVATIONS}",
+                "Diagnose one traverse at a time.",
+            )
+        )
+    model = compile_network(network)
+    values = solve_network(network, model).values
+    whitener, design, right = _whitened(model, values)
+    weakest, towards = _weakest_point(network, model, design)
+    transform = _conditions(design, towards)
+    if transform.shape[0] < 2:
+        raise SurveyError(
+            InputProblem(
+                "nothing controls the traverse",
+                identity,
+                f"{len(model.observations)} observations, all of them necessary",
+                "a closure, a repetition, a fixed point or gyro side more",
+            )
+        )
+    size = transform.shape[0]
+    base = np.zeros((size, 1))
+    base[0, 0] = 1.0
+    columns = {**observation_columns(network, model, values), TRANSFORM: transform @ whitener}
+    return Problem(
+        subject="traverse",
+        observations=transform @ right,
+        base=base,
+        base_names=(f"place of {weakest}",),
+        value_base=np.ones(1),
+        value_weights=np.zeros(size),
+        position=np.zeros(size),
+        columns=columns,
+        effects=tuple(_in_conditions(e) for e in (*of_subject("traverse"), *extra)),
+        sigma=np.ones(size),
+        unit="sigma",
+        scale=1.0,
+        identity=identity,
+        labels=(f"place of {weakest}", *[f"condition {i}" for i in range(1, size)]),
+        grid_labels=_labels(model),
+        warnings=_warnings(atmosphere_applied, columns, weakest),
+    )
+
+
+def _in_conditions(effect: Effect) -> Effect:
+    """The same effect, its basis taken from the observations to the conditions."""
+
+    def basis(columns: Columns, /, **grid: float) -> Array:
+        return np.asarray(columns[TRANSFORM] @ effect.basis(columns, **grid))
+
+    return replace(effect, basis=basis)
+
+
+def _whitened(model: Model, values: Array) -> tuple[Array, Array, Array]:
+    """Whitener (n, n), whitened design (n, u) and misclosures (n,) at the adjusted values."""
+    computed, partials = linearised(model, values)
+    n, u = len(model.value), model.structure.count
+    misclosure = misclosures(model, computed)
+    whitener, design, right = np.zeros((n, n)), np.zeros((n, u + 1)), np.zeros(n)
+    for group in equations(model, partials, misclosure):
+        inverse = np.linalg.inv(group.root)
+        for rows, unknowns, jacobian, part, inv in zip(
+            group.rows, group.unknowns, group.jacobian, group.misclosure, inverse, strict=True
+        ):
+            whitener[np.ix_(rows, rows)] = inv
+            design[np.ix_(rows, unknowns)] += jacobian
+            right[rows] = part
+    return whitener, design[:, :u], right
+
+
+def _weakest_point(network: Network, model: Model, design: Array) -> tuple[str, Array]:
+    """Name of the least certain point, and the unit row that estimates its worst coordinate."""
+    pseudo = np.linalg.pinv(design, rcond=RANK)
+    unknowns = model.unknown_of[: 3 * len(network.points)].reshape(-1, 3)
+    best: tuple[float, str, Array] = (0.0, "", np.zeros(design.shape[0]))
+    for point, own in zip(network.points, unknowns, strict=True):
+        rows = pseudo[own[own >= 0]]
+        if not len(rows):
+            continue
+        variance, axes = np.linalg.eigh(rows @ rows.T)
+        if variance[-1] > best[0]:
+            best = (float(variance[-1]), point.name, axes[:, -1] @ rows)
+    norm = float(np.linalg.norm(best[2]))
+    return best[1], best[2] / norm if norm > 0.0 else best[2]
+
+
+def _conditions(design: Array, towards: Array) -> Array:
+    """The row of the result and an orthonormal base of what the unknowns leave, (r + 1, n)."""
+    left, singular, _ = np.linalg.svd(design, full_matrices=True)
+    rank = int((singular > RANK * singular[0]).sum()) if singular.size else 0
+    return np.vstack([towards[None, :], left[:, rank:].T])
+
+
+def _positions(network: Network, values: Array) -> dict[str, Array]:
+    places = values[: 3 * len(network.points)].reshape(-1, 3)
+    return {point.name: places[i, :2] for i, point in enumerate(network.points)}
+
+
+def _walls(observations: Sequence[Observation]) -> dict[tuple[str, str], float]:
+    """Side of the wall of every sight whose note names it, + right; the other way round -."""
+    found: dict[tuple[str, str], float] = {}
+    for obs in observations:
+        told = _WALL.search(obs.note)
+        if told is not None and obs.to:
+            side = 1.0 if told.group(1).lower() == "right" else -1.0
+            found[obs.at, obs.to] = side
+            found.setdefault((obs.to, obs.at), -side)
+    return found
+
+
+def observation_columns(network: Network, model: Model, values: Array) -> dict[str, Array]:
+    """Columns of the observations, each of shape (n,); 0 where the kind has no such thing.
+
+    Lengths are adjusted ones: where the sides are multiples of the unit length of a cyclic error,
+    its sine at the observed length is the error of the observation itself, and noise would explain
+    noise; what the adjusted length errs is in the unknowns and drops out.
+
+    Parameters
+    ----------
+    network : Network
+    model : Model
+        Of the network.
+    values : float array
+        Adjusted values of all slots.
+    """
+    rows, n = model.observations, len(model.observations)
+    computed, _ = linearised(model, values)
+    number = {point.name: float(i) for i, point in enumerate(network.points, start=1)}
+    columns = {name: np.zeros(n) for name in ("distance_m", "sights_turned", "wall_length_m")}
+    turned: dict[tuple[str, str], int] = {}
+    places, walls = _positions(network, values), _walls(rows)
+
+    def bent(at: str, to: str) -> float:
+        side = walls.get((at, to), 0.0)
+        return side * float(np.hypot(*(places[to] - places[at]))) if side else 0.0
+
+    for i, obs in enumerate(rows):
+        if obs.kind in _LENGTHS:
+            columns["distance_m"][i] = computed[i]
+        elif obs.kind is K.ANGLE:
+            columns["sights_turned"][i] = 1.0
+            columns["wall_length_m"][i] = bent(obs.at, obs.to) - bent(obs.at, obs.back)
+        elif obs.kind in _SIGHTS:
+            columns["wall_length_m"][i] = bent(obs.at, obs.to)
+        if obs.kind is K.DIRECTION:
+            columns["sights_turned"][i] = float(turned.get((obs.at, obs.set), 0))
+            turned[obs.at, obs.set] = turned.get((obs.at, obs.set), 0) + 1
+    known = np.array([obs.kind is K.GYRO_CONSTANT for obs in rows])
+    columns["gyro_side"], columns["gyro_group"] = _gyro_sides(model)
+    columns["station"] = np.array([number.get(obs.at, 0.0) for obs in rows])
+    columns["target"] = np.array([number.get(obs.to, 0.0) for obs in rows])
+    columns["observation"] = np.arange(1.0, n + 1.0)
+    columns["own_sigma"] = np.where(known, 0.0, model.sigma)
+    return columns
+
+
+def _gyro_sides(model: Model) -> tuple[Array, Array]:
+    """Number of each gyro side, constants one after the other, and of its constant."""
+    side, group = np.zeros(len(model.observations)), np.zeros(len(model.observations))
+    count = 0
+    for place, name in enumerate(model.constants, start=1):
+        for i, obs in enumerate(model.observations):
+            if obs.kind is K.GYRO and obs.constant == name:
+                count += 1
+                side[i], group[i] = count, place
+    return side, group
+
+
+def _labels(model: Model) -> dict[str, dict[float, str]]:
+    """What the numbers of the scanned parameters stand for."""
+    side, _ = _gyro_sides(model)
+    return {
+        "observation": {float(i): obs.where for i, obs in enumerate(model.observations, start=1)},
+        "first_side": {
+            float(s): f"{obs.at}-{obs.to}"
+            for s, obs in zip(side, model.observations, strict=True)
+            if s > 0.0
+        },
+    }
+
+
+def _warnings(
+    atmosphere_applied: bool | None, columns: Mapping[str, Array], weakest: str
+) -> tuple[ResultWarning, ...]:
+    value = f"values are the place of {weakest}, the least certain point, in its own sigmas"
+    found = [ResultWarning("weakest_point", value)]
+    if not columns["distance_m"].any():
+        return tuple(found)
+    if atmosphere_applied is None:
+        text = (
+            "atmosphere_applied is not stated: whether the distances hold the atmospheric "
+            "correction is unknown, and a scale may be nothing else"
+        )
+        found.append(ResultWarning("atmosphere_unknown", text))
+    elif atmosphere_applied:
+        text = (
+            "the instrument has corrected the atmosphere: nothing is corrected again, and a scale "
+            "found here first asks whether somebody did"
+        )
+        found.append(ResultWarning("atmosphere_applied", text))
+    return tuple(found)
+
+
+def condition_count(problem: Problem) -> int:
+    """Independent conditions of a traverse, the degrees of freedom of its adjustment."""
+    return problem.size - 1
+
+
+def chi_square_ratio(problem: Problem) -> float:
+    """Root of the sum of squares of the conditions over their number: sigma0 over its a priori."""
+    conditions = problem.observations[1:]
+    return math.sqrt(float(conditions @ conditions) / condition_count(problem))

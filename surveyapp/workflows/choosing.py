@@ -1,0 +1,188 @@
+"""Which subject of a project is diagnosed, and the problem that it makes.
+
+The names come from the command line or a screen; what is missing or ambiguous is told with the
+subjects to choose from. Nothing is diagnosed or written here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from surveyapp.core.orientation import Orientation
+from surveyapp.diagnosis.problem import Problem
+from surveyapp.diagnosis.subjects import LEAST_CAMPAIGN, campaign_problem, is_run, run_problem
+from surveyapp.diagnosis.traverse import traverse as traverse_problem
+from surveyapp.domain.project import Project
+from surveyapp.domain.traverse import Network
+from surveyapp.errors import Problem as InputProblem
+from surveyapp.errors import SurveyError, nearest_names
+from surveyapp.io.traversebook import traverse_rows
+from surveyapp.io.traverseheader import traverse_headers
+from surveyapp_models.effects.effect import Effect
+
+Networks = Callable[[str], Network]
+"""From the name of a traverse to its network, gyro sides included."""
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """Something in a project that can be diagnosed.
+
+    Parameters
+    ----------
+    option : str
+        ``--session``, ``--campaign`` or ``--traverse``.
+    id : str
+    observations : int
+    """
+
+    option: str
+    id: str
+    observations: int
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON."""
+        return {"option": self.option, "id": self.id, "observations": self.observations}
+
+
+def subjects_of(project: Project) -> tuple[Subject, ...]:
+    """Everything in a project that can be diagnosed by itself."""
+    found = [
+        Subject("--session", session.id, len(session.book.live))
+        for session in project.sessions
+        if is_run(session)
+    ]
+    for instrument in project.instruments:
+        count = sum(session.instrument == instrument.id for session in project.sessions)
+        if count >= LEAST_CAMPAIGN:
+            found.append(Subject("--campaign", instrument.id, count))
+    return (*found, *_traverses(project))
+
+
+def _traverses(project: Project) -> list[Subject]:
+    """Traverses with the rows of their books; a faulty one is told when it is diagnosed."""
+    try:
+        return [
+            Subject("--traverse", header.name, len(traverse_rows(project, header)))
+            for header in traverse_headers(project)
+        ]
+    except SurveyError:
+        return []
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What is to be diagnosed.
+
+    Parameters
+    ----------
+    session, campaign, traverse : str or None
+        At most one of them.
+    confirm : str or None
+        A second run or traverse; for a campaign the session from which on determinations only
+        confirm.
+    effects : tuple of Effect
+        The user's own.
+    """
+
+    session: str | None = None
+    campaign: str | None = None
+    confirm: str | None = None
+    effects: tuple[Effect, ...] = ()
+    traverse: str | None = None
+
+    @property
+    def subjects(self) -> int:
+        """How many subjects are named."""
+        return sum(item is not None for item in (self.session, self.campaign, self.traverse))
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """The problem and its confirming set, or the subjects where one must be chosen."""
+
+    problem: Problem | None
+    confirm: Problem | None = None
+    subjects: tuple[Subject, ...] = ()
+
+
+def choose(orientation: Orientation, request: Request, networks: Networks | None = None) -> Chosen:
+    """Find what a request means in a project."""
+    project = orientation.project
+    if not request.subjects:
+        subjects = subjects_of(project)
+        if len(subjects) != 1:
+            return Chosen(None, subjects=subjects)
+        only = subjects[0]
+        request = replace(
+            request,
+            session=only.id if only.option == "--session" else None,
+            campaign=only.id if only.option == "--campaign" else None,
+            traverse=only.id if only.option == "--traverse" else None,
+        )
+    if request.subjects > 1:
+        found = "several of --session, --campaign and --traverse"
+        raise SurveyError(InputProblem("one subject at a time", "diagnose", found, "one"))
+    if request.traverse is not None:
+        return _chosen_traverse(project, request, networks)
+    if request.campaign is not None:
+        names = [instrument.id for instrument in project.instruments]
+        _require(request.campaign, names, "--campaign", "instrument")
+        return Chosen(
+            *campaign_problem(
+                orientation,
+                request.campaign,
+                extra=request.effects,
+                confirm_from=request.confirm,
+            )
+        )
+    problem = _run(orientation, request.session or "", "--session", request.effects)
+    if request.confirm is None:
+        return Chosen(problem)
+    return Chosen(problem, _run(orientation, request.confirm, "--confirm", request.effects))
+
+
+def _chosen_traverse(project: Project, request: Request, networks: Networks | None) -> Chosen:
+    headers = {header.name: header for header in traverse_headers(project)}
+
+    def problem(name: str, option: str) -> Problem:
+        _require(name, list(headers), option, "traverse")
+        if networks is None:
+            raise ValueError("a traverse needs its network")
+        return traverse_problem(
+            networks(name),
+            name=f"traverse {name}",
+            atmosphere_applied=headers[name].atmosphere_applied,
+            extra=request.effects,
+        )
+
+    first = problem(request.traverse or "", "--traverse")
+    if request.confirm is None:
+        return Chosen(first)
+    return Chosen(first, problem(request.confirm, "--confirm"))
+
+
+def _run(
+    orientation: Orientation, identity: str, option: str, effects: tuple[Effect, ...]
+) -> Problem:
+    project = orientation.project
+    _require(identity, [session.id for session in project.sessions], option, "session")
+    session = project.session(identity)
+    return run_problem(
+        session,
+        project.instrument(session.instrument).card,
+        latitude=orientation.positions[session.station].latitude,
+        extra=effects,
+    )
+
+
+def _require(name: str, known: list[str], where: str, kind: str) -> None:
+    if name not in known:
+        hint = nearest_names(name, known)
+        raise SurveyError(
+            InputProblem(
+                f"there is no {kind} of this name", where, name, f"the name of a known {kind}", hint
+            )
+        )
