@@ -321,11 +321,7 @@ COL_FAMILY: Final = "p family"
 COL_BIC: Final = "BIC behind"
 SUBJECT_RUN: Final = "run"
 SUBJECT_CAMPAIGN: Final = "campaign"
-SUBJECTS: Final = {
-    "session": SUBJECT_RUN,
-    "campaign": SUBJECT_CAMPAIGN,
-    "traverse": "traverse",
-}
+SUBJECT_TRAVERSE: Final = "traverse"
 CHANNEL_NAMES: Final = {
     "amplitude": "Amplitude channel (side times residual)",
     "midpoint": "Midpoint channel (Schuler mean of the residuals)",

@@ -27,7 +27,11 @@ def subject_rows(
         verdict = ""
         if made is not None and made.diagnosis is not None:
             verdict = made.diagnosis.verdict.replace("_", " ")
-        name = texts.SUBJECTS.get(option, option)
+        name = {
+            "session": texts.SUBJECT_RUN,
+            "campaign": texts.SUBJECT_CAMPAIGN,
+            "traverse": texts.SUBJECT_TRAVERSE,
+        }.get(option, option)
         rows.append((name, identity, verdict))
     return rows
 
