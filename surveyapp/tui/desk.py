@@ -76,6 +76,12 @@ class Desk:
         """Whether the step takes nothing more because the swing has begun."""
         return self.step in BEFORE and self.observation.swing_begun()
 
+    def step_name(self) -> str:
+        """Name of the step in the trade's words."""
+        if self.step is Step.SWING:
+            return texts.SWING_NAMES[self.observation.session.method]
+        return texts.STEP_NAMES[self.step]
+
     def prompt(self) -> str:
         """What is asked for."""
         if self.step is Step.RESULT:
@@ -214,7 +220,7 @@ class Desk:
             raise NotWrittenError(problem_text(error)) from None
         if self.closed():
             return texts.CLOSED_BEFORE
-        return texts.STEP_NAMES[order[index]]
+        return self.step_name()
 
     def take_other(self, which: str) -> None:
         """Take the other kind of reading, the other face, or the next target."""

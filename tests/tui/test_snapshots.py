@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Awaitable, Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from helpers_tui import LARGE, SMALL, Clock, make_project, simulated
 from textual.pilot import Pilot
 
+from surveyapp import api_practice
 from surveyapp.api_session import NewRow, Observation
 from surveyapp.core.simulate.session import book_text
 from surveyapp.core.steps import Step
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.tui.app import SurveyApp
+from surveyapp.tui.widgets.instrument import InstrumentPane
 
 PROJECTS = Path(__file__).resolve().parents[2] / "projects"
 Snap = Callable[..., bool]
@@ -143,3 +146,18 @@ def test_no_colour(snap_compare: Snap, tmp_path: Path, monkeypatch: pytest.Monke
     folder = observed(tmp_path, 17)
     app = app_on(folder, seconds=2980.0)
     assert snap_compare(app, terminal_size=SMALL, run_before=keys("enter"))
+
+
+def test_practice(snap_compare: Snap, tmp_path: Path) -> None:
+    clock = Clock()
+    begun = api_practice.begin(tmp_path / "p", seed=11, speed=10.0, disturbed=True)
+    practice = replace(begun, now=clock.now, steady=clock.steady)
+    app = SurveyApp(None, practice=practice)
+
+    async def swing(pilot: Pilot[int]) -> None:
+        await keys(*["f8"] * 4)(pilot)
+        clock.pass_by(100.0)
+        app.screen.query_one(InstrumentPane).look()
+        await pilot.pause()
+
+    assert snap_compare(app, terminal_size=SMALL, run_before=swing)

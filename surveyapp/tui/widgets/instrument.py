@@ -12,7 +12,7 @@ from surveyapp.tui.desk import Desk
 from surveyapp.tui.views.form import number_text
 from surveyapp_models.angles import AngleUnit, format_angle
 
-WIDTH = 21
+WIDTH = 19
 FRAMES_PER_SECOND = 10
 
 
