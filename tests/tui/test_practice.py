@@ -21,6 +21,7 @@ from surveyapp.errors import SurveyError
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.result import ResultScreen
 from surveyapp.tui.screens.session import SessionScreen
+from surveyapp.tui.widgets.entry import EntryLine
 from surveyapp.tui.widgets.instrument import InstrumentPane
 from surveyapp_models.angles import ARCSEC, AngleUnit, format_angle, wrap_pi
 
@@ -98,7 +99,8 @@ async def test_practice_runs_the_same_session_screen_and_ends_with_the_truth(
         for moment in practice.instrument.moments_s[:6]:
             circle = practice.instrument.swing(moment).circle
             assert circle is not None
-            await pilot.press(*format_angle(circle, AngleUnit.DMS, 1), "enter", "enter")
+            screen.query_one(EntryLine).text = format_angle(circle, AngleUnit.DMS, 1)
+            await pilot.press("enter", "enter")
             await settle(pilot)
         while screen.desk.step is not Step.RESULT:
             await pilot.press("f8")

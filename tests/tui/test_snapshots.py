@@ -28,12 +28,12 @@ def keys(*names: str) -> Callable[[Pilot[int]], Awaitable[None]]:
     """Press keys, each after the last computation has been shown."""
 
     async def press(pilot: Pilot[int]) -> None:
-        for name in ("", *names, ""):
+        for name in ("", *names):
             await pilot.app.workers.wait_for_complete()
             await pilot.pause()
             if name:
                 await pilot.press(name)
-        for _ in range(3):
+        for _ in range(2):
             await pilot.app.workers.wait_for_complete()
             await pilot.pause()
 

@@ -34,7 +34,7 @@ def shown(app: SurveyApp) -> str:
 
 
 async def settle(pilot: Pilot[int]) -> None:
-    for _ in range(3):
+    for _ in range(2):
         await pilot.app.workers.wait_for_complete()
         await pilot.pause()
 
