@@ -66,6 +66,32 @@ def report(
     return _write_document(document, sections, Path(output), font)
 
 
+def _traverses(project: Project) -> tuple[Extra, ...]:
+    """A section for every traverse; one that cannot be adjusted says why."""
+    from surveyapp import api
+    from surveyapp.errors import SurveyError
+    from surveyapp.report.blocks import Heading, Paragraph
+    from surveyapp.report.record import Extra
+    from surveyapp.report.sections import traverse as section
+
+    if not project.tables.get("traverse"):
+        return ()
+    from surveyapp.io.traverseheader import traverse_headers
+
+    found = []
+    for header in traverse_headers(project):
+        identity = f"traverse {header.name}"
+        try:
+            result = api.adjust(project, traverse=header.name)
+        except SurveyError as error:
+            reasons = [Paragraph(str(problem), "warning") for problem in error.problems]
+            found.append(Extra(identity, (Heading(f"Traverse {header.name}"), *reasons)))
+            continue
+        made = section.blocks(header.name, result, unit=project.angle_unit)
+        found.append(Extra(identity, made))
+    return tuple(found)
+
+
 def _diagnoses(project: Project | Folder) -> tuple[Extra, ...]:
     """A section for every subject that can be diagnosed; too few observations are passed over."""
     from surveyapp import api
@@ -126,6 +152,7 @@ def _record(
     if not isinstance(project, Project):
         project = api.open_project(project)
     result = api.orient(project)
+    extras = (*_traverses(project), *extras)
     closing = closings_in_force(read_ledger(Path(project.path))).get("")
     seal = None
     if closing is not None:

@@ -1,0 +1,212 @@
+"""An adjusted traverse: closures, points, plan, observations with what controls them, tests."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from surveyapp.domain.adjustment import AdjustedObservation, AdjustmentResult, Closure
+from surveyapp.domain.observations import ObservationKind
+from surveyapp.report.blocks import Block, Heading, KeyValues, Paragraph, Table
+from surveyapp.report.numbers import NOTHING, direction, plain
+from surveyapp.report.plan import plan_figure
+from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, wrap_two_pi
+
+MM = 1e3
+MOST_ROWS = 400
+"""Rows of a table beyond which only the worst controlled and the suspects are shown."""
+
+
+def blocks(name: str, result: AdjustmentResult, *, unit: AngleUnit) -> tuple[Block, ...]:
+    """Blocks of one traverse.
+
+    Parameters
+    ----------
+    name : str
+    result : AdjustmentResult
+    unit : AngleUnit
+        Of the project, for directions.
+    """
+    found: list[Block] = [Heading(f"Traverse {name}"), KeyValues(_facts(result))]
+    if result.closures:
+        found += [Heading("Closures before the adjustment", 2), _closures(result.closures)]
+    found += [Heading("Points", 2), _points(result)]
+    plan = plan_figure(result)
+    if plan is not None:
+        found.append(plan)
+    if result.shared:
+        found += [Heading("Constants and orientations", 2), _shared(result, unit)]
+    found += [Heading("Observations", 2), *_observations(result, unit)]
+    found += [Paragraph(f"{w.code}: {w.text}", "warning") for w in result.warnings]
+    return tuple(found)
+
+
+def _facts(result: AdjustmentResult) -> tuple[tuple[str, str], ...]:
+    test = result.global_test
+    facts = [
+        ("observations", str(len(result.observations))),
+        ("degrees of freedom", str(result.dof)),
+        ("sigmas in this section", "a priori" if result.sigma_scale == 1.0 else "from residuals"),
+    ]
+    if test.ratio is not None:
+        verdict = {True: "passed", False: "NOT passed", None: "not judged"}[test.passed]
+        bounds = f"{plain(test.lower, 3)} to {plain(test.upper, 3)} at {test.probability:.0%}"
+        facts.append(("global test", f"sigma0 / a priori = {test.ratio:.3f}, {bounds}: {verdict}"))
+    else:
+        facts.append(("global test", "nothing controls this traverse"))
+    snoop = result.snooping
+    if snoop.critical is not None:
+        worst = "nothing is accused"
+        if snoop.suspects:
+            first = snoop.suspects[0]
+            size = first.estimated_error * (RHO_ARCSEC if first.angular else MM)
+            what = '"' if first.angular else " mm"
+            worst = f"{first.description} stands off by {size:+.1f}{what}"
+        facts.append(
+            ("data snooping", f"limit {snoop.critical:.2f} ({snoop.tests} tests): {worst}")
+        )
+    return tuple(facts)
+
+
+def _closures(closures: tuple[Closure, ...]) -> Table:
+    rows = []
+    for item in closures:
+        relative = NOTHING
+        if item.linear_m and item.length_m:
+            relative = f"1 : {item.length_m / item.linear_m:.0f}"
+        rows.append(
+            (
+                item.kind,
+                _route(item.stations),
+                plain(None if item.angular is None else item.angular * RHO_ARCSEC, sign=True),
+                plain(None if item.angular_sigma is None else item.angular_sigma * RHO_ARCSEC),
+                plain(None if item.linear_m is None else item.linear_m * MM),
+                relative,
+                plain(None if item.height_m is None else item.height_m * MM, sign=True),
+                {True: "yes", False: "NO", None: NOTHING}[item.passed],
+            )
+        )
+    head = (
+        "kind",
+        "route",
+        'angles "',
+        '\N{PLUS-MINUS SIGN}"',
+        "place mm",
+        "relative",
+        "height mm",
+        "3 sigma",
+    )
+    return _filled(head, rows, "llrrrrrl")
+
+
+def _filled(head: tuple[str, ...], rows: Sequence[tuple[str, ...]], align: str) -> Table:
+    """A table without the columns in which nothing stands."""
+    keep = [i for i in range(len(head)) if any(row[i] != NOTHING for row in rows)]
+    return Table(
+        tuple(head[i] for i in keep),
+        tuple(tuple(row[i] for i in keep) for row in rows),
+        "".join(align[i] for i in keep),
+    )
+
+
+def _route(stations: tuple[str, ...]) -> str:
+    if len(stations) <= 6:
+        return " - ".join(stations)
+    return f"{' - '.join(stations[:3])} - ... ({len(stations)}) - {stations[-1]}"
+
+
+def _points(result: AdjustmentResult) -> Table:
+    rows = []
+    for p in result.points:
+        sigmas = [None if s is None else s * MM for s in (p.sigma_e, p.sigma_n, p.sigma_h)]
+        shown = ["fixed" if s == 0.0 else plain(s) for s in sigmas]
+        ellipse = NOTHING
+        if p.ellipse is not None:
+            e = p.ellipse
+            ellipse = (
+                f"{e.a_m * MM:.1f} x {e.b_m * MM:.1f}, {math.degrees(e.azimuth):.0f}\N{DEGREE SIGN}"
+            )
+        values = [plain(x, 4) for x in (p.e, p.n, p.h)]
+        rows.append((p.name, *values, *shown, ellipse))
+    head = (
+        "point",
+        "E m",
+        "N m",
+        "H m",
+        "\N{PLUS-MINUS SIGN} E mm",
+        "\N{PLUS-MINUS SIGN} N mm",
+        "\N{PLUS-MINUS SIGN} H mm",
+        "ellipse mm",
+    )
+    return _filled(head, rows, "lrrrrrrr")
+
+
+def _shared(result: AdjustmentResult, unit: AngleUnit) -> Table:
+    rows = []
+    for item in result.shared:
+        value = (
+            direction(wrap_two_pi(item.value), unit)
+            if item.kind == "orientation"
+            else f'{item.value * RHO_ARCSEC:+.1f}"'
+        )
+        rows.append((item.kind.replace("_", " "), item.name, value, plain(item.sigma * RHO_ARCSEC)))
+    return Table(("kind", "name", "value", '\N{PLUS-MINUS SIGN}"'), tuple(rows), "llrr")
+
+
+def _observations(result: AdjustmentResult, unit: AngleUnit) -> list[Block]:
+    shown, more = result.observations, 0
+    if len(shown) > MOST_ROWS:
+        more = len(shown) - MOST_ROWS
+        order = sorted(shown, key=lambda o: -abs(o.standardized or 0.0))
+        shown = tuple(order[:MOST_ROWS])
+    accused = {item.place for item in result.snooping.suspects[:1]}
+    rows = tuple(_observation(item, unit) for item in shown)
+    strong = frozenset(i for i, item in enumerate(shown) if item.place in accused and accused)
+    head = (
+        "kind",
+        "at",
+        "to",
+        "observed",
+        "residual",
+        "v / sigma",
+        "redundancy",
+        "smallest bias",
+        "moves mm",
+    )
+    found: list[Block] = [Table(head, rows, "lllrrrrrr", strong=strong)]
+    if more:
+        text = f"{more} observations with smaller residuals are not shown; adjust --json has all."
+        found.append(Paragraph(text, "small"))
+    found.append(
+        Paragraph(
+            "residual = adjusted - observed, arc-seconds or millimetres; redundancy: share of an "
+            "error that shows in the residual; smallest bias: what the test finds with the stated "
+            "power, and how far an undetected one moves a point. The accused observation is bold.",
+            "small",
+        )
+    )
+    return found
+
+
+def _observation(item: AdjustedObservation, unit: AngleUnit) -> tuple[str, ...]:
+    small = RHO_ARCSEC if item.angular else MM
+    what = '"' if item.angular else " mm"
+    if not item.angular:
+        observed = f"{item.observed:.4f} m"
+    elif item.kind is ObservationKind.GYRO_CONSTANT:
+        observed = f'{item.observed * RHO_ARCSEC:+.1f}"'
+    else:
+        observed = direction(wrap_two_pi(item.observed), unit)
+    to = f"{item.back} - {item.to}" if item.back else item.to
+    bias = NOTHING if item.mdb is None else f"{item.mdb * small:.1f}{what}"
+    return (
+        str(item.kind).replace("_", " "),
+        item.at,
+        to,
+        observed,
+        f"{item.residual * small:+.1f}{what}",
+        plain(item.standardized, 2, sign=True),
+        f"{item.redundancy:.2f}",
+        bias,
+        plain(None if item.mdb_effect_m is None else item.mdb_effect_m * MM),
+    )
