@@ -289,3 +289,27 @@ async def test_the_countdown_is_seen_and_heard(
         await pilot.pause()
         assert "NOW" in str(screen.query_one("#countdown", Static).content)
     assert rung == [True]
+
+
+async def test_a_second_target_joins_the_round_of_sights(tmp_path: Path) -> None:
+    folder = make_project(tmp_path / "p")
+    app = SurveyApp(str(folder))
+    async with app.run_test(size=SMALL) as pilot:
+        screen = await open_session(pilot)
+        await go_to(pilot, screen, Step.SIGHTS_BEFORE)
+        await enter(pilot, "175-00-09")
+        await pilot.press("f4")
+        await pilot.press("f3")
+        assert (screen.desk.what().target, screen.desk.what().face) == ("3090", "L")
+        await enter(pilot, "201-10-20")
+        assert (screen.desk.what().target, screen.desk.what().face) == ("3090", "R")
+        await enter(pilot, "10 16")
+        assert (screen.desk.what().target, screen.desk.what().face) == ("3082", "R")
+        await enter(pilot, "354-59-50")
+    sights = [r for r in rows_on_disk(folder) if r["kind"] == "backsight"]
+    assert [(r["target"], r["face"], r["value"]) for r in sights] == [
+        ("", "L", "175-00-09"),
+        ("3090", "L", "201-10-20"),
+        ("3090", "R", "21-10-16"),
+        ("", "R", "354-59-50"),
+    ]
