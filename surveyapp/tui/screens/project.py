@@ -24,6 +24,7 @@ from surveyapp.errors import SurveyError
 from surveyapp.tui import texts
 from surveyapp.tui.screens.diagnosis import DiagnosisScreen
 from surveyapp.tui.screens.new_session import NewSessionScreen
+from surveyapp.tui.screens.traverse import TraverseScreen
 from surveyapp.tui.views.checks import CHECK_COLUMNS, check_rows, check_texts, summary
 from surveyapp.tui.views.constants import CONSTANT_COLUMNS, constant_rows
 from surveyapp.tui.views.lines import LINE_COLUMNS, budget_rows, chain_rows, line_rows
@@ -44,6 +45,7 @@ class ProjectScreen(Screen[None]):
         Binding("o", "observe", texts.KEY_OBSERVE),
         Binding("n", "new", texts.KEY_NEW),
         Binding("d", "diagnose", texts.KEY_DIAGNOSE),
+        Binding("t", "traverses", texts.KEY_TRAVERSE, show=False),
         Binding("f5", "reload", texts.KEY_RELOAD),
         Binding("escape", "back", texts.KEY_BACK),
     ]
@@ -171,6 +173,16 @@ class ProjectScreen(Screen[None]):
         """Ask what the model lacks; the project is read anew on return."""
         name = Path(self.folder).resolve().name
         self.app.push_screen(DiagnosisScreen(self.folder, name), self._diagnosed)
+
+    def action_traverses(self) -> None:
+        """Show the adjusted traverses, if there are any."""
+        if self.project is None:
+            return
+        names = tuple(name for option, name in api.subjects(self.project) if option == "traverse")
+        if names:
+            self.app.push_screen(TraverseScreen(self.folder, names, self.project.angle_unit))
+        else:
+            self.notify(texts.NO_TRAVERSE, severity="warning", markup=False)
 
     def _diagnosed(self, _: None) -> None:
         self.action_reload()

@@ -1,0 +1,145 @@
+"""Traverses on the screen: numbers of the adjustment, a plan that is right way up."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from textual.widgets import DataTable, TabbedContent
+
+from surveyapp import api
+from surveyapp.tui import texts
+from surveyapp.tui.app import SurveyApp
+from surveyapp.tui.screens.project import ProjectScreen
+from surveyapp.tui.screens.traverse import PAGES, TraverseScreen
+from surveyapp.tui.widgets.plan import FIXED, FREE, PlanCanvas, draw_plan, enlargement
+from surveyapp.tui.widgets.problems import Problems
+
+TOML = """format = 1
+name = "T"
+angle_unit = "dms"
+
+[[station]]
+name = "A"
+e = 1000.0
+n = 2000.0
+fixed = true
+
+[[station]]
+name = "B"
+e = 1000.0
+n = 2100.0
+fixed = true
+
+[[station]]
+name = "C"
+
+[[station]]
+name = "D"
+
+[[traverse]]
+name = "main"
+book = "observations/main.csv"
+sigma_angle_arcsec = 7.0
+sigma_distance = { mm = 2.0, ppm = 2.0 }
+"""
+BOOK = """kind,at,from,to,value,unit,sigma,sigma_unit,set,hi,ht,note
+angle,B,A,C,270-00-00,dms,,,,,,
+distance,B,,C,50.000,m,,,,,,
+angle,C,B,D,120-00-00,dms,,,,,,
+distance,C,,D,80.000,m,,,,,,
+distance,D,,C,80.003,m,,,,,,
+distance,D,,A,84.3,m,,,,,,
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
+    made = tmp_path / "gallery"
+    (made / "observations").mkdir(parents=True)
+    (made / "project.toml").write_text(TOML, encoding="utf-8")
+    (made / "observations" / "main.csv").write_text(BOOK, encoding="utf-8")
+    return made
+
+
+async def opened(app: SurveyApp, pilot) -> None:  # type: ignore[no-untyped-def]
+    await app.workers.wait_for_complete()
+    await pilot.pause()
+    assert isinstance(app.screen, ProjectScreen)
+    await pilot.press("t")
+    for _ in range(3):
+        await app.workers.wait_for_complete()
+        await pilot.pause()
+    assert isinstance(app.screen, TraverseScreen)
+
+
+@pytest.mark.parametrize("size", [(80, 24), (120, 40)])
+async def test_the_pages_show_the_adjustment(size: tuple[int, int], folder: Path) -> None:
+    app = SurveyApp(str(folder))
+    expected = api.adjust(folder)
+    async with app.run_test(size=size) as pilot:
+        await opened(app, pilot)
+        screen = app.screen
+        picture = screen.query_one(PlanCanvas).render().plain
+        assert picture.count(FREE) == 3  # two points and the legend
+        assert picture.count(FIXED) == 3
+        for key, page in enumerate(PAGES[1:], 2):
+            await pilot.press(str(key))
+            await pilot.pause()
+            assert screen.query_one(TabbedContent).active == page
+        points = screen.query_one("#points DataTable", DataTable)
+        assert [str(c) for c in points.get_row_at(3)][:2] == ["D", f"{expected.point('D').e:.3f}"]
+        sights = screen.query_one("#observations DataTable", DataTable)
+        row = [str(cell) for cell in sights.get_row_at(3)]
+        residual = expected.observations[3].residual
+        assert row[:3] == ["distance", "C-D", f"{residual * 1e3:+.1f} mm"]
+        assert row[4] == f"{expected.observations[3].redundancy:.2f}"
+        assert screen.query_one("#closures DataTable", DataTable).row_count == len(
+            expected.closures
+        )
+        await pilot.press("escape")
+        await pilot.pause()
+        assert isinstance(app.screen, ProjectScreen)
+
+
+def test_the_plan_has_north_up_and_east_to_the_right(folder: Path) -> None:
+    lines = draw_plan(api.adjust(folder), 70, 18).plain.splitlines()
+    place = {
+        name: next((r, line.index(name)) for r, line in enumerate(lines[:-1]) if name in line)
+        for name in "ABCD"
+    }
+    assert place["B"][0] < place["A"][0]
+    assert place["B"][1] == place["A"][1]
+    assert place["C"][1] > place["B"][1]
+    assert len(lines) == 18
+    assert max(map(len, lines)) <= 70
+
+
+def test_ellipses_are_enlarged_by_round_numbers() -> None:
+    assert enlargement(0.01, 1.0) == 500.0
+    assert enlargement(0.0, 1.0) == 1.0
+    assert enlargement(100.0, 1.0) == pytest.approx(0.05)
+
+
+async def test_what_cannot_be_adjusted_is_told(folder: Path) -> None:
+    book = folder / "observations" / "main.csv"
+    kept = [r for r in BOOK.splitlines() if not r.startswith(("angle,C", "distance,D,,A"))]
+    book.write_text("\n".join(kept) + "\n", encoding="utf-8")
+    app = SurveyApp(str(folder))
+    async with app.run_test(size=(80, 24)) as pilot:
+        await opened(app, pilot)
+        assert app.screen.query(Problems)
+
+
+async def test_a_project_without_traverse_says_so(folder: Path) -> None:
+    toml = folder / "project.toml"
+    toml.write_text(TOML[: TOML.index("[[traverse]]")], encoding="utf-8")
+    app = SurveyApp(str(folder))
+    async with app.run_test(size=(80, 24)) as pilot:
+        await app.workers.wait_for_complete()
+        await pilot.pause()
+        await pilot.press("t")
+        await pilot.pause()
+        assert isinstance(app.screen, ProjectScreen)
+        assert any(texts.NO_TRAVERSE in n.message for n in app._notifications)
