@@ -84,6 +84,13 @@ async def test_the_pages_show_the_adjustment(size: tuple[int, int], folder: Path
         picture = screen.query_one(PlanCanvas).render().plain
         assert picture.count(FREE) == 3  # two points and the legend
         assert picture.count(FIXED) == 3
+        canvas = screen.query_one(PlanCanvas)
+        shown = [canvas.render_line(y).text for y in range(canvas.size.height)]
+        drawn = picture.splitlines()
+        shifts = {
+            s.index(FREE) - d.index(FREE) for s, d in zip(shown, drawn, strict=True) if FREE in d
+        }
+        assert len(shifts) == 1, "blanks at the left were cut off"
         for key, page in enumerate(PAGES[1:], 2):
             await pilot.press(str(key))
             await pilot.pause()

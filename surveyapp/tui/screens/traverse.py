@@ -41,7 +41,7 @@ class TraverseScreen(Screen[None]):
         Binding("f5", "reload", texts.KEY_RELOAD),
         Binding("escape", "leave", texts.KEY_BACK),
     ]
-    DEFAULT_CSS = "PlanCanvas { width: 1fr; height: 1fr; padding: 0 1; }"
+    DEFAULT_CSS = "PlanCanvas { width: 1fr; height: 1fr; padding: 0 1; text-wrap: nowrap; }"
 
     class Adjusted(Message):
         """The computation has ended."""
@@ -81,7 +81,7 @@ class TraverseScreen(Screen[None]):
                 )
             with TabPane(texts.TAB_CLOSURES, id="closures"):
                 yield Records(view.CLOSURE_COLUMNS, empty=texts.NO_CLOSURES)
-            with TabPane(texts.TAB_CHECKS, id="checks"):
+            with TabPane(texts.TAB_ALL_CHECKS, id="checks"):
                 yield Records(view.CHECK_COLUMNS, empty=texts.NO_CHECK_ROWS, details=self._check)
         yield Footer(show_command_palette=False)
 

@@ -87,7 +87,7 @@ class _Canvas:
         """Characters over dots."""
         lines = []
         for r, row in enumerate(self.cells):
-            cells = [chr(BRAILLE + cell) if cell else " " for cell in row]
+            cells = [chr(BRAILLE + cell) for cell in row]  # leading blanks would be cut off
             for c in range(self.width):
                 cells[c] = self.signs.get((r, c), cells[c])
             lines.append("".join(cells))
