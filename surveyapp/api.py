@@ -34,6 +34,8 @@ if TYPE_CHECKING:
     import numpy as np
 
     from surveyapp.core.comparison import DemonstratedSample
+    from surveyapp.core.network.bowditch import CompassResult
+    from surveyapp.core.network.variance_components import VarianceComponent
     from surveyapp.core.orientation import Orientation
     from surveyapp.core.plan import StationPlan
     from surveyapp.io.simulated import SimulatedFiles
@@ -187,9 +189,28 @@ def adjust(
     SurveyError
         If something cannot be read, has no datum, is not determined or does not converge.
     """
-    from surveyapp.core.network import adjust as adjust_network
-
     return adjust_network(network(source, traverse=traverse), family_level=family_level)
+
+
+def adjust_network(network: Network, *, family_level: float = 0.05) -> AdjustmentResult:
+    """Adjust a network as ``network`` returns it; see ``adjust``."""
+    from surveyapp.core.network import adjust as adjusted
+
+    return adjusted(network, family_level=family_level)
+
+
+def compass_rule(network: Network) -> tuple[CompassResult, ...]:
+    """Every route of a network by the compass (Bowditch) rule, for those who must file it."""
+    from surveyapp.core.network.bowditch import compass_adjust
+
+    return compass_adjust(network)
+
+
+def variance_components(network: Network) -> tuple[VarianceComponent, ...]:
+    """Factors of the stated sigmas of each group of observations (Helmert)."""
+    from surveyapp.core.network.variance_components import variance_components as components
+
+    return components(network)[0]
 
 
 def network(source: Project | Folder, *, traverse: str | None = None) -> Network:

@@ -4,37 +4,87 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from surveyapp.cli.output import heading, number, print_json, table
 from surveyapp.domain.adjustment import AdjustedObservation, AdjustmentResult
 from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, format_angle
+
+if TYPE_CHECKING:
+    from surveyapp.core.network.bowditch import CompassResult
+    from surveyapp.core.network.variance_components import VarianceComponent
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     parser.add_argument("source", metavar="DIR|FILE.gkf", help="project folder or GNU Gama file")
     parser.add_argument("--traverse", metavar="NAME", help="one traverse; all together without it")
+    parser.add_argument(
+        "--compass-rule", action="store_true", help="the compass (Bowditch) rule beside it"
+    )
+    parser.add_argument(
+        "--components", action="store_true", help="variance components of the kinds (Helmert)"
+    )
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 
 def run(options: argparse.Namespace) -> int:
     """Adjust and print; 1 if the global test is not met."""
-    result = _adjusted(options)
+    from surveyapp import api
+
+    network = api.network(options.source, traverse=options.traverse)
+    result = api.adjust_network(network)
+    compass = api.compass_rule(network) if options.compass_rule else ()
+    components = api.variance_components(network) if options.components else ()
     if options.json:
-        print_json(result.to_dict())
+        document = result.to_dict()
+        document["compass_rule"] = [item.to_dict() for item in compass]
+        document["variance_components"] = [item.to_dict() for item in components]
+        print_json(document)
     else:
         print(adjustment_text(result, Path(options.source).name))
+        for text in (_compass(compass), _components(components)):
+            if text:
+                print(f"\n{text}")
     return 1 if result.global_test.passed is False else 0
 
 
 adjust_command = run
 
 
-def _adjusted(options: argparse.Namespace) -> AdjustmentResult:
-    from surveyapp import api
+def _compass(items: Sequence[CompassResult]) -> str:
+    """Coordinates by the compass rule, with what was distributed."""
+    parts = []
+    for item in items:
+        rows = [
+            [name, number(e, 4), number(n, 4)]
+            for name, e, n in zip(item.stations, item.e, item.n, strict=True)
+        ]
+        angular = number(None if item.angular is None else item.angular * RHO_ARCSEC)
+        gap = f"{_mm(item.misclosure_e)} {_mm(item.misclosure_n)} mm on {item.length_m:.1f} m"
+        parts.append(
+            f'Compass rule, no sigmas: {angular}" and {gap} distributed\n'
+            + table(["station", "e", "n"], rows)
+        )
+    return "\n\n".join(parts)
 
-    return api.adjust(options.source, traverse=options.traverse)
+
+def _components(items: Sequence[VarianceComponent]) -> str:
+    """Factor of the stated sigmas of each kind."""
+    rows = [
+        [
+            item.group,
+            number(item.factor, 3),
+            number(item.sigma, 3),
+            number(item.redundancy, 1),
+            str(item.observations),
+        ]
+        for item in items
+    ]
+    head = ["group", "factor", "±", "redundancy", "observations"]
+    return "Variance components: factors of the stated sigmas\n" + table(head, rows) if rows else ""
 
 
 def adjustment_text(result: AdjustmentResult, name: str) -> str:

@@ -14,8 +14,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from surveyapp.core.network.closures import plane_fixed, route_orientation, routes
-from surveyapp.core.network.sights import sighted
-from surveyapp.domain.traverse import Network
+from surveyapp.core.network.sights import Sighted, sighted
+from surveyapp.domain.traverse import Network, NetworkPoint
+from surveyapp_models.angles import RHO_ARCSEC
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +49,20 @@ class CompassResult:
         """Length over misclosure, None for a perfect closure."""
         gap = math.hypot(self.misclosure_e, self.misclosure_n)
         return self.length_m / gap if gap > 0.0 else None
+
+    def to_dict(self) -> dict[str, object]:
+        """Keys of the JSON, angles in arc-seconds."""
+        return {
+            "points": [
+                {"name": name, "e": e, "n": n}
+                for name, e, n in zip(self.stations, self.e, self.n, strict=True)
+            ],
+            "angular_arcsec": None if self.angular is None else self.angular * RHO_ARCSEC,
+            "misclosure_e_m": self.misclosure_e,
+            "misclosure_n_m": self.misclosure_n,
+            "length_m": self.length_m,
+            "relative_1_in": self.relative_1_in,
+        }
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,10 +150,13 @@ def compass_adjust(network: Network) -> tuple[CompassResult, ...]:
         names = _from_fixed(route.stations, fixed, closed=route.closed)
         if names is None:
             continue
+        found = _first_azimuth(seen, points, fixed, names)
+        if found is None:
+            continue
+        names, first = found
         start, end = points[names[0]], points[names[-1]]
-        first = route_orientation(seen, points, fixed, (names[0], names[1]))
         corners = [(names[i], names[i - 1], names[i + 1]) for i in range(1, len(names) - 1)]
-        if first is None or any(corner not in seen.angles for corner in corners):
+        if any(corner not in seen.angles for corner in corners):
             continue
         angles = tuple(seen.angles[corner].value for corner in corners)
         last = route_orientation(seen, points, fixed, (names[-1], names[-2]))
@@ -163,6 +181,20 @@ def compass_adjust(network: Network) -> tuple[CompassResult, ...]:
             )
         )
     return tuple(results)
+
+
+def _first_azimuth(
+    seen: Sighted,
+    points: dict[str, NetworkPoint],
+    fixed: frozenset[str],
+    names: list[str],
+) -> tuple[list[str], tuple[float, float]] | None:
+    """The route begun at the end that has a known azimuth, and that azimuth; None without one."""
+    for order in (names, names[::-1]):
+        first = route_orientation(seen, points, fixed, (order[0], order[1]))
+        if first is not None:
+            return order, first
+    return None
 
 
 def _from_fixed(

@@ -1,0 +1,68 @@
+"""The compass rule and the variance components beside the adjustment."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.cli.command import run
+
+PROJECT = """format = 1
+name = "Square"
+angle_unit = "dms"
+
+[[station]]
+name = "A"
+e = 0.0
+n = 0.0
+fixed = true
+
+[[station]]
+name = "B"
+e = 0.0
+n = 100.0
+fixed = true
+
+[[station]]
+name = "D"
+e = 100.0
+n = 0.0
+fixed = true
+
+[[station]]
+name = "C"
+
+[[traverse]]
+name = "main"
+book = "main.csv"
+sigma_angle_arcsec = 10.0
+sigma_distance = { mm = 3.0, ppm = 0.0 }
+"""
+BOOK = """kind,at,from,to,value
+angle,B,A,C,270-00-20
+angle,C,B,D,270-00-00
+distance,B,,C,100.010
+distance,C,,D,100.000
+"""
+
+
+def test_compass_rule_shares_the_gap_by_length(tmp_path: Path) -> None:
+    (tmp_path / "project.toml").write_text(PROJECT)
+    (tmp_path / "main.csv").write_text(BOOK)
+    answer = run("adjust", tmp_path, "--compass-rule", "--components", "--json")
+    document = json.loads(answer.out)
+    assert document["schema"] == "surveyapp.adjust/1"
+    (route,) = document["compass_rule"]
+    assert route["length_m"] == pytest.approx(200.01)
+    ends = {point["name"]: (point["e"], point["n"]) for point in route["points"]}
+    assert ends["D"] == pytest.approx((100.0, 0.0)) or ends["B"] == pytest.approx((0.0, 100.0))
+    # Bowditch by hand: C at half the way takes half of the linear gap
+    gap = (route["misclosure_e_m"], route["misclosure_n_m"])
+    assert abs(gap[0]) + abs(gap[1]) > 0.005
+    groups = {item["group"]: item for item in document["variance_components"]}
+    assert set(groups) == {"angle", "distance"}
+    redundancy = sum(item["redundancy"] for item in groups.values())
+    assert redundancy == pytest.approx(document["dof"], abs=1e-6)
+    shown = run("adjust", tmp_path, "--compass-rule", "--components")
+    assert "Compass rule" in shown.out
+    assert "Variance components" in shown.out
