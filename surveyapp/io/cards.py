@@ -46,6 +46,8 @@ _POLAR_DEG: Final = 85.0
 """Beyond this latitude nobody measures the period or the tape zero of a suspended gyro: it finds no
 north there, and values carried from there to another latitude would be beyond all bounds."""
 
+SMALLEST_DIVISION: Final = 0.1 * ARCSEC
+"""No scale of a gyro is divided more finely; a smaller value is a slip (and would overflow)."""
 _AGREEMENT: Final = 0.05
 """Two statements of one quantity that differ by more contradict each other (physics.md 1.4)."""
 
@@ -147,8 +149,14 @@ def _merged(card: Mapping[str, object], override: Mapping[str, object]) -> dict[
 def _card(table: Table) -> InstrumentCard:
     periods = _periods(table)
     scale_value = _scaled(table, "scale_value_arcsec", low=-36000.0, high=36000.0)
-    if scale_value == 0.0:
-        table.problem("scale_value_arcsec is out of range", 0, "a number that is not 0")
+    if scale_value is not None and abs(scale_value) < SMALLEST_DIVISION:
+        found = scale_value / ARCSEC
+        table.problem(
+            "scale_value_arcsec is out of range",
+            found,
+            "a number that is not 0: at least 0.1 either way",
+        )
+        scale_value = None
     torsion, transit = _torsion(table, periods), _transit(table, periods)
     _check_agreement(table, periods, torsion, (transit, scale_value))
     due = table.date("calibration_due")

@@ -6,6 +6,7 @@ What a rule book leaves open in an orientation because it needs a traverse is an
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import combinations
 
 from surveyapp.core.network import adjust
 from surveyapp.core.network.closures import SIGMAS, network_closures
@@ -15,6 +16,8 @@ from surveyapp.core.network.fieldchecks import (
     forward_back,
     gyro_measures,
     repeated_angles,
+    repeated_traverse,
+    side_measures,
 )
 from surveyapp.core.tolerance import Measured, rule_book_checks
 from surveyapp.domain.adjustment import Closure
@@ -49,6 +52,7 @@ def _measured(network: Network, class_name: str, book: RuleBook | None) -> list[
     measured = closure_measures(network_closures(network), class_name=class_name)
     measured += repeated_angles(network.observations, class_name=class_name)
     measured += gyro_measures(network, class_name=class_name)
+    measured += side_measures(network, class_name=class_name)
     if book is not None and any(limit.quantity == "control_ellipse" for limit in book.limits):
         measured += ellipse_measures(adjust(network), class_name=class_name)
     return measured
@@ -83,6 +87,8 @@ def traverse_checks(
         measured += _measured(network, class_name, book)
         own += [_closure_check(c) for c in network_closures(network) if c.passed is not None]
         own += forward_back(network)
+    for (class_name, first), (_, second) in combinations(traverses, 2):
+        measured += repeated_traverse(first, second, class_name=class_name)
     if book is not None:
         quantities = {item.quantity for item in measured}
         answered = {f"{book.id}.{x.id}" for x in book.limits if x.quantity in quantities}

@@ -114,6 +114,7 @@ def test_an_unknown_card_names_the_nearest() -> None:
         ("[-20.0, 50.0]", "[50.0, -20.0]", ["no range"]),
         ("scale_value_arcsec = 600.0", "scale_value_arcsec = nan", ["no number"]),
         ("scale_value_arcsec = 600.0", "scale_value_arcsec = 0", ["not 0"]),
+        ("scale_value_arcsec = 600.0", "scale_value_arcsec = 1e-300", ["at least 0.1"]),
         ("time_s = 0.2", "time_s = 0.0", ["more than 0"]),
     ],
 )

@@ -339,6 +339,21 @@ def forward_back(network: Network) -> list[Check]:
     return checks
 
 
+def side_measures(network: Network, *, class_name: str = "") -> list[Measured]:
+    """The shortest and the longest side of a traverse, for the limits of its class [m]."""
+    lengths = sighted(network.observations).lengths
+    if not lengths:
+        return []
+    ordered = sorted(lengths.items(), key=lambda item: item[1].value)
+    return [
+        Measured(quantity, sight.value, "-".join(pair), quantity.replace("_", " "), {}, class_name)
+        for quantity, (pair, sight) in (
+            ("shortest_side", ordered[0]),
+            ("longest_side", ordered[-1]),
+        )
+    ]
+
+
 def side_lengths(
     network: Network, *, shortest_m: float | None, longest_m: float | None, confirmed: bool = False
 ) -> list[Check]:

@@ -171,6 +171,8 @@ QUANTITIES: Final[tuple[Quantity, ...]] = (
         "an open traverse measured twice",
         _TRAVERSE,
     ),
+    Quantity("shortest_side", "length of the shortest side", "length", "a traverse", _TRAVERSE),
+    Quantity("longest_side", "length of the longest side", "length", "a traverse", _TRAVERSE),
     Quantity(
         "relative_closure_closed",
         "relative linear closure of a closed traverse",
