@@ -66,3 +66,25 @@ def test_compass_rule_shares_the_gap_by_length(tmp_path: Path) -> None:
     shown = run("adjust", tmp_path, "--compass-rule", "--components")
     assert "Compass rule" in shown.out
     assert "Variance components" in shown.out
+
+
+def test_check_compares_two_measurements_and_the_sides_with_their_class(tmp_path: Path) -> None:
+    toml = PROJECT.replace('angle_unit = "dms"', 'angle_unit = "dms"\nrule_book = "cn-coal-15"')
+    toml = toml.replace('book = "main.csv"', 'book = "main.csv"\nclass = "15sec"')
+    again = toml[toml.index("[[traverse]]") :].replace('"main"', '"again"')
+    (tmp_path / "project.toml").write_text(toml + "\n" + again.replace("main.csv", "again.csv"))
+    (tmp_path / "main.csv").write_text(BOOK)
+    second = BOOK.replace("270-00-00", "270-05-00").replace("100.000\n", "30.000\n")
+    (tmp_path / "again.csv").write_text(second)
+    checks = json.loads(run("check", tmp_path, "--json").out)["checks"]
+    by_rule: dict[str, list[dict[str, object]]] = {}
+    for check in checks:
+        by_rule.setdefault(str(check["rule"]), []).append(check)
+    (repeated,) = by_rule["cn-coal-15.repeated-angles-15"]
+    # 30" sqrt(2) for the angle measured twice; it differs by 5'
+    assert repeated["value"] == pytest.approx(300.0)
+    assert repeated["limit"] == pytest.approx(30.0 * 2**0.5)
+    assert repeated["pass"] is False
+    shortest = sorted(item["value"] for item in by_rule["cn-coal-15.shortest-side-15"])
+    assert shortest == pytest.approx([30.0, 100.0])
+    assert {item["pass"] for item in by_rule["cn-coal-15.shortest-side-15"]} == {True, False}
