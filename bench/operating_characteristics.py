@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -81,6 +82,14 @@ def evaluate_campaign(truth: CampaignTruth, runs: int, seed: int, draws: int = D
     return judged(truth.name, pairs, truth.effect, 1e9)
 
 
+def smaller(name: str, effect: str, right: tuple[float, ...], **sizes: Any) -> tuple[Truth, ...]:
+    """Lines of the leaner prototype: 5 arc-seconds of noise, four lengths of the record."""
+    return tuple(
+        Truth(name, n, effect, noise=5.0, reference=(None, share, None), **sizes)
+        for n, share in zip((8, 12, 20, 45), right, strict=True)
+    )
+
+
 REFERENCE = (
     Truth("none", 8, reference=(0.06, None, None)),
     Truth("none", 12, reference=(0.06, None, None)),
@@ -125,17 +134,20 @@ REFERENCE = (
     Truth("AR(1) rho .5", 45, ar1=0.5),
     Truth("AR(1) rho .8", 20, ar1=0.8),
     Truth("AR(1) rho .8", 45, ar1=0.8),
-    Truth("damping change .002", 8, "damping_break", damping_change=0.002, noise=5.0),
-    Truth("damping change .002", 20, "damping_break", damping_change=0.002, noise=5.0),
-    Truth("drift 3", 8, "midpoint_drift", drift=3.0, noise=5.0, reference=(None, 0.14, None)),
-    Truth("drift 3", 12, "midpoint_drift", drift=3.0, noise=5.0, reference=(None, 0.52, None)),
-    Truth("warm-up 40", 20, "warm_up", warm_up=40.0, noise=5.0, reference=(None, 0.48, None)),
-    Truth(
-        "gross error 35", 8, "gross_error", gross=(35.0,), noise=5.0, reference=(None, 0.55, None)
+    *(
+        Truth("damping change .002", n, "damping_break", damping_change=0.002, noise=5.0)
+        for n in (20, 45)
     ),
-    Truth(
-        "gross error 35", 12, "gross_error", gross=(35.0,), noise=5.0, reference=(None, 0.83, None)
+    *smaller(
+        "damping change .002, 5 deg",
+        "damping_break",
+        (0.90, 1.0, 1.0, 1.0),
+        damping_change=0.002,
+        amplitude=5.0,
     ),
+    *smaller("drift 3", "midpoint_drift", (0.14, 0.52, 0.95, 0.99), drift=3.0),
+    *smaller("warm-up 40", "warm_up", (0.03, 0.10, 0.48, 0.94), warm_up=40.0),
+    *smaller("gross error 35", "gross_error", (0.55, 0.83, 0.98, 0.99), gross=(35.0,)),
 )
 CAMPAIGNS = (
     *(CampaignTruth("none", n) for n in (8, 12, 20, 45)),
