@@ -117,30 +117,21 @@ def may_join_gross(candidate: Candidate, fit: Fit) -> bool:
     return few and (known == 0 or candidate.count == 1)
 
 
+Draft = tuple[float, tuple[Member, ...], Fit]
+"""Approximate BIC, members, and the set that was added to."""
+
+
 def next_level(problem: Problem, level: Level, candidates: Iterable[Candidate]) -> Level:
     """Best fit of every set that has one candidate more than the best sets of a level."""
-    pool = tuple(candidates)
-    drafts: dict[tuple[frozenset[str], int], tuple[float, tuple[Member, ...], Fit]] = {}
-    for anchor in level.fits[:ANCHORS]:
-        q = orthonormal_design(anchor)
-        for candidate in pool:
-            if not may_join(candidate, anchor):
-                continue
-            draft = _best_addition(problem, anchor, candidate, q)
-            if draft is None:
-                continue
-            bic, members = draft
-            key = (anchor.key | {candidate.id}, sum(m.candidate.count for m in members))
-            if key not in drafts or bic < drafts[key][0]:
-                drafts[key] = (bic, members, anchor)
+    drafts = _drafts(problem, level, tuple(candidates))
     if not drafts:
         return Level(level.depth + 1, (), ())
     best = min(bic for bic, _, _ in drafts.values())
     exact: dict[frozenset[str], dict[int, Fit]] = {}
-    for (key, count), (bic, members, anchor) in drafts.items():
+    for (names, count), (bic, members, anchor) in drafts.items():
         if level.depth == 0 or bic <= best + REFINED:
             fit = _refined(problem, members, anchor, every=level.depth > 0)
-            exact.setdefault(key, {})[count] = fit
+            exact.setdefault(names, {})[count] = fit
     fits = [settled_count(problem, counts) for counts in exact.values()]
     fits.sort(key=lambda fit: fit.bic)
     least = min(fit.bic for fit in fits)
@@ -151,6 +142,26 @@ def next_level(problem: Problem, level: Level, candidates: Iterable[Candidate]) 
     unique = {fit.key: fit for fit in sorted(noises, key=lambda f: -f.bic)}
     ordered = sorted(unique.values(), key=lambda fit: fit.bic)
     return Level(level.depth + 1, tuple(fits), tuple(ordered))
+
+
+def _drafts(
+    problem: Problem, level: Level, pool: tuple[Candidate, ...]
+) -> dict[tuple[frozenset[str], int], Draft]:
+    """Best addition for each set of names and each number of gross errors in it."""
+    drafts: dict[tuple[frozenset[str], int], Draft] = {}
+    for anchor in level.fits[:ANCHORS]:
+        q = orthonormal_design(anchor)
+        for candidate in pool:
+            if not may_join(candidate, anchor):
+                continue
+            found = _best_addition(problem, anchor, candidate, q)
+            if found is None:
+                continue
+            bic, members = found
+            key = (anchor.key | {candidate.id}, sum(m.candidate.count for m in members))
+            if key not in drafts or bic < drafts[key][0]:
+                drafts[key] = (bic, members, anchor)
+    return drafts
 
 
 def settled_count(problem: Problem, counts: Mapping[int, Fit]) -> Fit:

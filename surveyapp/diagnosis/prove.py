@@ -96,7 +96,7 @@ def unforetold(fit: Fit) -> Array:
     """Observations that a fit does not predict, as a mask (n,): flagged, or alone."""
     q, _ = np.linalg.qr(fit.design)
     alone = 1.0 - np.einsum("np,np->n", q, q) <= LEAST_CONTROL
-    return np.maximum(flagged(fit), alone.astype(float))
+    return np.asarray(np.maximum(flagged(fit), alone.astype(np.float64)))
 
 
 def _foretold(problem: Problem, errors: Array, left: Array) -> Array:
