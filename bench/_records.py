@@ -185,7 +185,7 @@ def campaign_problem(truth: CampaignTruth, seed: int) -> tuple[Problem, float]:
     g = np.random.default_rng(seed)
     n = truth.size
     block = np.repeat(np.arange(n), 3)[:n]
-    dates = np.sort(g.uniform(0.0, 3.0 * n, n))
+    dates = np.sort(g.choice(3 * n, n, replace=False)) + 0.3
     days = dates[block] + np.tile([0.0, 0.05, 0.1], n)[:n]
     season = 8.0 * np.sin(2.0 * np.pi * days / 365.25 + g.uniform(0.0, 6.28))
     theta = 12.0 + season + (3.0 * g.standard_normal(n))[block] + 0.5 * g.standard_normal(n)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from surveyapp.core.campaign_columns import block_names
 from surveyapp.diagnosis.problem import Array, Problem
 from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem as InputProblem
@@ -203,6 +204,5 @@ def _columns(
     if all(d.block for d in determinations):
         columns["block"], labels["block"] = _numbered([d.block for d in determinations])
     elif "elapsed_days" in columns and all(d is not None for d in days):
-        day = np.floor(columns["elapsed_days"])
-        columns["block"], labels["block"] = _numbered([f"day {int(x)}" for x in day])
+        columns["block"], labels["block"] = _numbered(block_names(days))
     return columns, labels, warnings
