@@ -10,7 +10,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
-from typing import Final
 
 from surveyapp import api
 from surveyapp.core.progress import Progress
@@ -24,6 +23,7 @@ from surveyapp.core.steps import (
     step_states,
     swing_begun,
 )
+from surveyapp.core.target import Target, target_of
 from surveyapp.domain.project import OrientationSession, Project
 from surveyapp.domain.readings import FieldBook, Reading, ReadingKind
 from surveyapp.domain.results import OrientationResult
@@ -32,10 +32,24 @@ from surveyapp.io.clock import SessionClock, Stamp, local_now, steady_seconds
 from surveyapp.io.fieldbook import append_row, book_columns, read_field_book
 from surveyapp.io.lock import ProjectLock
 from surveyapp.io.seals import is_closed
-from surveyapp_models.angles import ARCSEC
 
-WANTED_KEY: Final = "wanted_interval_arcsec"
-"""Key of an [[orientation]] table: half-width of the 95 % interval of gyro north to stop at."""
+
+@dataclass(frozen=True, slots=True)
+class Aim:
+    """What a session is observed for.
+
+    Parameters
+    ----------
+    target : Target or None
+    book : str
+        Id of the project's rule book, empty without one: tells why there is no target.
+    problem : str
+        Why the rule book cannot be used, empty if it can.
+    """
+
+    target: Target | None
+    book: str = ""
+    problem: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -235,10 +249,18 @@ class Observation:
         else:
             self.record(NewRow(ReadingKind.NOTE, note=f"{STEP_NOTE}{step}"))
 
-    def wanted_interval(self) -> float | None:
-        """Half-width of the 95 % interval to stop at [rad], None where nobody has named one."""
-        value = dict(self.session.override).get(WANTED_KEY)
-        return float(value) * ARCSEC if isinstance(value, int | float) else None
+    def aim(self) -> Aim:
+        """Target of this session: its own wanted interval, else what the rule book tells."""
+        from surveyapp.io.project_checks import project_rule_book
+
+        own = target_of(self.session, None)
+        if own is not None:
+            return Aim(own)
+        try:
+            book = project_rule_book(self.project)
+        except SurveyError as error:
+            return Aim(None, self.project.rule_book or "", error.problems[0].what)
+        return Aim(target_of(self.session, book), "" if book is None else book.id)
 
     def remaining_s(self, progress: Progress) -> float | None:
         """Seconds to the next turning point, None where its moment is not known or long past."""

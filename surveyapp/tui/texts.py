@@ -154,7 +154,7 @@ F_PURPOSE: Final = "Purpose"
 F_KNOWN: Final = "Known azimuth"
 F_KNOWN_HINT: Final = "grid azimuth, for a calibration; empty: from the coordinates"
 F_WANTED: Final = "Wanted 95 %"
-F_WANTED_HINT: Final = "arc-seconds of gyro north to stop at; may be empty"
+F_WANTED_HINT: Final = "arc-seconds of gyro north to stop at; empty: from the rule book"
 METHODS: Final = {
     "tracking": "tracking: turning points on the circle",
     "amplitude": "amplitude: turning points on the scale, clamped",
@@ -265,7 +265,12 @@ NORTH_NONE: Final = "gyro north from two turning points on"
 AFTER_TWO: Final = '±{interval}" after two more'
 WANTED: Final = 'wanted ±{interval}"'
 ENOUGH: Final = "ENOUGH"
-NO_WANTED: Final = "no wanted interval set"
+RULE_TARGET: Final = 'rule book ±{interval}"'
+TARGET_SOURCE: Final = 'm {sigma}" x 1.96: {book}, {clause}'
+TARGET_UNCONFIRMED: Final = ", unconfirmed"
+NO_TARGET_SET: Final = "no target set"
+TARGET_NOT_IN_BOOK: Final = "no target in {book}"
+TARGET_PROBLEM: Final = "no target: {problem}"
 SCHULER: Final = "Schuler, without tape zero"
 CHANNEL_MIDPOINT: Final = 'v" midpoint '
 CHANNEL_AMPLITUDE: Final = 'v" amplitude'

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from surveyapp.api_session import Aim
 from surveyapp.core.forecast import PointForecast
 from surveyapp.core.progress import Progress
 from surveyapp.core.run_alert import Alert
+from surveyapp.core.target import Target
 from surveyapp.tui import texts
 from surveyapp.tui.views.form import arcsec_text
 from surveyapp_models.angles import AngleUnit, format_angle
@@ -46,18 +48,36 @@ def north_text(progress: Progress, unit: AngleUnit) -> str:
     return texts.NORTH_NOW.format(north=north, interval=arcsec_text(progress.interval95))
 
 
-def outlook_text(progress: Progress, wanted: float | None) -> str:
+def outlook_text(progress: Progress, aim: Aim) -> str:
     """What two more points would bring, what is wanted, and whether it is enough."""
     parts = []
     if progress.interval95_two_more is not None:
         parts.append(texts.AFTER_TWO.format(interval=arcsec_text(progress.interval95_two_more)))
-    if wanted is None:
-        parts.append(texts.NO_WANTED)
-    else:
-        parts.append(texts.WANTED.format(interval=arcsec_text(wanted)))
-        if progress.enough(wanted):
-            parts.append(texts.ENOUGH)
+    target = aim.target
+    if target is None:
+        parts.append(_no_target(aim))
+        return "  ".join(parts)
+    pattern = texts.WANTED if target.origin == "session" else texts.RULE_TARGET
+    parts.append(pattern.format(interval=arcsec_text(target.interval95)))
+    if progress.enough(target.interval95):
+        parts.append(texts.ENOUGH)
     return "  ".join(parts)
+
+
+def _no_target(aim: Aim) -> str:
+    if aim.problem:
+        return texts.TARGET_PROBLEM.format(problem=aim.problem)
+    return texts.TARGET_NOT_IN_BOOK.format(book=aim.book) if aim.book else texts.NO_TARGET_SET
+
+
+def target_source_text(target: Target | None) -> str:
+    """Where the rule book's target comes from; empty where the session named its own."""
+    if target is None or target.origin == "session":
+        return ""
+    text = texts.TARGET_SOURCE.format(
+        sigma=arcsec_text(target.sigma), book=target.book, clause=target.clause
+    )
+    return text if target.confirmed else text + texts.TARGET_UNCONFIRMED
 
 
 def schuler_text(progress: Progress, unit: AngleUnit, shown: int = 2) -> str:

@@ -7,6 +7,7 @@ from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.widgets import Static
 
+from surveyapp.api_session import Aim
 from surveyapp.core.progress import Progress
 from surveyapp.tui import texts
 from surveyapp.tui.views.progress import (
@@ -17,6 +18,7 @@ from surveyapp.tui.views.progress import (
     north_text,
     outlook_text,
     schuler_text,
+    target_source_text,
 )
 from surveyapp_models.angles import AngleUnit
 
@@ -24,10 +26,10 @@ from surveyapp_models.angles import AngleUnit
 class Forecast(Vertical):
     """What the run says so far."""
 
-    def __init__(self, unit: AngleUnit, wanted: float | None) -> None:
+    def __init__(self, unit: AngleUnit, aim: Aim) -> None:
         super().__init__()
         self.unit = unit
-        self.wanted = wanted
+        self.aim = aim
         self.progress: Progress | None = None
 
     def compose(self) -> ComposeResult:
@@ -40,10 +42,12 @@ class Forecast(Vertical):
         """Show another state of the run."""
         self.progress = progress
         text = Text(f"{north_text(progress, self.unit)}  ", no_wrap=True)
-        outlook = outlook_text(progress, self.wanted)
+        outlook = outlook_text(progress, self.aim)
         if progress.north is not None:
             style = "bold" if outlook.endswith(texts.ENOUGH) else ""
             text.append(f"\n{outlook}", style=style)
+            if source := target_source_text(self.aim.target):
+                text.append(f"\n{source}")
         if progress.schuler_means:
             text.append(f"\n{schuler_text(progress, self.unit)}")
         for line in channel_lines(progress, 6):

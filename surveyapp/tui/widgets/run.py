@@ -48,7 +48,7 @@ class RunPane(Vertical):
     def compose(self) -> ComposeResult:
         """The three parts."""
         yield SwingPlot()
-        yield Forecast(self.desk.unit, self.desk.observation.wanted_interval())
+        yield Forecast(self.desk.unit, self.desk.observation.aim())
         yield Ledger()
 
     def on_mount(self) -> None:
