@@ -14,7 +14,6 @@ from pathlib import Path
 from surveyapp import api
 from surveyapp.core.progress import Progress
 from surveyapp.core.steps import (
-    NEEDED_POINTS,
     STEP_NOTE,
     Step,
     StepState,
@@ -296,44 +295,21 @@ def progress(project: Project, session: str) -> Progress:
     return progress_of(item, card, rng, latitude=position.latitude)
 
 
-def orient_observed(project: Project) -> tuple[OrientationResult, tuple[str, ...]]:
-    """Orient a project whose newest sessions are still being observed.
-
-    Parameters
-    ----------
-    project : Project
-
-    Returns
-    -------
-    result : OrientationResult
-        As ``api.orient`` gives it without the sessions that have too few readings yet.
-    left_out : tuple of str
-        Their ids; empty where the whole project could be oriented.
+def orient_observed(project: Project) -> OrientationResult:
+    """Orient a project of which no session may be finished yet.
 
     Raises
     ------
     SurveyError
         If what has enough readings cannot be oriented.
     """
+    kept = api.without_unfinished(project)
     try:
-        return api.orient(project), ()
+        return api.orient(project)
     except SurveyError:
-        enough = {
-            item.id
-            for item in project.sessions
-            if _swing_count(item) >= (1 if item.method == "automatic" else NEEDED_POINTS)
-        }
-        if len(enough) == len(project.sessions):
+        if kept.sessions:
             raise
-    kept = tuple(item for item in project.sessions if item.id in enough)
-    left_out = tuple(item.id for item in project.sessions if item.id not in enough)
-    return api.orient(replace(project, sessions=kept)), left_out
-
-
-def _swing_count(session: OrientationSession) -> int:
-    quiet = (ReadingKind.CLAMP, ReadingKind.MISSED)
-    rows = rows_of(session.book, Step.SWING, session.method)
-    return sum(row.kind not in quiet for row in rows)
+    return api.orient(kept)
 
 
 def write_record(folder: api.Folder) -> str:

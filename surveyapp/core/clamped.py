@@ -29,6 +29,8 @@ SCALE_RANGE_DIV = 15.0
 """Half length of the gyro scale (physics.md 2.6: +-15 div)."""
 NOMINAL_SIGMA_DIV, NOMINAL_SIGMA_S = 0.1, 0.2
 """Relative weights where the card states none (physics.md 2.2, 2.3)."""
+LEAST_OF_SCALE = {"amplitude": 3, "transit": 2}
+"""Fewest turning points on the scale that a method lives on."""
 LEAST_FOR_RESOLUTION = 4
 SAME_CLAMPING = math.radians(0.1)
 
@@ -97,12 +99,16 @@ def circle_resolution(session: OrientationSession, rows: Sequence[Reading]) -> f
     return float(size * 10.0**-decimals)
 
 
-def observe(session: OrientationSession, card: InstrumentCard) -> Observed:
-    """Collect scale readings and passages, number the turning points, check what is impossible."""
+Numbered = list[tuple[int, Reading]]
+"""Rows with the number of the turning point at or before them, the first of the book being 0."""
+
+
+def number_rows(session: OrientationSession) -> tuple[Numbered, Numbered]:
+    """Number the scale turning points, and the passages by the turning point before each (-1)."""
     kinds = (ReadingKind.SCALE_REVERSAL, ReadingKind.MISSED, ReadingKind.TRANSIT)
     turning = -1
-    readings: list[tuple[int, Reading]] = []
-    passages: list[tuple[int, Reading]] = []
+    readings: Numbered = []
+    passages: Numbered = []
     last: Reading | None = None
     for row in session.book.of_kind(*kinds):
         if row.kind is ReadingKind.TRANSIT:
@@ -115,11 +121,36 @@ def observe(session: OrientationSession, card: InstrumentCard) -> Observed:
         last = None
         if row.kind is ReadingKind.SCALE_REVERSAL:
             readings.append((turning, row))
-    need_points(session, found=len(readings), needed=2, kind="scale_reversal")
-    _check_scale(session, [row for _, row in readings])
-    first = readings[0][0]
-    passage_rows = tuple(row for _, row in passages)
-    times = moments(passage_rows) if passage_rows else np.empty(0)
+    return readings, passages
+
+
+def triples_of(after: Sequence[float]) -> list[int]:
+    """Places of the first of every three passages in a row."""
+    return [
+        i
+        for i in range(len(after) - 2)
+        if after[i + 2] - after[i] == 2 and after[i + 1] - after[i] == 1
+    ]
+
+
+def check_rows(session: OrientationSession) -> None:
+    """Refuse what is impossible in a clamped swing, however few its rows are so far.
+
+    Raises
+    ------
+    SurveyError
+        For different clampings, a reading beyond the scale, passages without time or out of order.
+    """
+    if session.book.of_kind(ReadingKind.CLAMP):
+        clamp_reading(session)
+    check_scale(session)
+    _, passages = number_rows(session)
+    times = _passage_times(session, tuple(row for _, row in passages))
+    _check_order(session, times, np.array([turn for turn, _ in passages], dtype=np.float64))
+
+
+def _passage_times(session: OrientationSession, rows: tuple[Reading, ...]) -> Floats:
+    times = moments(rows) if rows else np.empty(0)
     if times is None:
         raise session_problem(
             session,
@@ -128,6 +159,19 @@ def observe(session: OrientationSession, card: InstrumentCard) -> Observed:
             expected="elapsed_s on every transit row",
             hint="A passage without its moment says nothing: strike it or add the time.",
         )
+    return times
+
+
+def observe(session: OrientationSession, card: InstrumentCard) -> Observed:
+    """Collect scale readings and passages, number the turning points, check what is impossible."""
+    check_scale(session)
+    readings, passages = number_rows(session)
+    need_points(
+        session, found=len(readings), needed=LEAST_OF_SCALE["transit"], kind="scale_reversal"
+    )
+    first = readings[0][0]
+    passage_rows = tuple(row for _, row in passages)
+    times = _passage_times(session, passage_rows)
     after = np.array([turn - first for turn, _ in passages], dtype=np.float64)
     _check_order(session, times, after)
     swing = ClampedSwing(
@@ -162,7 +206,9 @@ def _polarity(swing: ClampedSwing) -> float:
     return -1.0 if float(right.mean()) < float(left.mean()) else 1.0
 
 
-def _check_scale(session: OrientationSession, rows: list[Reading]) -> None:
+def check_scale(session: OrientationSession) -> None:
+    """Refuse readings beyond the scale."""
+    rows = session.book.of_kind(ReadingKind.SCALE_REVERSAL)
     beyond = [row for row in rows if row.value is not None and abs(row.value) > SCALE_RANGE_DIV]
     if beyond:
         raise SurveyError(
