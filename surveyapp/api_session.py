@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
+from typing import Final
 
 from surveyapp import api
 from surveyapp.core.progress import Progress
@@ -31,6 +32,9 @@ from surveyapp.io.clock import SessionClock, Stamp, local_now, steady_seconds
 from surveyapp.io.fieldbook import append_row, book_columns, read_field_book
 from surveyapp.io.lock import ProjectLock
 from surveyapp.io.seals import is_closed
+
+FARTHEST: Final = 10.0
+"""Periods beyond which a countdown is none: its moments stand on another clock than the session."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -262,12 +266,15 @@ class Observation:
         return Aim(target_of(self.session, book), "" if book is None else book.id)
 
     def remaining_s(self, progress: Progress) -> float | None:
-        """Seconds to the next turning point, None where its moment is not known or long past."""
-        if progress.next is None or progress.next.moment_s is None:
+        """Seconds to the next passage or turning point; None where not known or long past."""
+        due, period = progress.due_s, progress.period_s
+        if due is None:
             return None
-        remaining = progress.next.moment_s - self.clock.stamp().elapsed_s
-        late = progress.period_s is not None and -remaining > 0.5 * progress.period_s
-        return None if late else remaining
+        remaining = due - self.clock.stamp().elapsed_s
+        if period is None:
+            return remaining
+        late = 0.25 if progress.passage is not None else 0.5
+        return remaining if -late * period <= remaining <= FARTHEST * period else None
 
     def close(self) -> None:
         """Give the right to write back."""
@@ -275,7 +282,7 @@ class Observation:
 
 
 def progress(project: Project, session: str) -> Progress:
-    """What a tracking session says so far: forecast, interval, alarm.
+    """What a session says so far: forecast, interval, alarm.
 
     Parameters
     ----------
@@ -285,7 +292,7 @@ def progress(project: Project, session: str) -> Progress:
         Id of the session.
     """
     from surveyapp.core.geodesy import open_grid, position_of
-    from surveyapp.core.progress import progress_of
+    from surveyapp.core.observing import progress_of
 
     item = project.session(session)
     grid = open_grid(project.crs) if project.crs is not None else None

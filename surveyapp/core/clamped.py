@@ -99,16 +99,32 @@ def circle_resolution(session: OrientationSession, rows: Sequence[Reading]) -> f
     return float(size * 10.0**-decimals)
 
 
-Numbered = list[tuple[int, Reading]]
-"""Rows with the number of the turning point at or before them, the first of the book being 0."""
+@dataclass(frozen=True, slots=True)
+class NumberedRows:
+    """Rows of a clamped swing with the number of the turning point at or before them.
+
+    Parameters
+    ----------
+    readings, passages : tuple of (int, Reading)
+        The first turning point of the book has the number 0; a passage before it -1.
+    last : int
+        Number of the last turning point, read or missed or implied; -1 before the first.
+    at_passage : bool
+        Whether the last row is a passage: a turning point comes next.
+    """
+
+    readings: tuple[tuple[int, Reading], ...]
+    passages: tuple[tuple[int, Reading], ...]
+    last: int
+    at_passage: bool
 
 
-def number_rows(session: OrientationSession) -> tuple[Numbered, Numbered]:
-    """Number the scale turning points, and the passages by the turning point before each (-1)."""
+def number_rows(session: OrientationSession) -> NumberedRows:
+    """Number the scale turning points, and the passages by the turning point before each."""
     kinds = (ReadingKind.SCALE_REVERSAL, ReadingKind.MISSED, ReadingKind.TRANSIT)
     turning = -1
-    readings: Numbered = []
-    passages: Numbered = []
+    readings: list[tuple[int, Reading]] = []
+    passages: list[tuple[int, Reading]] = []
     last: Reading | None = None
     for row in session.book.of_kind(*kinds):
         if row.kind is ReadingKind.TRANSIT:
@@ -121,7 +137,7 @@ def number_rows(session: OrientationSession) -> tuple[Numbered, Numbered]:
         last = None
         if row.kind is ReadingKind.SCALE_REVERSAL:
             readings.append((turning, row))
-    return readings, passages
+    return NumberedRows(tuple(readings), tuple(passages), turning, last is not None)
 
 
 def triples_of(after: Sequence[float]) -> list[int]:
@@ -144,7 +160,7 @@ def check_rows(session: OrientationSession) -> None:
     if session.book.of_kind(ReadingKind.CLAMP):
         clamp_reading(session)
     check_scale(session)
-    _, passages = number_rows(session)
+    passages = number_rows(session).passages
     times = _passage_times(session, tuple(row for _, row in passages))
     _check_order(session, times, np.array([turn for turn, _ in passages], dtype=np.float64))
 
@@ -165,7 +181,8 @@ def _passage_times(session: OrientationSession, rows: tuple[Reading, ...]) -> Fl
 def observe(session: OrientationSession, card: InstrumentCard) -> Observed:
     """Collect scale readings and passages, number the turning points, check what is impossible."""
     check_scale(session)
-    readings, passages = number_rows(session)
+    rows = number_rows(session)
+    readings, passages = rows.readings, rows.passages
     need_points(
         session, found=len(readings), needed=LEAST_OF_SCALE["transit"], kind="scale_reversal"
     )
@@ -192,17 +209,17 @@ def observe(session: OrientationSession, card: InstrumentCard) -> Observed:
             expected="turning points on both sides",
             hint="The amplitude is half the distance of the two sides.",
         )
-    swing = replace(swing, sides=swing.sides * _polarity(swing))
+    swing = replace(swing, sides=swing.sides * polarity(swing.readings, swing.sides))
     return Observed(swing, tuple(row for _, row in readings), passage_rows, estimate_period(swing))
 
 
-def _polarity(swing: ClampedSwing) -> float:
+def polarity(readings: Floats, sides: Floats) -> float:
     """-1 where the sides are written as east and west and the scale reads the other way, else +1.
 
     The fits take +1 for the larger reading; which way the scale reads stands in the sign of the
     scale value alone.
     """
-    right, left = swing.readings[swing.sides > 0], swing.readings[swing.sides < 0]
+    right, left = readings[sides > 0], readings[sides < 0]
     return -1.0 if float(right.mean()) < float(left.mean()) else 1.0
 
 

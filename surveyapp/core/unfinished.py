@@ -45,7 +45,7 @@ def _points(session: OrientationSession, kind: ReadingKind, name: str, least: in
 
 
 def _passages(session: OrientationSession) -> str:
-    _, passages = number_rows(session)
+    passages = number_rows(session).passages
     if len(passages) < MIN_POINTS:
         return f"{len(passages)} transits, {MIN_POINTS} are the least"
     first = passages[0][1].value

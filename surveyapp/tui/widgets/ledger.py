@@ -24,9 +24,10 @@ class Ledger(Vertical):
         with VerticalScroll(can_focus=False):
             yield Static(id="ledger-rows", markup=False)
 
-    def show(self, rows: Sequence[Sequence[str]]) -> None:
-        """Replace all rows."""
-        table = [texts.LEDGER_COLUMNS, *rows]
+    def show(self, rows: Sequence[Sequence[str]], *, scale: bool = False) -> None:
+        """Replace all rows; ``scale``: residuals are divisions."""
+        head = texts.LEDGER_COLUMNS_DIV if scale else texts.LEDGER_COLUMNS
+        table = [head, *rows]
         widths = [max(len(row[i]) for row in table) for i in range(len(texts.LEDGER_COLUMNS))]
         lines = [
             " ".join(
