@@ -6,6 +6,8 @@ own null distribution. Source: physics.md section 4 (signatures in the two chann
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,6 +15,7 @@ from surveyapp.core.clamped import NumberedRows
 from surveyapp.core.gyrofit import SwingFit
 from surveyapp.core.run_alert import Alert, Candidates, Trouble, find_trouble, search
 from surveyapp.core.swingfit import ClampedFit, ClampedSwing, estimate_period, fit_clamped
+from surveyapp.domain.readings import Reading
 
 Floats = NDArray[np.float64]
 
@@ -34,15 +37,22 @@ def alert_of_readings(
 
 
 def alert_of_swing(
-    rows: NumberedRows, swing: ClampedSwing, rng: np.random.Generator, *, period: float | None
+    rows: NumberedRows,
+    timed: Sequence[Reading],
+    swing: ClampedSwing,
+    rng: np.random.Generator,
+    *,
+    period: float | None,
 ) -> Alert | None:
     """Alarm of readings and passages together, None where they are too few to tell.
 
     Parameters
     ----------
     rows : NumberedRows
+    timed : sequence of Reading
+        The passages that have a moment.
     swing : ClampedSwing
-        Of all readings and the timed passages of ``rows``.
+        Of all readings and these passages.
     rng : numpy.random.Generator
     period : float or None
         First guess [s] where the passages tell none.
@@ -64,7 +74,6 @@ def alert_of_swing(
     trouble, place, p = found
     passage = place - swing.readings.size
     if passage >= 0 and trouble is Trouble.MISTIMED:
-        timed = [row for _, row in rows.passages if row.elapsed_s is not None]
         return Alert(trouble, timed[passage].seq, passage, p)
     row = rows.readings[place][1]
     return Alert(trouble, row.seq, int(swing.index[place]), p)

@@ -152,7 +152,7 @@ def standing_of(
     numbered = number_rows(session)
     rows = [row for _, row in numbered.readings]
     first = numbered.readings[0][0] if rows else 0
-    timed = [(turn, row) for turn, row in numbered.passages if row.elapsed_s is not None]
+    timed, times = _timed(numbered)
     values = np.array([row.value for row in rows], dtype=np.float64)
     here = card_at(card, latitude).clamped_s
     sigma_div = card.sigma.scale_div or NOMINAL_SIGMA_DIV
@@ -160,7 +160,7 @@ def standing_of(
         readings=values,
         index=np.array([turn - first for turn, _ in numbered.readings], dtype=np.float64),
         sides=_sides(rows, values),
-        passages_s=np.array([row.elapsed_s for _, row in timed], dtype=np.float64),
+        passages_s=times,
         divisions=np.array([row.value for _, row in timed], dtype=np.float64),
         after=np.array([turn - first for turn, _ in timed], dtype=np.float64),
         sigma_div=sigma_div,
@@ -173,6 +173,16 @@ def standing_of(
         rounding_sigma(resolution) / sigma_div,
     )
     return Standing(numbered, swing, first, moments(rows), known)
+
+
+def _timed(numbered: NumberedRows) -> tuple[tuple[tuple[int, Reading], ...], Floats]:
+    """Passages and their moments on one clock; of mixed ones those with elapsed seconds."""
+    passages = numbered.passages
+    times = moments([row for _, row in passages])
+    if times is None:
+        passages = tuple(item for item in passages if item[1].elapsed_s is not None)
+        times = moments([row for _, row in passages])
+    return passages, np.empty(0) if times is None else times
 
 
 def _sides(rows: list[Reading], values: Floats) -> Floats:
@@ -286,7 +296,7 @@ def _alert(
     swing = standing.swing
     if session.method != "transit":
         return alert_of_readings(standing.rows, swing, fit, rng)
-    timed = [row for _, row in standing.rows.passages if row.elapsed_s is not None]
+    timed = [row for _, row in _timed(standing.rows)[0]]
     last = swing.passages_s.size - 1
     if last >= 1:
         before = fit_passages(_before(swing, last), standing.known)
@@ -298,7 +308,7 @@ def _alert(
         )
         if found is not None:
             return Alert(found[0], timed[last].seq, last, found[1])
-    return alert_of_swing(standing.rows, swing, rng, period=standing.known.period_s)
+    return alert_of_swing(standing.rows, timed, swing, rng, period=standing.known.period_s)
 
 
 def _before(swing: ClampedSwing, last: int) -> ClampedSwing:
