@@ -63,7 +63,8 @@ def forecast_text(progress: Progress, unit: AngleUnit) -> str:
         return ""
     if progress.scale:
         reading = number_text(progress.next_reading, 2, sign=True)
-        text = texts.NEXT_READING_DIV.format(side=forecast.side, reading=reading)
+        pattern = texts.NEXT_READING_DIV if progress.passage is None else texts.NEXT_POINT_DIV
+        text = pattern.format(side=forecast.side, reading=reading)
         if forecast.half_width is None:
             return text
         return text + texts.NEXT_INTERVAL_DIV.format(interval=number_text(forecast.half_width, 2))

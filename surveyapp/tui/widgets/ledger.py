@@ -24,6 +24,14 @@ class Ledger(Vertical):
         with VerticalScroll(can_focus=False):
             yield Static(id="ledger-rows", markup=False)
 
+    def on_resize(self) -> None:
+        """Keep the end in sight where an alarm or a longer forecast takes lines from the ledger."""
+        self.to_end()
+
+    def to_end(self) -> None:
+        """Scroll to the latest reading, once everything has its place."""
+        self.call_after_refresh(self.query_one(VerticalScroll).scroll_end, animate=False)
+
     def show(self, rows: Sequence[Sequence[str]], *, scale: bool = False) -> None:
         """Replace all rows; ``scale``: residuals are divisions."""
         head = texts.LEDGER_COLUMNS_DIV if scale else texts.LEDGER_COLUMNS
@@ -42,4 +50,4 @@ class Ledger(Vertical):
             text.append(f"{line}\n", style="strike" if row[STATE] == texts.LEDGER_STRUCK else "")
         text.rstrip()
         self.query_one("#ledger-rows", Static).update(text)
-        self.query_one(VerticalScroll).scroll_end(animate=False)
+        self.to_end()
