@@ -53,8 +53,11 @@ def two_more(
     swing: ClampedSwing,
     fit: SwingFit | None,
     passing: PassageFit | None,
+    coming: tuple[int, int],
 ) -> float | None:
     """95 % half-width of north after two more points, if the readings stay as they are [rad].
+
+    ``coming`` are the numbers of the next turning point and of the one before the next passage.
 
     Two more turning points (amplitude), or two more passages with the turning points between them
     (transit). The variance of unit weight is the one in force now; what the residuals told it with
@@ -69,9 +72,11 @@ def two_more(
         return None
     judged = math.isfinite(own.dof)
     if session.method == "transit":
-        found = None if passing is None else _after_passages(swing, passing, judged=judged)
+        found = (
+            None if passing is None else _after_passages(swing, passing, coming[1], judged=judged)
+        )
     else:
-        found = None if fit is None else _after_readings(swing, fit, card, judged=judged)
+        found = None if fit is None else _after_readings(swing, fit, card, coming[0], judged=judged)
     if found is None:
         return None
     sigma, dof = found
@@ -80,16 +85,16 @@ def two_more(
 
 
 def _after_readings(
-    swing: ClampedSwing, fit: SwingFit, card: InstrumentCard, *, judged: bool
+    swing: ClampedSwing, fit: SwingFit, card: InstrumentCard, coming: int, *, judged: bool
 ) -> tuple[float, float] | None:
     """Sigma of the middle [div] and degrees of freedom with two more turning points."""
     sigma = math.sqrt(fit.variance) if judged and fit.variance else card.sigma.scale_div
     if sigma is None:
         return None
-    last = float(swing.index[-1])
-    index = np.concatenate([swing.index, [last + 1.0, last + 2.0]])
-    side = float(swing.sides[-1])
-    sides = np.concatenate([swing.sides, [-side, side]])
+    start = first_side(swing)
+    more = [float(coming), coming + 1.0]
+    index = np.concatenate([swing.index, more])
+    sides = np.concatenate([swing.sides, [_side(start, k) for k in more]])
     if index.size < LEAST_SQUARES_FROM:
         _, weights = schuler_means(np.zeros(index.size), index)
         norm = float(np.sqrt(weights @ weights))
@@ -102,23 +107,21 @@ def _after_readings(
 
 
 def _after_passages(
-    swing: ClampedSwing, passing: PassageFit, *, judged: bool
+    swing: ClampedSwing, passing: PassageFit, coming: int, *, judged: bool
 ) -> tuple[float, float] | None:
     """The same with two more passages and the turning points that lie between them."""
-    last = float(swing.after[-1])
+    more = [float(coming), coming + 1.0]
     known = set(swing.index.tolist())
-    turns = [k for k in (last + 1.0, last + 2.0) if k not in known]
+    turns = [k for k in more if k not in known]
     start = first_side(swing)
     longer = replace(
         swing,
         readings=np.zeros(swing.readings.size + len(turns)),
         index=np.concatenate([swing.index, turns]),
-        sides=np.concatenate(
-            [swing.sides, [start * (1.0 if int(k) % 2 == 0 else -1.0) for k in turns]]
-        ),
+        sides=np.concatenate([swing.sides, [_side(start, k) for k in turns]]),
         passages_s=np.zeros(swing.passages_s.size + 2),
         divisions=np.concatenate([swing.divisions, [swing.divisions[-1]] * 2]),
-        after=np.concatenate([swing.after, [last + 1.0, last + 2.0]]),
+        after=np.concatenate([swing.after, more]),
         first_side=start,
     )
     if longer.count < MIN_FULL_FIT or np.unique(longer.sides).size < 2:
@@ -128,3 +131,7 @@ def _after_passages(
     inverse = np.linalg.pinv(whitened_jacobian(longer, passing.parameters))
     sigma = passing.unit * float(np.linalg.norm(inverse[0]))
     return sigma, float(longer.count - PARAMETERS) if judged else math.inf
+
+
+def _side(start: float, index: float) -> float:
+    return start * (1.0 if int(index) % 2 == 0 else -1.0)

@@ -133,7 +133,14 @@ def clamped_progress(
         north=None if north is None else wrap_two_pi(north.value),
         interval95=north.interval95 if north is not None and math.isfinite(north.sigma) else None,
         interval95_two_more=two_more(
-            session, card, latitude=latitude, north=north, swing=swing, fit=fit, passing=passing
+            session,
+            card,
+            latitude=latitude,
+            north=north,
+            swing=swing,
+            fit=fit,
+            passing=passing,
+            coming=(standing.next_index, standing.next_after),
         ),
         sigma_source=source,
         missing=missing,

@@ -264,8 +264,9 @@ def judge_last(
     Returns
     -------
     (trouble, p) or None
-        ``MISSED`` where it comes half a swing or more off its count, else ``MISTIMED``; p is the
-        probability of so large a deviation of a clean passage.
+        ``MISSED`` where it comes half a swing or more later than counted, else ``MISTIMED`` (a
+        passage pressed twice comes far too early); p is the probability of so large a deviation of
+        a clean passage.
     """
     if fit is None:
         return None
@@ -274,4 +275,4 @@ def judge_last(
     if p >= LEVEL:
         return None
     halves = round((moment_s - moment) / (0.5 * float(fit.parameters[4])))
-    return (Trouble.MISSED if halves else Trouble.MISTIMED), p
+    return (Trouble.MISSED if halves > 0 else Trouble.MISTIMED), p

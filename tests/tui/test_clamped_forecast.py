@@ -169,6 +169,34 @@ def test_a_passage_pressed_late_is_told_by_its_number() -> None:
     assert str(alert.seq) == rows[-1]["seq"]
 
 
+def test_a_passage_pressed_twice_is_mistimed_and_needs_no_more_than_a_strike() -> None:
+    rows = next(beginnings("transit", "transit", 4, 8.0))
+    again = dict(rows[-1], seq="900", elapsed_s=f"{float(rows[-1]['elapsed_s']) + 0.8:.2f}")
+    alert = judged([*rows, again], "transit").alert
+    assert alert is not None
+    assert (alert.trouble, alert.index, alert.seq) == (Trouble.MISTIMED, 5, 900)
+    strike = dict.fromkeys(rows[0], "") | {"kind": "strike", "value": "900", "seq": "901"}
+    clean, found = judged(rows, "transit"), judged([*rows, again, strike], "transit")
+    assert found.alert is None
+    assert found.passage == clean.passage
+
+
+@pytest.mark.statistical
+def test_passages_alone_are_forecast_once_both_sides_were_read() -> None:
+    """Two scale readings at the beginning, then nothing but Space."""
+    inside = 0
+    for run in runs("transit", 8.0):
+        rows = swing_rows(run)
+        scale = [i for i, row in enumerate(rows) if row["kind"] == "scale_reversal"]
+        rows = [row for i, row in enumerate(rows) if i not in scale[2:]]
+        places = [i for i, row in enumerate(rows) if row["kind"] == "transit"]
+        found = judged(rows[: places[5]], "transit").passage
+        assert found is not None
+        inside += abs(float(rows[places[5]]["elapsed_s"]) - found.moment_s) <= found.half_width_s
+    # binomial, 150 draws: 142.5 expected, standard deviation 2.7
+    assert 142.5 - 3.0 * 2.7 <= inside <= 149
+
+
 def test_a_passage_and_its_points_left_out_are_told_as_a_gap_in_the_count() -> None:
     rows = next(beginnings("transit", "transit", 4, 8.0))
     places = [i for i, row in enumerate(rows) if row["kind"] == "transit"]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import textwrap
+
 from surveyapp.api_session import Aim
 from surveyapp.core.passages import PassageForecast
 from surveyapp.core.progress import Progress
@@ -10,6 +12,8 @@ from surveyapp.tui import texts
 from surveyapp.tui.views.form import arcsec_text, number_text
 from surveyapp_models.angles import AngleUnit, format_angle
 
+WIDTH = 54
+"""Columns beside the steps in a terminal of 80."""
 NEAR_S = 10.0
 """A moment is near this long before and after it, longer where it is known less sharply."""
 
@@ -86,7 +90,8 @@ def north_text(progress: Progress, unit: AngleUnit, method: str) -> str:
     """Gyro north, or the delivered azimuth, with its interval; else why there is none."""
     if progress.north is None:
         if progress.missing:
-            return texts.NORTH_MISSING.format(problem=progress.missing)
+            told = texts.NORTH_MISSING.format(problem=progress.missing)
+            return "\n".join(textwrap.wrap(told, WIDTH))
         return _NORTH_NONE[method]
     north = format_angle(progress.north, unit)
     if progress.interval95 is None:
