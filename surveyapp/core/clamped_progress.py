@@ -119,17 +119,12 @@ def clamped_progress(
     passing = fit_passages(swing, standing.known) if session.method == "transit" else None
     north, missing, source = north_now(session, card, rng, latitude)
     forecast = _next(standing, sigma, timing, passing)
-    rows = [row for _, row in standing.rows.readings]
-    means, _ = schuler_means(swing.readings, swing.index)
-    return Progress(
-        points=_points(rows, swing, fit),
-        scale=True,
+    return replace(
+        _seen(standing, fit),
         next=forecast,
         next_reading=None if forecast is None else forecast.reading,
         passage=_passage(standing, passing),
         period_s=_period(period, timing, passing),
-        schuler_means=tuple(means.tolist()),
-        time_differences=time_differences(swing),
         north=None if north is None else wrap_two_pi(north.value),
         interval95=north.interval95 if north is not None and math.isfinite(north.sigma) else None,
         interval95_two_more=two_more(
@@ -144,11 +139,23 @@ def clamped_progress(
         ),
         sigma_source=source,
         missing=missing,
+        alert=_alert(session, standing, fit, rng),
+    )
+
+
+def _seen(standing: Standing, fit: SwingFit | None) -> Progress:
+    """What the readings so far show by themselves."""
+    swing = standing.swing
+    means, _ = schuler_means(swing.readings, swing.index)
+    return Progress(
+        points=_points([row for _, row in standing.rows.readings], swing, fit),
+        scale=True,
+        schuler_means=tuple(means.tolist()),
+        time_differences=time_differences(swing),
         midpoint=residual_channel(fit, swing.sides, 0),
         amplitude=residual_channel(fit, swing.sides, 1),
         curve=shown_curve(fit, first_side=first_side(swing), next_index=standing.next_index),
         middle=None if fit is None else fit.north,
-        alert=_alert(session, standing, fit, rng),
     )
 
 
