@@ -128,7 +128,8 @@ def _oriented(
     result = outcome(computed, software=SOFTWARE, only=session, more_checks=checks)
     if line is not None:
         names = {f"{item.station}-{item.target}": item for item in result.lines}
-        _require(line, names, "line")
+        told = [item.text for item in project.warnings if item.code == "session_unfinished"]
+        _require(line, names, "line", "; ".join(told))
         if names[line].true_azimuth is None:
             raise SurveyError(
                 Problem(
@@ -143,7 +144,7 @@ def _oriented(
     return result
 
 
-def _require(name: str, known: Iterable[str], kind: str) -> None:
+def _require(name: str, known: Iterable[str], kind: str, more: str = "") -> None:
     names = list(known)
     if name not in names:
         raise SurveyError(
@@ -152,7 +153,7 @@ def _require(name: str, known: Iterable[str], kind: str) -> None:
                 where=f"--{kind}",
                 found=name,
                 expected=f"the name of a {kind} of the project",
-                hint=nearest_names(name, names),
+                hint=". ".join(filter(None, [nearest_names(name, names), more])),
             )
         )
 
@@ -238,6 +239,7 @@ def network(source: Project | Folder, *, traverse: str | None = None) -> Network
     from dataclasses import replace
 
     from surveyapp.core.network.oriented import oriented_lines
+    from surveyapp.core.unfinished import waiting_sides
     from surveyapp.io.importers.gkf import read_gkf
     from surveyapp.io.traversebook import network_of
 
@@ -249,7 +251,7 @@ def network(source: Project | Folder, *, traverse: str | None = None) -> Network
     kept = without_unfinished(source)
     left_out = kept.warnings[len(source.warnings) :]
     lines, constants, warnings = oriented_lines(_oriented(kept).lines if kept.sessions else ())
-    found = network_of(source, traverse, lines, constants)
+    found = network_of(source, traverse, lines, constants, waiting_sides(source, kept))
     return replace(found, warnings=(*found.warnings, *warnings, *left_out))
 
 

@@ -13,7 +13,7 @@ from dataclasses import replace
 from typing import Final
 
 from surveyapp.core.clamped import LEAST_OF_SCALE, check_rows, number_rows, triples_of
-from surveyapp.core.session import collect_sights, known_target
+from surveyapp.core.session import collect_sights, known_target, sight_targets
 from surveyapp.core.tracking import MIN_POINTS
 from surveyapp.domain.project import OrientationSession, Project, ResultWarning, Station
 from surveyapp.domain.readings import ReadingKind
@@ -88,6 +88,17 @@ def without_unfinished(
         for name, text in missing.items()
     ]
     return replace(project, sessions=kept, warnings=(*project.warnings, *warnings))
+
+
+def waiting_sides(whole: Project, kept: Project) -> frozenset[tuple[str, str]]:
+    """Sides (station, target) of the sessions that a project was left without."""
+    names = {session.id for session in kept.sessions}
+    return frozenset(
+        (session.station, target)
+        for session in whole.sessions
+        if session.id not in names
+        for target in sight_targets(session)
+    )
 
 
 def _valid(session: OrientationSession, stations: Mapping[str, Station]) -> bool:

@@ -205,6 +205,33 @@ def test_traverses_are_adjusted_while_the_only_session_is_observed(tmp_path: Pat
     assert run("orient", folder).code == 2
 
 
+def test_a_gyro_side_that_is_still_observed_is_left_out_of_the_adjustment(tmp_path: Path) -> None:
+    late = SECOND.format(method="tracking").replace('target = "B"', 'target = "F"')
+    folder = project(tmp_path / "p", None, more=TRAVERSE + late)
+    (folder / "observations" / "late.csv").write_text(book("reversal,359-00-00"), encoding="utf-8")
+    (folder / "main.csv").write_text(LEG + "gyro,A,,F,\n", encoding="utf-8")
+    toml = (folder / "project.toml").read_text(encoding="utf-8")
+    (folder / "project.toml").write_text(
+        toml.replace("n = 3811452.311\n", "n = 3811452.311\nfixed = true\n"), encoding="utf-8"
+    )
+    adjusted = run("adjust", folder, "--json")
+    assert adjusted.code in (0, 1)
+    assert "gyro" not in [item["kind"] for item in adjusted.json["observations"]]
+    assert "session_unfinished" in [item["code"] for item in adjusted.json["warnings"]]
+    (folder / "main.csv").write_text(LEG + "gyro,F,,A,\n", encoding="utf-8")
+    assert run("adjust", folder).code == 2  # a side that no session observes
+
+
+def test_a_line_that_is_still_observed_is_told_to_be_so(tmp_path: Path) -> None:
+    late = SECOND.format(method="tracking").replace('station = "A"', 'station = "B"')
+    late = late.replace('target = "B"', 'target = "A"')
+    folder = project(tmp_path / "p", None, more=late)
+    (folder / "observations" / "late.csv").write_text(book("reversal,359-00-00"), encoding="utf-8")
+    outcome = run("orient", folder, "--line", "B-A", "--json")
+    assert outcome.code == 2
+    assert "session late is left out" in outcome.json["problems"][0]["hint"]
+
+
 def test_nothing_finished_is_an_error_that_names_them_all(tmp_path: Path) -> None:
     folder = project(tmp_path / "p", book("reversal,359-00-00"))
     (folder / "observations" / "run.csv").write_text(book(), encoding="utf-8")
