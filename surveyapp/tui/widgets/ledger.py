@@ -24,9 +24,18 @@ class Ledger(Vertical):
         with VerticalScroll(can_focus=False):
             yield Static(id="ledger-rows", markup=False)
 
-    def show(self, rows: Sequence[Sequence[str]]) -> None:
-        """Replace all rows."""
-        table = [texts.LEDGER_COLUMNS, *rows]
+    def on_resize(self) -> None:
+        """Keep the end in sight where an alarm or a longer forecast takes lines from the ledger."""
+        self.to_end()
+
+    def to_end(self) -> None:
+        """Scroll to the latest reading, once everything has its place."""
+        self.call_after_refresh(self.query_one(VerticalScroll).scroll_end, animate=False)
+
+    def show(self, rows: Sequence[Sequence[str]], *, scale: bool = False) -> None:
+        """Replace all rows; ``scale``: residuals are divisions."""
+        head = texts.LEDGER_COLUMNS_DIV if scale else texts.LEDGER_COLUMNS
+        table = [head, *rows]
         widths = [max(len(row[i]) for row in table) for i in range(len(texts.LEDGER_COLUMNS))]
         lines = [
             " ".join(
@@ -41,4 +50,4 @@ class Ledger(Vertical):
             text.append(f"{line}\n", style="strike" if row[STATE] == texts.LEDGER_STRUCK else "")
         text.rstrip()
         self.query_one("#ledger-rows", Static).update(text)
-        self.query_one(VerticalScroll).scroll_end(animate=False)
+        self.to_end()

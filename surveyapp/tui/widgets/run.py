@@ -48,7 +48,8 @@ class RunPane(Vertical):
     def compose(self) -> ComposeResult:
         """The three parts."""
         yield SwingPlot()
-        yield Forecast(self.desk.unit, self.desk.observation.wanted_interval())
+        observation = self.desk.observation
+        yield Forecast(self.desk.unit, observation.session.method, observation.aim())
         yield Ledger()
 
     def on_mount(self) -> None:
@@ -56,14 +57,15 @@ class RunPane(Vertical):
         self.set_interval(1.0, self.tick)
 
     def swinging(self) -> bool:
-        """Whether turning points are being read that can be forecast."""
-        tracking = self.desk.observation.session.method == "tracking"
-        return tracking and self.desk.step is Step.SWING
+        """Whether the observation itself is being read, whatever its method."""
+        return self.desk.step is Step.SWING
 
     def show_book(self) -> None:
         """Show the readings of the step, and judge the run anew while it swings."""
         swinging = self.swinging()
-        self.query_one(SwingPlot).display = swinging
+        swings = self.desk.observation.session.method != "automatic"
+        self.query_one(SwingPlot).display = swinging and swings
+        self.query_one("#countdown").display = swings
         self.query_one(Forecast).display = swinging
         self.show_rows()
         if swinging:
@@ -76,7 +78,9 @@ class RunPane(Vertical):
         if self.desk.step is Step.SWING:
             kinds = (*kinds, ReadingKind.MISSED)
         rows = book_rows(observation.book, kinds)
-        self.query_one(Ledger).show(ledger_rows(observation.book, self.desk.progress, rows))
+        cells = ledger_rows(observation.book, self.desk.progress, rows)
+        scale = self.desk.progress is not None and self.desk.progress.scale
+        self.query_one(Ledger).show(cells, scale=scale)
 
     @work(thread=True, exclusive=True)
     def judge(self) -> None:
