@@ -68,6 +68,23 @@ def runs_of(problem: Problem) -> NDArray[np.intp]:
     return np.concatenate([[0], np.flatnonzero(changed) + 1]).astype(np.intp)
 
 
+def finer_than_blocks(problem: Problem, most: int) -> tuple[str, ...]:
+    """Numbered columns that never come back to a value and change more often than ``most`` times.
+
+    They count stretches of time (days, set-ups) that are shorter than a block, and say nothing
+    about block means. A column that does come back (a line) cannot be passed over like that.
+    """
+    found = []
+    for name in problem.grid_labels:
+        values = problem.columns.get(name)
+        if values is None:
+            continue
+        runs = 1 + int(np.count_nonzero(np.diff(values)))
+        if runs > most and runs == np.unique(values).size:
+            found.append(name)
+    return tuple(found)
+
+
 def split(position: Array, runs: NDArray[np.intp], count: int) -> Blocks:
     """Cut a sorted record into about ``count`` blocks of equal extent in time.
 

@@ -44,7 +44,8 @@ def diagnose(
     Parameters
     ----------
     problem : Problem
-        Made by ``reversal_run`` or ``campaign``, or by another subject.
+        Made by ``reversal_run`` or ``campaign``, or by another subject. Of more than 400
+        observations in time order the lines are taken out and block means are diagnosed.
     confirm : Problem, optional
         A second, independent set of the same subject and instrument.
     draws : int
@@ -57,7 +58,8 @@ def diagnose(
     Raises
     ------
     SurveyError
-        If there are too few observations, or the second set is of another subject or instrument.
+        If there are too few observations, the second set is of another subject or instrument, or
+        a long record cannot be averaged over 50 blocks and more.
     """
     check_input(problem, confirm)
     if confirm is not None and is_long(confirm):

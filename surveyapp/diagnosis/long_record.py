@@ -13,7 +13,14 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from surveyapp.diagnosis.blocks import LEAST_BLOCKS, Blocks, block_means, runs_of, split
+from surveyapp.diagnosis.blocks import (
+    LEAST_BLOCKS,
+    Blocks,
+    block_means,
+    finer_than_blocks,
+    runs_of,
+    split,
+)
 from surveyapp.diagnosis.lines import LineSearch, SpectralLine, find_lines, judges_lines
 from surveyapp.diagnosis.loop import Search
 from surveyapp.diagnosis.problem import Array, Problem
@@ -29,6 +36,7 @@ COUNTS = (200, 160, 125, 100, 80, 63, LEAST_BLOCKS)
 """Blocks that are tried in turn, each about a quarter longer than before."""
 NOT_WHITE = "the means of blocks are correlated, and correlated noise looks like it"
 
+FINER = "{} changes more often than there are blocks: whether one of them stands off is not judged"
 LINE_REASON = "looked for among the spectral lines"
 FREQUENCY_UNITS = {"s": "Hz", "d": "1/d"}
 
@@ -59,7 +67,10 @@ class LongRecord:
 
 def is_long(problem: Problem) -> bool:
     """Whether a record must be reduced before it is diagnosed."""
-    return problem.size > LONG and problem.ordered
+    if problem.size <= LONG:
+        return False
+    known = problem.position[np.isfinite(problem.position)]
+    return known.size == 0 or float(np.ptp(known)) > 0.0
 
 
 def reduce_record(problem: Problem) -> LongRecord:
@@ -89,6 +100,9 @@ def reduce_record(problem: Problem) -> LongRecord:
         )
     clean = _sorted_and_finite(problem)
     missing = problem.size - clean.size
+    fine = finer_than_blocks(clean, COUNTS[0])
+    columns = {name: values for name, values in clean.columns.items() if name not in fine}
+    clean = dataclasses.replace(clean, columns=columns)
     residual = _residual(clean)
     _need_variation(clean, residual)
     seconds = clean.position_unit == "s"
@@ -99,11 +113,13 @@ def reduce_record(problem: Problem) -> LongRecord:
         effects=[e for e in clean.effects if judges_lines(e)] if seconds else [],
     )
     # the lines' own mean stays in the record: the value is the mean of what was observed
-    weights = clean.value_weights / float(np.sum(clean.value_weights))
-    signal = search.signal - float(weights @ search.signal)
+    total = float(np.sum(clean.value_weights))
+    own = float(clean.value_weights @ search.signal) / total if total != 0.0 else 0.0
+    signal = search.signal - own
     quiet = dataclasses.replace(clean, observations=clean.observations - signal)
     reduced, blocks, tests = _until_white(quiet)
     warnings = _warnings(clean, search, blocks, tests, missing)
+    warnings += [ResultWarning("finer_than_blocks", FINER.format(name)) for name in fine]
     return LongRecord(
         dataclasses.replace(reduced, warnings=(*problem.warnings, *warnings)),
         search.lines,
@@ -139,12 +155,12 @@ def _sorted_and_finite(problem: Problem) -> Problem:
             hint="Look for what interrupted the record.",
         )
     weights = problem.value_weights[rows]
-    before = float(np.nansum(problem.value_weights))
+    before, kept = float(np.nansum(problem.value_weights)), float(np.sum(weights))
     return dataclasses.replace(
         problem,
         observations=problem.observations[rows],
         base=problem.base[rows],
-        value_weights=weights * (before / float(np.sum(weights))),
+        value_weights=weights * (before / kept if kept != 0.0 else 1.0),
         position=problem.position[rows],
         columns={name: values[rows] for name, values in problem.columns.items()},
         sigma=None if problem.sigma is None else problem.sigma[rows],

@@ -95,7 +95,7 @@ def exceedance(ratio: Array, window: int) -> Array:
     total = np.zeros_like(s)
     for j in range(max(half, 1), 2 * half + 1):
         total += np.log1p(s / j)
-    return np.asarray(np.exp(-total))
+    return np.asarray(np.maximum(np.exp(-total), 1e-300))
 
 
 def hann(count: int) -> Array:

@@ -16,11 +16,13 @@ from surveyapp.diagnosis.problem import Array
 
 REACH = 5
 """Neighbours on either side with which a block mean is compared."""
+BENT = 15
+"""Places over which a bend of the record, which leaves the same everywhere near, is taken out."""
 LEFT_OUT = 3.0
 """Standard deviations beyond which what is left does not count: there is a step or a slip."""
 MAD_TO_SIGMA = 1.4826
 """Standard deviation of a normal distribution in units of its median absolute deviation."""
-DRAWS = 2000
+DRAWS = 1000
 LEVEL = 0.05
 
 
@@ -94,12 +96,15 @@ def _ratio(sample: Array, q: Array, root: Array) -> Array:
 def beside_neighbours(rows: Array) -> Array:
     """Each value less the median of the means of pairs of neighbours, shape (d, m - 2 REACH).
 
-    Both of a pair are equally far away, so that a straight line leaves nothing; a step is left in
-    few places.
+    Both of a pair are equally far away, so that a straight line leaves nothing. A bend leaves a
+    slowly changing value, which its running median takes out; a step is left in few places.
     """
     count = rows.shape[1]
     pairs = [
         0.5 * (rows[:, REACH - j : count - REACH - j] + rows[:, REACH + j : count - REACH + j])
         for j in range(1, REACH + 1)
     ]
-    return np.asarray(rows[:, REACH:-REACH] - np.median(pairs, axis=0))
+    rest = rows[:, REACH:-REACH] - np.median(pairs, axis=0)
+    views = np.lib.stride_tricks.sliding_window_view(rest, BENT, axis=1)
+    near = np.clip(np.arange(rest.shape[1]) - BENT // 2, 0, rest.shape[1] - BENT)
+    return np.asarray(rest - np.median(views, axis=2)[:, near])

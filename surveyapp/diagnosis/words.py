@@ -97,6 +97,8 @@ def _name(identity: str, known: dict[str, Effect]) -> str:
 
 def _seen(result: Diagnosis) -> str:
     error = _small(result, result.before.rms)
+    if any(w.code == "block_means" for w in result.warnings):
+        error = f"the block means, {error},"
     if result.verdict == "adequate":
         return f"The residuals of {error} look like noise: the model that stands is adequate."
     low = min((t.p for t in result.battery), default=1.0)
