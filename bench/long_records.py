@@ -21,6 +21,7 @@ RUNS = 100
 DRAWS = 1000
 CASES: dict[str, Callable[[int, np.random.Generator], Array]] = {
     **NOISES,
+    "white and the walk most like a drift": functools.partial(walk, size=0.045),
     "white and a small walk": functools.partial(walk, size=0.1),
     "white and a large walk": functools.partial(walk, size=10.0),
 }

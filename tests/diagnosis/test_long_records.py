@@ -246,6 +246,7 @@ def test_a_slow_line_is_told_and_is_taken_out_of_the_blocks() -> None:
     assert told["lines"][0]["frequency_unit"] == "Hz"
     assert told["lines"][0]["effect"] is None
     json.dumps(told, allow_nan=False)
+    json.dumps(result.ledger, allow_nan=False)
     words = plain_words(result, (RAMP,))
     assert any("0.137" in text and "no known cause" in text for text in words)
     section = report_blocks(result, words, {}, unit=AngleUnit.DMS)
