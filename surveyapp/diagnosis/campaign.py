@@ -122,6 +122,7 @@ def campaign(
         labels=tuple(d.label or f"determination {i + 1}" for i, d in enumerate(determinations)),
         grid_labels=labels,
         warnings=tuple(warnings),
+        position_unit="d" if all(d.elapsed_days is not None for d in determinations) else "",
     )
 
 
