@@ -19,10 +19,10 @@ from surveyapp.core.geodesy import (
 )
 from surveyapp.core.instrument_constant import Chosen
 from surveyapp.core.scatter import Consistency, consistency, weights_of
-from surveyapp.core.uncertain import Source, Uncertain, combine
+from surveyapp.core.uncertain import Source, Uncertain, aligned, combine
 from surveyapp.domain.project import Centring, Station, grid_bearing, grid_distance_m
 from surveyapp.domain.results import AngleResult, BudgetLine, LineResult, Reference
-from surveyapp_models.angles import wrap_pi, wrap_two_pi
+from surveyapp_models.angles import wrap_two_pi
 
 NOTHING = 1e-18
 """Share of a variance that is rounding of the arithmetic and no source of error."""
@@ -156,11 +156,6 @@ class OrientedLine:
     agreement: Consistency | None
 
 
-def _unwrapped(values: Sequence[Uncertain]) -> list[Uncertain]:
-    first = values[0].value
-    return [item.shifted(first + wrap_pi(item.value - first) - item.value) for item in values]
-
-
 def angle_result(item: Uncertain, reference: Reference | None = None) -> AngleResult:
     """A direction as it is reported."""
     return AngleResult(wrap_two_pi(item.value), item.sigma, item.interval95, item.dof, reference)
@@ -189,7 +184,7 @@ def orient_line(
     agreement_of : sequence of Uncertain
         The rounds before any run-to-run scatter was added: for the test of their agreement.
     """
-    azimuths = _unwrapped([item.azimuth for item in rounds])
+    azimuths = aligned([item.azimuth for item in rounds])
     weights = weights_of(azimuths)
     gyro = combine(zip(weights, azimuths, strict=True)) + geometry.centring(centring)
     constants = [item.chosen.value for item in rounds]
@@ -238,7 +233,7 @@ def orient_line(
         existing_azimuth=None if existing is None else wrap_two_pi(existing),
         distance_m=geometry.distance_m,
     )
-    return OrientedLine(result, gyro, true, grid, consistency([_unwrapped(agreement_of)]))
+    return OrientedLine(result, gyro, true, grid, consistency([aligned(agreement_of)]))
 
 
 def budget(item: Uncertain, calibration_sessions: frozenset[str]) -> tuple[BudgetLine, ...]:
