@@ -101,13 +101,7 @@ def reduce_nontracking(
         tape_zero_correction=correction,
         tests=_tests(observed, fit, card, judge),
         points=_points(observed, residuals),
-        quantities=(
-            ("clamp reading", math.degrees(clamp[0]), "deg"),
-            ("middle of the swing", middle.value_div, "div"),
-            ("sigma of the middle", middle.sigma_div, "div"),
-            ("torsion ratio", constants.ratio, ""),
-            *middle.quantities,
-        ),
+        quantities=_quantities(clamp[0], middle, constants),
         warnings=_warnings(session, zero, middle),
         unit=middle.unit,
     )
@@ -149,6 +143,18 @@ def _tape_zero_part(
         coefficient,
         scale_sigma=card.sigma.scale_div,
         scale_resolution=reading_resolution(rows),
+    )
+
+
+def _quantities(
+    clamp: float, middle: Middle, constants: _Constants
+) -> tuple[tuple[str, float, str], ...]:
+    return (
+        ("clamp reading", math.degrees(clamp), "deg"),
+        ("middle of the swing", middle.value_div, "div"),
+        ("sigma of the middle", middle.sigma_div, "div"),
+        ("torsion ratio", constants.ratio, ""),
+        *middle.quantities,
     )
 
 
