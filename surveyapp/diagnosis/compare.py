@@ -21,6 +21,8 @@ from surveyapp.diagnosis.problem import Array, Problem
 
 MARGIN = 4.0
 """BIC by which every rival must be worse (diagnosis.md step 4)."""
+FULL_SIZE = 12
+"""Observations from which the margin is the specification's own."""
 ANCHORS = 8
 """Best sets of one depth from which those of the next are built."""
 REFINED = 12.0
@@ -31,6 +33,18 @@ GROSS_SHARE = 6
 """At most one observation in so many is taken for a gross error."""
 SPANNED = 0.05
 """Share of a fitted effect that may be left beside a rival that spans it."""
+
+
+def margin(fit: Fit) -> float:
+    """BIC by which every rival must be worse than a fit.
+
+    From few observations BIC overrates a difference: it counts all n, and n - p are free.
+    """
+    n = fit.residual.size
+    if n >= FULL_SIZE:
+        return MARGIN
+    base = fit.design.shape[1] - sum(m.candidate.size for m in fit.members)
+    return float(MARGIN * n / max(n - base, 1))
 
 
 @dataclass(frozen=True, slots=True)
@@ -248,7 +262,7 @@ def within_margin(level: Level) -> tuple[Fit, ...]:
     best = level.preferred
     if best is None:
         return level.every[:1]
-    limit = min(best.score, level.best_score) + MARGIN
+    limit = min(best.score, level.best_score) + margin(best)
     near = [f for f in level.every if f.score < limit and f.key != best.key]
     rivals = [fit for fit in near if not spans(fit, best)]
     # What a smaller set within the margin explains needs no more.
