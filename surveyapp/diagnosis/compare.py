@@ -15,7 +15,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from surveyapp.diagnosis.candidates import Candidate, Projected, project
-from surveyapp.diagnosis.fits import Fit, Member, bic_of, fit_members, scan_law, with_noise
+from surveyapp.diagnosis.fits import (
+    Fit,
+    Member,
+    bic_of,
+    fit_members,
+    is_spoilt,
+    scan_exact,
+    scan_law,
+    with_noise,
+)
 from surveyapp.diagnosis.nulls import reductions
 from surveyapp.diagnosis.problem import Array, Problem
 
@@ -216,14 +225,21 @@ def _best_addition(
     item = project(candidate, q)
     if item.index.size == 0:
         return None
-    if candidate.is_law and anchor.theta is not None and not anchor.members:
+    if anchor.theta is not None and not anchor.members and candidate.is_law:
         rss = scan_law(problem, candidate, anchor.members, anchor.theta)[item.index]
+    elif anchor.theta is not None and not anchor.members and slip_bends(candidate, anchor):
+        rss = scan_exact(problem, candidate, anchor.members, anchor.theta)[item.index]
     else:
         rss = anchor.sum_of_squares - reductions(item, anchor.residual)
     total = anchor.parameters + candidate.charge[item.index]
     bics = bic_of(problem, rss, total)
     g = int(np.argmin(bics))
     return float(bics[g]), (*anchor.members, Member(candidate, int(item.index[g])))
+
+
+def slip_bends(candidate: Candidate, fit: Fit) -> bool:
+    """Whether gross errors must be fitted one by one beside a fit."""
+    return candidate.is_slip and is_spoilt(fit)
 
 
 def _refined(problem: Problem, members: tuple[Member, ...], anchor: Fit, *, every: bool) -> Fit:
@@ -263,7 +279,8 @@ def within_margin(level: Level) -> tuple[Fit, ...]:
     if best is None:
         return level.every[:1]
     limit = min(best.score, level.best_score) + margin(best)
-    near = [f for f in level.every if f.score < limit and f.key != best.key]
+    counted = min(best.bic, *(f.bic for f in level.every)) + margin(best)
+    near = [f for f in level.every if f.key != best.key and (f.score < limit or f.bic < counted)]
     rivals = [fit for fit in near if not spans(fit, best)]
     # What a smaller set within the margin explains needs no more.
     rivals = [f for f in rivals if not any(g.key < f.key for g in rivals)]

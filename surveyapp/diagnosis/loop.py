@@ -211,8 +211,11 @@ def _failure(
         without = reduced(problem, after, [n for n in names if n != name])
         if without.bic <= after.bic:
             return name, "the model is as good without it"
+        hidden = partly_missing(name, proofs.pool)
+        if hidden:
+            return name, f"{hidden} could look the same"
         if not significant(problem, without, name, proofs):
-            return name, "noise would show as much, anywhere among the candidates"
+            return name, "noise would show as much"
         gross = float(np.sum(flagged(after))) > float(np.sum(flagged(without)))
         if not gross:
             other = leave_one_out(problem, without, mask)
@@ -228,15 +231,28 @@ def _failure(
     return None
 
 
-def significant(problem: Problem, without: Fit, name: str, proofs: Proofs) -> bool:
-    """Whether an effect itself, not only its family, passes the gate beside the model without it.
+def partly_missing(name: str, pool: Iterable[Candidate]) -> str:
+    """An effect that may look like a named one and lacks values here and there, else empty."""
+    every = {c.id: c for c in pool if c.effect is not None}
+    named = every.get(name)
+    for other in every.values():
+        if named is None or named.effect is None or other.effect is None:
+            continue
+        alike = other.id in named.effect.confusable_with or name in other.effect.confusable_with
+        if alike and " missing at " in other.missing:
+            return f"{other.effect.title.lower()} cannot be tested ({other.missing}) and"
+    return ""
 
-    One that the model without it cannot be told from by its columns alone has no p value and is
-    left to the other proofs.
+
+def significant(problem: Problem, without: Fit, name: str, proofs: Proofs) -> bool:
+    """Whether noise would rarely show an effect as strong, anywhere in its own scan.
+
+    The gate may have been opened by another candidate. One that the model without it cannot be
+    told from by its columns alone has no p value and is left to the other proofs.
     """
     gate = open_gate(problem, without, proofs.pool, proofs.draws)
-    family = [test.p_family for test in gate.tests if test.id == name]
-    return not family or family[0] is None or family[0] <= GATE
+    own = [test.p for test in gate.tests if test.id == name]
+    return not own or own[0] is None or own[0] <= GATE
 
 
 def unconfirmed(confirm: Problem, after: Fit, without: Fit) -> str | None:
