@@ -33,7 +33,10 @@ candidates share stay where they are (weighted p values: Genovese, Roeder & Wass
 SHAPE_WEIGHT = 0.5
 """A generic shape ends in no name."""
 SMOOTH_FROM = 12
-"""Observations from which a bent decay without a name is told apart from a break."""
+"""Observations from which pulses and bent decays are looked for."""
+SINGLE_SHARE = 0.75
+"""Share of what the model leaves of a shift above which one reading alone shows it."""
+PULSE_PHASES = (0.0, 0.25, 0.5, 0.75)
 SHORTEST_PULSE, LONGEST_PULSE = 2, 6
 """Places for which a pulse lasts; a quarter of the record at most."""
 AMPLITUDE_SHAPES = frozenset({"amplitude_step", "amplitude_smooth"})
@@ -213,9 +216,8 @@ def _shapes(problem: Problem, columns: Mapping[str, Array], root: Array) -> list
         _shape("smooth", [np.column_stack([x, x**2, x**3])], 3, root),
     ]
     taken = {effect.id for effect in problem.effects}
-    pulses = _pulses(position)
-    if pulses:
-        shapes.append(_shape("pulse", pulses, 3, root))
+    if problem.size >= SMOOTH_FROM:
+        shapes += _pulse_shape(problem, columns, root)
     if problem.has_swing:
         amplitude = columns["side"] * columns["relative_amplitude"]
         inner = np.unique(position)[2:-3]
@@ -224,7 +226,7 @@ def _shapes(problem: Problem, columns: Mapping[str, Array], root: Array) -> list
             shapes.append(_shape("amplitude_step", kicks, 2, root))
         if problem.size >= SMOOTH_FROM:
             decayed = (x + 1.0)[:, None] ** np.array([2.0, 3.0]) * amplitude[:, None]
-            shapes.append(_shape("amplitude_smooth", [decayed], 2, root))
+            shapes.append(_shape("amplitude_smooth", [decayed], 3, root))
         shapes.append(_periodic("long_oscillation", x, (0.8, 1.45), root, n=problem.size))
     else:
         if "transport_step" not in taken:
@@ -239,22 +241,46 @@ def _shapes(problem: Problem, columns: Mapping[str, Array], root: Array) -> list
     return shapes
 
 
-def _pulses(position: Array) -> list[Array]:
+def _pulse_shape(
+    problem: Problem, columns: Mapping[str, Array], root: Array
+) -> tuple[Candidate, ...]:
+    """The pulses that show in more than one reading: in one alone it is a slip."""
+    stacked = np.stack(_pulses(problem.position, problem.side))
+    base = [problem.base]
+    if problem.has_swing:
+        amplitude = columns["side"] * columns["relative_amplitude"]
+        base.append(amplitude[:, None] * np.column_stack([np.ones(problem.size), problem.position]))
+    q, _ = np.linalg.qr(np.hstack(base))
+    left = (stacked - q @ (q.T @ stacked))[:, :, 0] ** 2
+    spread = left.max(axis=1) < SINGLE_SHARE * left.sum(axis=1)
+    charge = 3 if problem.side is None else 5
+    return (_shape("pulse", list(stacked[spread]), charge, root),) if spread.any() else ()
+
+
+def _pulses(position: Array, side: Array | None) -> list[Array]:
     """North, or the constant, off for two places or more and then back, shape (n, 1) each.
 
-    At either end of the record only two places: what is off for longer there is a step.
+    At either end of the record only two places: what is off for longer there is a step. A shift
+    inside a half swing kicks the amplitude too, by its phase, when it comes and when it goes.
     """
     places = np.unique(position)
     count = places.size
     longest = max(SHORTEST_PULSE, min(LONGEST_PULSE, count // 4))
-    found = []
-    for length in range(SHORTEST_PULSE, longest + 1):
-        for first in range(count - length + 1):
-            inner = first > 0 and first + length < count
-            if inner or length == SHORTEST_PULSE:
-                on = (position >= places[first]) & (position <= places[first + length - 1])
-                found.append(on.astype(np.float64)[:, None])
-    return found
+    shifts = {i: _shifts(position, side, places[i]) for i in range(count - SHORTEST_PULSE)}
+    found = list(shifts[1]) + list(shifts[count - SHORTEST_PULSE - 1])
+    for first in range(count - SHORTEST_PULSE - 1):
+        for last in range(first + SHORTEST_PULSE, min(first + longest, count - 3) + 1):
+            found += [come - go for come in shifts[first] for go in shifts[last]]
+    return [column[:, None] for column in found]
+
+
+def _shifts(position: Array, side: Array | None, place: float) -> tuple[Array, ...]:
+    """A shift after a place, at each phase of the half swing that follows it, shape (n,) each."""
+    after = (position > place).astype(np.float64)
+    if side is None:
+        return (after,)
+    kick = side * side[int(np.argmin(np.abs(position - place)))]
+    return tuple(after * (1.0 - kick * np.cos(np.pi * phase)) for phase in PULSE_PHASES)
 
 
 def _periodic(

@@ -279,8 +279,13 @@ def within_margin(level: Level) -> tuple[Fit, ...]:
     if best is None:
         return level.every[:1]
     limit = min(best.score, level.best_score) + margin(best)
-    counted = min(best.bic, *(f.bic for f in level.every)) + margin(best)
-    near = [f for f in level.every if f.key != best.key and (f.score < limit or f.bic < counted)]
+    # A shape says that something is there, not that no cause would do: causes are heard longer.
+    patience = MARGIN if best.is_generic else 0.0
+    near = [
+        f
+        for f in level.every
+        if f.key != best.key and f.score < limit + (0.0 if f.is_generic else patience)
+    ]
     rivals = [fit for fit in near if not spans(fit, best)]
     # What a smaller set within the margin explains needs no more.
     rivals = [f for f in rivals if not any(g.key < f.key for g in rivals)]

@@ -130,7 +130,7 @@ def _widened(problem: Problem, found: Search, averaged: Value, verdict: Verdict)
         scatter = math.sqrt(max(1.0, base.sum_of_squares / dof / known))
         sigma = max(averaged.sigma, scatter * value_of(problem, base).sigma)
         averaged = Value(averaged.value, sigma, dof)
-    if verdict == "unattributed":
+    if verdict == "unattributed" or (found.near and found.near[0].is_generic):
         after = value_of(problem, found.after)
         least = math.hypot(after.sigma, averaged.value - after.value)
         if least > averaged.sigma:

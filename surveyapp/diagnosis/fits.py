@@ -95,6 +95,11 @@ class Fit:
         return (*unique, *((self.noise.kind,) if self.noise is not None else ()))
 
     @property
+    def is_generic(self) -> bool:
+        """Whether a shape or noise without a name takes part."""
+        return self.noise is not None or any(m.candidate.kind == "shape" for m in self.members)
+
+    @property
     def sum_of_squares(self) -> float:
         """V'Pv [SI^2], the weights having mean square 1."""
         return float(self.residual @ self.residual)
