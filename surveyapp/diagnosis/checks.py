@@ -112,6 +112,10 @@ def repeats(problem: Problem, confirm: Problem) -> bool:
     for shift in range(least - shorter.size, longer.size - least + 1):
         a = shorter[max(0, -shift) : longer.size - shift]
         b = longer[max(0, shift) : max(0, shift) + a.size]
-        if a.size >= least and np.mean(np.abs(wrap_pi_array(a - b)) < EQUAL) >= REPEATED:
+        if a.size < least:
+            continue
+        # the drift of the tape zero is taken out about its mean, which a cut shifts
+        offset = wrap_pi_array(a - b)
+        if np.mean(np.abs(offset - np.median(offset)) < EQUAL) >= REPEATED:
             return True
     return False

@@ -78,7 +78,10 @@ def tables_to_adopt(
     owner = diagnosis.instrument if problem.subject == "campaign" else diagnosis.identity
     tables: list[dict[str, object]] = []
     refused = []
-    if not diagnosis.adopted:
+    if not diagnosis.adopted and already:
+        reason = f"already adopted by {owner}, and no further effect is named: nothing was written"
+        refused += [NotWritten(name, reason) for name in dict.fromkeys(e.id for e in already)]
+    elif not diagnosis.adopted:
         refused.append(NotWritten("", "no effect is named: nothing was written"))
     for item in diagnosis.adopted:
         effect = catalogue.get(item.effect)

@@ -105,6 +105,16 @@ def test_the_basis_is_pure_finite_and_needs_only_what_it_declares(effect: Effect
         np.testing.assert_array_equal(values, only[name])
 
 
+def relative(
+    effect: Effect, columns: Columns, state: Mapping[str, float], point: Mapping[str, float]
+) -> np.ndarray:
+    """Rows of a basis relative to a state; no state = as they are."""
+    if not state:
+        return effect.basis(columns, **point)
+    basis = effect.basis({n: np.append(v, state[n]) for n, v in columns.items()}, **point)
+    return basis[:-1] - basis[-1]
+
+
 @pytest.mark.parametrize(
     "effect", [e for e in CATALOGUE if e.subject == "campaign"], ids=lambda e: e.id
 )
