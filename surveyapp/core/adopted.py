@@ -195,17 +195,19 @@ def effect_shifts(
             for k, part in enumerate(rows.inside[i] @ root)
         }
         shift = Uncertain(float(rows.inside[i] @ values), parts)
+        beyond = f"{SOURCE} outside its range"
         if rows.missing[i]:
             excess = _largest(effect, adopted, columns, (i, rows), values)
+            shift = shift.with_part(Source(beyond, session, detail=name), excess)
         else:
-            excess = abs(float((rows.free[i] - rows.inside[i]) @ values))
-        if excess > 0.0:
-            source = Source(f"{SOURCE} outside its range", session, detail=name)
-            shift = shift.with_part(source, excess)
+            # sessions on one side of the range err alike: it does not average out
+            excess = float((rows.free[i] - rows.inside[i]) @ values)
+            if excess != 0.0:
+                shift = shift.with_part(Source(beyond, instrument.id, detail=name), excess)
         if rows.missing[i]:
             warnings.append(_missing_warning(session, adopted, rows.missing[i], excess))
         elif rows.outside[i] and not unknown_ranges(adopted):
-            warnings.append(_outside_warning(session, adopted, rows.outside[i], excess))
+            warnings.append(_outside_warning(session, adopted, rows.outside[i], abs(excess)))
         shifts.append(shift)
     return shifts, warnings
 
