@@ -32,6 +32,10 @@ GROSS_WEIGHT = 3.0
 candidates share stay where they are (weighted p values: Genovese, Roeder & Wasserman 2006)."""
 SHAPE_WEIGHT = 0.5
 """A generic shape ends in no name."""
+SMOOTH_FROM = 12
+"""Observations from which a bent decay without a name is told apart from a break."""
+SHORTEST_PULSE, LONGEST_PULSE = 2, 6
+"""Places for which a pulse lasts; a quarter of the record at most."""
 AMPLITUDE_SHAPES = frozenset({"amplitude_step", "amplitude_smooth"})
 """Generic shapes of the amplitude of a swing."""
 
@@ -73,6 +77,12 @@ class Candidate:
         return self.effect is not None and self.effect.law is not None
 
     @property
+    def is_slip(self) -> bool:
+        """Whether it is a single gross error."""
+        effect = self.effect
+        return effect is not None and effect.acts_on == "observation" and self.count == 1
+
+    @property
     def describes_amplitude(self) -> bool:
         """Whether it is a description of the amplitude, named or generic; a model has one."""
         return self.is_law or self.id in AMPLITUDE_SHAPES
@@ -82,9 +92,7 @@ class Candidate:
         """Share of the false alarms that it may spend, a named effect taking one."""
         if self.kind == "shape":
             return SHAPE_WEIGHT
-        if self.effect is not None and self.effect.acts_on == "observation" and self.count == 1:
-            return GROSS_WEIGHT
-        return 1.0
+        return GROSS_WEIGHT if self.is_slip else 1.0
 
     @property
     def one_sided(self) -> bool:
@@ -205,12 +213,18 @@ def _shapes(problem: Problem, columns: Mapping[str, Array], root: Array) -> list
         _shape("smooth", [np.column_stack([x, x**2, x**3])], 3, root),
     ]
     taken = {effect.id for effect in problem.effects}
+    pulses = _pulses(position)
+    if pulses:
+        shapes.append(_shape("pulse", pulses, 3, root))
     if problem.has_swing:
         amplitude = columns["side"] * columns["relative_amplitude"]
         inner = np.unique(position)[2:-3]
         kicks = [((position > p) * amplitude)[:, None] for p in inner]
         if kicks:
             shapes.append(_shape("amplitude_step", kicks, 2, root))
+        if problem.size >= SMOOTH_FROM:
+            decayed = (x + 1.0)[:, None] ** np.array([2.0, 3.0]) * amplitude[:, None]
+            shapes.append(_shape("amplitude_smooth", [decayed], 2, root))
         shapes.append(_periodic("long_oscillation", x, (0.8, 1.45), root, n=problem.size))
     else:
         if "transport_step" not in taken:
@@ -223,6 +237,24 @@ def _shapes(problem: Problem, columns: Mapping[str, Array], root: Array) -> list
         single = [np.eye(problem.size)[:, i : i + 1] for i in range(problem.size)]
         shapes.append(_shape("outlier", single, 2, root))
     return shapes
+
+
+def _pulses(position: Array) -> list[Array]:
+    """North, or the constant, off for two places or more and then back, shape (n, 1) each.
+
+    At either end of the record only two places: what is off for longer there is a step.
+    """
+    places = np.unique(position)
+    count = places.size
+    longest = max(SHORTEST_PULSE, min(LONGEST_PULSE, count // 4))
+    found = []
+    for length in range(SHORTEST_PULSE, longest + 1):
+        for first in range(count - length + 1):
+            inner = first > 0 and first + length < count
+            if inner or length == SHORTEST_PULSE:
+                on = (position >= places[first]) & (position <= places[first + length - 1])
+                found.append(on.astype(np.float64)[:, None])
+    return found
 
 
 def _periodic(

@@ -235,7 +235,12 @@ def _check_sets(network: Network, gathered: dict[tuple[object, ...], list[int]])
         if len(kinds) > 1 or len(sets) > 1:
             where = network.observations[members[0]].where
             problems.append(
-                Problem("A .gkf file cannot correlate these observations", where, str(kinds), "")
+                Problem(
+                    "A .gkf file cannot correlate these observations",
+                    where,
+                    ", ".join(sorted(kinds)),
+                    "",
+                )
             )
     problems += [
         Problem("A .gkf file needs one covariance matrix for a whole set", f"station {at}", name)
