@@ -133,16 +133,16 @@ def _valid(
     problem: Problem, effect: Effect, point: Mapping[str, float]
 ) -> tuple[tuple[str, float, float], ...]:
     """Range of each column that is a quantity; of a block of days the days."""
-    ranges = []
-    names = [need.name for need in effect.needs if need.name not in LABELLED]
-    rows = np.ones(problem.size, dtype=bool)
+    chosen = {n.name: problem.columns[n.name] for n in effect.needs if n.name in problem.columns}
+    chosen = {name: values for name, values in chosen.items() if name not in LABELLED}
     if "block" in point and problem.position_unit == "d":
-        names.append("elapsed_days")
-        rows = problem.columns["block"] == point["block"]
-    for name in names:
-        values = problem.columns.get(name)
-        if values is not None and np.isfinite(values).all():
-            ranges.append((name, float(values[rows].min()), float(values[rows].max())))
+        inside = problem.columns["block"] == point["block"]
+        chosen["elapsed_days"] = problem.columns["elapsed_days"][inside]
+    ranges = [
+        (name, float(values.min()), float(values.max()))
+        for name, values in chosen.items()
+        if np.isfinite(values).all()
+    ]
     return tuple(ranges)
 
 

@@ -64,9 +64,9 @@ def _second_set(problem: Problem, confirm: Problem) -> list[InputProblem]:
                 "An effect is confirmed by another record of the same instrument.",
             )
         )
-    # the parts of a campaign bear one name; they are split by time
+    # sessions bear names of their own; parts of a campaign and unnamed traverses do not
     same = bool(confirm.identity) and confirm.identity == problem.identity
-    if same and problem.subject != "campaign":
+    if same and problem.has_swing:
         faults.append(_no_second(confirm, "the record itself"))
     elif repeats(problem, confirm):
         faults.append(_no_second(confirm, f"the observations of {problem.identity or 'the first'}"))

@@ -14,6 +14,8 @@ import sys
 from pathlib import Path
 from types import ModuleType
 
+from surveyapp.diagnosis.candidates import AMPLITUDE_SHAPES
+from surveyapp.diagnosis.words import NOISE_AND_SHAPES
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.effect_calls import FAULTS, guarded, told
 from surveyapp.io.effect_form import form_problems
@@ -22,12 +24,7 @@ from surveyapp_models.effects import CATALOGUE
 from surveyapp_models.effects.effect import Effect
 
 _ID = re.compile(r"[a-z][a-z0-9_]{0,59}")
-_RESERVED = frozenset(
-    {
-        "quadratic", "smooth", "periodic", "long_oscillation", "step", "outlier",
-        "amplitude_step", "amplitude_smooth", "random_walk", "amplitude_walk", "ar1",
-    }
-)  # fmt: skip
+_RESERVED = frozenset(NOISE_AND_SHAPES) | AMPLITUDE_SHAPES
 """Ids of generic shapes and of noise."""
 
 

@@ -9,6 +9,7 @@ import pytest
 
 from surveyapp import api
 from surveyapp.diagnosis import TurningPoints, diagnose, reversal_run
+from surveyapp.diagnosis.candidates import all_candidates
 from surveyapp.errors import SurveyError
 from surveyapp.io.effect_form import form_problems
 from surveyapp.io.effect_probe import probe_problems
@@ -168,3 +169,16 @@ def test_columns_of_a_problem_cannot_be_written() -> None:
         with pytest.raises(ValueError, match="read-only"):
             values[:] = 0.0  # type: ignore[index]
     theta[0] = 1.0  # the caller's own array stays writable
+
+
+def test_every_generic_shape_has_its_id_for_itself(tmp_path: Path) -> None:
+    k = np.arange(45.0)
+    readings = 3.1 + 0.02 * (-1.0) ** k * np.exp(-0.01 * k)
+    run = reversal_run(TurningPoints(list(readings)))
+    shapes = {c.id for c in all_candidates(run, np.array([0.02, 0.01, 0.0])) if c.kind == "shape"}
+    assert len(shapes) >= 4
+    path = tmp_path / "own.py"
+    for name in sorted(shapes):
+        path.write_text(RUN.replace('id="pump"', f'id="{name}"'), encoding="utf-8")
+        with pytest.raises(SurveyError, match="already in the catalogue"):
+            load_effects(path)
