@@ -96,7 +96,7 @@ def test_a_slip_of_a_whole_degree_is_found_in_eight_points(at: int) -> None:
     y[at] += 3600.0 * ARCSEC
     result = diagnose(reversal_run(TurningPoints(list(y))), draws=DRAWS)
     assert [item.effect for item in result.adopted] == ["gross_error"]
-    assert dict((n, v) for n, v, _ in result.adopted[0].grid) == {"point": float(at)}
+    assert {n: v for n, v, _ in result.adopted[0].grid} == {"point": float(at)}
 
 
 def series(missing: bool) -> Problem:
