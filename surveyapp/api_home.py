@@ -18,6 +18,8 @@ from surveyapp.io.lock import ProjectLock
 from surveyapp.io.settings import Settings, read_settings, write_settings
 
 OBSERVATIONS: Final = "observations"
+MOST_GRIDS: Final = 30
+"""More are no choice: a further word of the name is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,12 +133,21 @@ def rule_books() -> tuple[str, ...]:
 
 
 def find_grids(text: str, stations: tuple[NewStation, ...] = ()) -> tuple[GridChoice, ...]:
-    """Grids whose name or EPSG code holds the text, where the stations lie if that is known."""
+    """Grids whose name or EPSG code holds the text, where the stations lie if that is known.
+
+    Without latitude and longitude it is their east and north that must lie where the grid is made
+    for. At most ``MOST_GRIDS`` are returned.
+    """
     from surveyapp.core.geodesy import find_projected
 
-    placed = [s for s in stations if s.lat is not None and s.lon is not None]
-    place = (placed[0].lat or 0.0, placed[0].lon or 0.0) if placed else None
-    return tuple(GridChoice(code, name) for code, name in find_projected(text, place))
+    place = next(
+        ((s.lat, s.lon) for s in stations if s.lat is not None and s.lon is not None), None
+    )
+    metres = next(((s.e, s.n) for s in stations if s.e is not None and s.n is not None), None)
+    found = find_projected(
+        text, place, coordinates=metres if place is None else None, limit=MOST_GRIDS
+    )
+    return tuple(GridChoice(code, name) for code, name in found)
 
 
 def read_stations(text: str) -> tuple[NewStation, ...]:
@@ -228,7 +239,7 @@ def create_project(form: NewProject) -> str:
     folder = api.new_project(
         Path(form.folder).expanduser(),
         name=form.name,
-        crs=form.crs or None,
+        crs=f"EPSG:{form.crs}" if form.crs.isdecimal() else form.crs or None,
         angle_unit=form.angle_unit,
     )
     path = folder / "project.toml"

@@ -7,6 +7,7 @@ always true east and north in metres, whatever way the axes of the grid point.
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -148,7 +149,11 @@ def open_grid(text: str) -> Grid:
 
 
 def find_projected(
-    text: str, place: tuple[float, float] | None = None, *, limit: int = 30
+    text: str,
+    place: tuple[float, float] | None = None,
+    *,
+    coordinates: tuple[float, float] | None = None,
+    limit: int = 30,
 ) -> tuple[tuple[str, str], ...]:
     """EPSG codes and names of projected grids.
 
@@ -158,6 +163,8 @@ def find_projected(
         Part of a name, or of a code; every word must be found.
     place : tuple of float or None
         Latitude and longitude [degrees] that the grid must be made for.
+    coordinates : tuple of float or None
+        East and north [m] that must lie where the grid is made for.
     limit : int
         Largest number returned; of more, those with the shortest names.
 
@@ -175,14 +182,30 @@ def find_projected(
         latitude, longitude = place
         area = AreaOfInterest(longitude, latitude, longitude, latitude)
     words = text.lower().replace("epsg:", "").split()
-    found = [
-        (f"EPSG:{item.code}", item.name)
+    named = [
+        item
         for item in query_crs_info(
             auth_name="EPSG", pj_types=PJType.PROJECTED_CRS, area_of_interest=area
         )
         if all(word in item.name.lower() or word in item.code for word in words)
     ]
-    return tuple(sorted(found, key=lambda item: (item[0] != f"EPSG:{text}", len(item[1])))[:limit])
+    named.sort(key=lambda item: (item.code not in words, len(item.name)))
+    found = (
+        (f"EPSG:{item.code}", item.name)
+        for item in named
+        if coordinates is None or _holds(f"EPSG:{item.code}", coordinates)
+    )
+    return tuple(itertools.islice(found, limit))
+
+
+def _holds(code: str, coordinates: tuple[float, float]) -> bool:
+    """Whether true east and north [m] lie in the area that a grid is made for."""
+    try:
+        grid = open_grid(code)
+        latitude, longitude = grid.geographic(e=coordinates[0], n=coordinates[1])
+    except SurveyError:
+        return False
+    return not grid.is_beside(latitude=latitude, longitude=longitude)
 
 
 def _crs_problem(what: str, found: str, detail: str) -> SurveyError:

@@ -79,11 +79,14 @@ class StepState:
     state : State
     count : int
         Readings that count in it.
+    complete : bool
+        Whether it has all readings that it needs; false for what needs none.
     """
 
     step: Step
     state: State
     count: int
+    complete: bool = False
 
 
 def steps_of(method: Method) -> tuple[Step, ...]:
@@ -167,10 +170,11 @@ def step_states(book: FieldBook, method: Method, targets: tuple[str, ...]) -> tu
         rows = rows_of(book, step, method)
         state = State.BEGUN if rows or str(step) in noted else State.OPEN
         passed = order.index(step) < order.index(here) and step in (Step.SETUP, Step.RUN_UP)
-        if state is State.BEGUN and (passed or _complete(step, rows, targets)):
+        complete = _complete(step, rows, targets)
+        if state is State.BEGUN and (passed or complete):
             state = State.DONE
         count = sum(row.kind is not ReadingKind.MISSED for row in rows)
-        states.append(StepState(step, state, count))
+        states.append(StepState(step, state, count, complete))
     return tuple(states)
 
 

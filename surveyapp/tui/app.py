@@ -18,13 +18,17 @@ from surveyapp.api_session import Observation
 from surveyapp.errors import SurveyError
 from surveyapp.io.clock import local_now, steady_seconds
 from surveyapp.io.settings import read_settings
-from surveyapp.tui import texts
+from surveyapp.tui import help_texts, texts
 from surveyapp.tui.messages import ResultWanted, SessionLeft
+from surveyapp.tui.screens.help import HelpScreen
 from surveyapp.tui.screens.home import HomeScreen
 from surveyapp.tui.screens.project import ProjectScreen
 from surveyapp.tui.screens.result import ResultScreen
 from surveyapp.tui.screens.session import SessionScreen
 from surveyapp.tui.themes import THEMES
+
+UNLISTED = ("command_palette", "app.focus_previous", "app.focus_next", "screen.copy_text")
+"""Actions of the keyboard as such, which nobody looks for in the palette."""
 
 
 class SurveyApp(App[int]):
@@ -45,6 +49,7 @@ class SurveyApp(App[int]):
     ENABLE_COMMAND_PALETTE = True
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (110, "-wide")]  # noqa: RUF012
     BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("f1", "help", texts.KEY_HELP),
         Binding("f9", "next_theme", texts.KEY_THEME, show=False),
         Binding("ctrl+q", "quit", texts.KEY_QUIT, priority=True, show=False),
     ]
@@ -82,9 +87,18 @@ class SurveyApp(App[int]):
         """Every action of the screen that is open, then those of the program."""
         for active in screen.active_bindings.values():
             binding = active.binding
-            if binding.description and active.enabled and active.node in (screen, self):
+            if not binding.description or binding.action in UNLISTED or not active.enabled:
+                continue
+            if active.node in (screen, self):
                 run = partial(self.run_action, binding.action, active.node)
-                yield SystemCommand(binding.description, self.get_key_display(binding), run)
+                name = binding.tooltip or binding.description
+                yield SystemCommand(name, self.get_key_display(binding), run)
+
+    def action_help(self) -> None:
+        """Explain the screen that is open; a session explains its step itself."""
+        page = help_texts.PAGES.get(type(self.screen).__name__)
+        if page is not None:
+            self.push_screen(HelpScreen(*page))
 
     def action_next_theme(self) -> None:
         """Dark, light, high contrast, and round again."""

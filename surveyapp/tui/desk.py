@@ -160,7 +160,14 @@ class Desk:
         seq = self.write(found.row, found.stamp)
         kind = texts.KIND_NAMES[found.row.kind].split(",")[0]
         value = found.row.value or found.row.note
-        return texts.RECORDED.format(seq=seq, kind=kind, value=value)
+        told = texts.RECORDED.format(seq=seq, kind=kind, value=value)
+        return f"{told}{texts.STEP_COMPLETE if self.complete() else ''}"
+
+    def complete(self) -> bool:
+        """Whether the step has all that it needs, and nothing more is usual."""
+        if self.step is Step.SWING:
+            return False
+        return any(s.step is self.step and s.complete for s in self.observation.steps())
 
     def write(self, row: NewRow, stamp: Stamp | None = None) -> int:
         """Write one row; what was chosen for it is done with."""
@@ -203,6 +210,10 @@ class Desk:
         turning = (ReadingKind.REVERSAL, ReadingKind.SCALE_REVERSAL)
         return self.step is Step.SWING and self.what().kind in turning
 
+    def times(self) -> bool:
+        """Whether passages are timed now."""
+        return self.step is Step.SWING and self.what().kind is ReadingKind.TRANSIT
+
     def has_other(self, which: str) -> bool:
         """Whether there is another kind, face or target to read in this step."""
         if which == "kind":
@@ -225,6 +236,7 @@ class Desk:
     def take_other(self, which: str) -> None:
         """Take the other kind of reading, the other face, or the next target."""
         what = self.what()
+        self.asked = None  # a doubt about one target or face is none about another
         if which == "kind":
             self.kind = next_kind(self.observation, what)
         elif which == "face":

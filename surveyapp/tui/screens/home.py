@@ -15,6 +15,7 @@ from textual.widgets.option_list import Option
 from surveyapp import api_home
 from surveyapp.errors import SurveyError
 from surveyapp.tui import texts
+from surveyapp.tui.drafts import Draft
 from surveyapp.tui.screens.folder import FolderScreen
 from surveyapp.tui.screens.new_project import NewProjectScreen
 from surveyapp.tui.widgets.problems import problems_text
@@ -25,10 +26,10 @@ class HomeScreen(Screen[None]):
     """The first screen without a project."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("enter", "choose", texts.KEY_OPEN),
+        Binding("enter", "choose", texts.KEY_OPEN, priority=True),
         Binding("n", "new", texts.KEY_NEW_PROJECT),
         Binding("o", "folder", texts.KEY_FOLDER),
-        Binding("ctrl+q", "app.quit", texts.KEY_QUIT),
+        Binding("q", "app.quit", texts.KEY_QUIT),
     ]
 
     class FolderChosen(Message):
@@ -49,6 +50,7 @@ class HomeScreen(Screen[None]):
         super().__init__()
         self.recent = api_home.recent_projects()
         self.samples = api_home.samples()
+        self.drafts: dict[str, Draft] = {"project": {}, "folder": {}, "practice": {}}
 
     def compose(self) -> ComposeResult:
         """Title and what can be opened."""
@@ -110,11 +112,11 @@ class HomeScreen(Screen[None]):
 
     def action_new(self) -> None:
         """Make a new project."""
-        self.app.push_screen(NewProjectScreen(), self._opened)
+        self.app.push_screen(NewProjectScreen(self.drafts["project"]), self._opened)
 
     def action_folder(self) -> None:
         """Type a folder."""
-        self.app.push_screen(FolderScreen(), self._opened)
+        self.app.push_screen(FolderScreen(self.drafts["folder"]), self._opened)
 
     def _opened(self, folder: str | None) -> None:
         if folder:

@@ -22,6 +22,8 @@ from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import SurveyError
 from surveyapp.tui import texts
+from surveyapp.tui.drafts import Draft
+from surveyapp.tui.page_keys import page_bindings
 from surveyapp.tui.screens.diagnosis import DiagnosisScreen
 from surveyapp.tui.screens.new_session import NewSessionScreen
 from surveyapp.tui.screens.traverse import TraverseScreen
@@ -33,21 +35,26 @@ from surveyapp.tui.widgets.problems import Problems
 from surveyapp.tui.widgets.records import Records, pairs_text, table_text
 from surveyapp.tui.widgets.titlebar import TitleBar
 
-PAGES = ("sessions", "lines", "constants", "checks", "warnings")
+PAGES = {
+    "sessions": texts.TAB_SESSIONS,
+    "lines": texts.TAB_LINES,
+    "constants": texts.TAB_CONSTANTS,
+    "checks": texts.TAB_CHECKS,
+    "warnings": texts.TAB_WARNINGS,
+}
 
 
 class ProjectScreen(Screen[None]):
     """Shows one project folder."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("1", f"page('{PAGES[0]}')", texts.KEY_TABS, key_display="1-5"),
-        *[Binding(str(i), f"page('{name}')", show=False) for i, name in enumerate(PAGES[1:], 2)],
-        Binding("o", "observe", texts.KEY_OBSERVE),
-        Binding("n", "new", texts.KEY_NEW),
-        Binding("d", "diagnose", texts.KEY_DIAGNOSE),
-        Binding("t", "traverses", texts.KEY_TRAVERSE, show=False),
-        Binding("f5", "reload", texts.KEY_RELOAD),
-        Binding("escape", "back", texts.KEY_BACK),
+        *page_bindings(PAGES),
+        Binding("o", "observe", texts.KEY_OBSERVE, tooltip=texts.LONG_OBSERVE),
+        Binding("n", "new", texts.KEY_NEW, tooltip=texts.LONG_NEW),
+        Binding("d", "diagnose", texts.KEY_DIAGNOSE, tooltip=texts.LONG_DIAGNOSE),
+        Binding("t", "traverses", texts.KEY_TRAVERSE, tooltip=texts.LONG_TRAVERSES, show=False),
+        Binding("f5", "reload", texts.KEY_RELOAD, tooltip=texts.LONG_RELOAD),
+        Binding("escape", "back", texts.KEY_BACK, tooltip=texts.LONG_BACK),
     ]
 
     class SessionChosen(Message):
@@ -79,6 +86,7 @@ class ProjectScreen(Screen[None]):
         self.project: Project | None = None
         self.result: OrientationResult | None = None
         self.resumed = False
+        self.draft: Draft = {}
 
     def compose(self) -> ComposeResult:
         """Title, pages, keys."""
@@ -94,7 +102,7 @@ class ProjectScreen(Screen[None]):
                 yield Records(CHECK_COLUMNS, empty=texts.NO_CHECK_ROWS, details=self._check)
             with TabPane(texts.TAB_WARNINGS, id="warnings"):
                 yield Records((texts.COL_WARNING,), empty=texts.NO_WARNINGS, details=self._warning)
-        yield Footer()
+        yield Footer(show_command_palette=False)
 
     def on_mount(self) -> None:
         """Begin to compute."""
@@ -167,7 +175,9 @@ class ProjectScreen(Screen[None]):
     def action_new(self) -> None:
         """Begin another session."""
         if self.project is not None:
-            self.app.push_screen(NewSessionScreen(self.folder, self.project), self._made)
+            self.app.push_screen(
+                NewSessionScreen(self.folder, self.project, self.draft), self._made
+            )
 
     def action_diagnose(self) -> None:
         """Ask what the model lacks; the project is read anew on return."""

@@ -20,6 +20,7 @@ from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import SurveyError
 from surveyapp.tui import texts
 from surveyapp.tui.desk import problem_text
+from surveyapp.tui.drafts import Draft
 from surveyapp.tui.screens.signature import SignatureScreen
 from surveyapp.tui.views.checks import summary
 from surveyapp.tui.views.result import result_headline, result_sections, truth_text
@@ -32,9 +33,9 @@ class ResultScreen(Screen[None]):
     """Shows what one session says; it changes nothing."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("f4", "record", texts.KEY_PDF),
+        Binding("f4", "record", texts.KEY_PDF, tooltip=texts.LONG_PDF),
         Binding("f6", "sign", texts.KEY_SIGN),
-        Binding("f5", "reload", texts.KEY_RELOAD),
+        Binding("f5", "reload", texts.KEY_RELOAD, tooltip=texts.LONG_RELOAD),
         Binding("escape", "leave", texts.KEY_BACK),
     ]
 
@@ -63,6 +64,7 @@ class ResultScreen(Screen[None]):
     def __init__(self, folder: str, session: str, practice: Practice | None = None) -> None:
         super().__init__()
         self.practice = practice
+        self.draft: Draft = {}
         self.folder = folder
         self.session = session
         self.result: OrientationResult | None = None
@@ -132,7 +134,7 @@ class ResultScreen(Screen[None]):
 
     def action_sign(self) -> None:
         """Close the session."""
-        self.app.push_screen(SignatureScreen(), self._signed)
+        self.app.push_screen(SignatureScreen(self.draft), self._signed)
 
     def _signed(self, name: str | None) -> None:
         if name is None:

@@ -18,9 +18,9 @@ from textual.widgets import Footer, Input
 from surveyapp.api_practice import Practice
 from surveyapp.api_session import Observation
 from surveyapp.core.steps import Step
-from surveyapp.domain.readings import ReadingKind
-from surveyapp.tui import texts
+from surveyapp.tui import help_texts, texts
 from surveyapp.tui.desk import Desk, NotWrittenError
+from surveyapp.tui.drafts import Draft
 from surveyapp.tui.messages import ResultWanted, SessionLeft
 from surveyapp.tui.screens.help import HelpScreen
 from surveyapp.tui.screens.strike import StrikeScreen
@@ -46,8 +46,8 @@ class SessionScreen(Screen[None]):
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding(key, action, name, show=action not in HIDDEN)
-        for key, (action, name) in KEYS.items()
+        Binding(key, action, name, show=action not in HIDDEN, tooltip=long)
+        for key, (action, name, long) in KEYS.items()
     ]
 
     def __init__(
@@ -58,6 +58,7 @@ class SessionScreen(Screen[None]):
         self.observation = observation
         self.desk = Desk(observation)
         self.draft = draft
+        self.reason: Draft = {}
         self.warned = False
 
     def compose(self) -> ComposeResult:
@@ -140,13 +141,14 @@ class SessionScreen(Screen[None]):
 
     def action_passage(self) -> None:
         """Space in the empty line: a timed passage."""
-        if self.desk.what().kind is ReadingKind.TRANSIT:
-            self.attempt(self.desk.passage)
+        self.attempt(self.desk.passage)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Show the keys that mean something in this step."""
         if action == "other":
             return self.desk.has_other(str(parameters[0]))
+        if action == "passage":
+            return self.desk.times()
         return action != "missed" or self.desk.swings()
 
     def action_other(self, which: str) -> None:
@@ -173,7 +175,7 @@ class SessionScreen(Screen[None]):
             if choice is not None:
                 self.attempt(lambda: self.desk.strike(*choice))
 
-        self.app.push_screen(StrikeScreen(rows), struck)
+        self.app.push_screen(StrikeScreen(rows, self.reason), struck)
 
     def action_step(self, places: int) -> None:
         """Go on, or back, by one step."""
@@ -184,7 +186,8 @@ class SessionScreen(Screen[None]):
 
     def action_help(self) -> None:
         """Explain this step."""
-        self.app.push_screen(HelpScreen(self.desk.step, self.observation.session.method))
+        words = help_texts.help_of(self.desk.step, self.observation.session.method)
+        self.app.push_screen(HelpScreen(self.desk.step_name(), words))
 
     def action_leave(self) -> None:
         """Leave; what is half typed is kept."""

@@ -11,12 +11,17 @@ from textual.screen import ModalScreen
 from textual.widgets import Input, Static
 
 from surveyapp.tui import texts
+from surveyapp.tui.drafts import Draft, keep, put_back
 
 
 class SignatureScreen(ModalScreen[str | None]):
     """Returns the name, or None."""
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", texts.KEY_LEAVE)]
+
+    def __init__(self, draft: Draft) -> None:
+        super().__init__()
+        self.draft = draft
 
     def compose(self) -> ComposeResult:
         """What closing means, and one line."""
@@ -27,11 +32,17 @@ class SignatureScreen(ModalScreen[str | None]):
             line.cursor_blink = False
             yield line
 
+    def on_mount(self) -> None:
+        """What was half typed stands there again."""
+        put_back(self, self.draft)
+
     def on_input_submitted(self, event: Input.Submitted) -> None:
         """Sign."""
         if event.value.strip():
+            self.draft.clear()
             self.dismiss(event.value.strip())
 
     def action_leave(self) -> None:
         """Sign nothing."""
+        keep(self, self.draft)
         self.dismiss(None)

@@ -13,12 +13,13 @@ QUIET = (ReadingKind.NOTE, ReadingKind.STRIKE)
 def ledger_rows(
     book: FieldBook, progress: Progress | None, rows: tuple[Reading, ...]
 ) -> list[tuple[str, ...]]:
-    """Cells of the given rows: number, time, kind, reading, state, residual."""
+    """Cells of the given rows: number, time, kind, reading, state, residual or why it is struck."""
     residuals = {}
     if progress is not None:
         residuals = {point.seq: point.residual for point in progress.points}
     sides = {row.seq: row.side for row in book.live}
     struck = set(book.struck)
+    reasons = strike_reasons(book)
     return [
         (
             str(row.seq),
@@ -26,10 +27,16 @@ def ledger_rows(
             _kind(row),
             row.text or row.note,
             texts.LEDGER_STRUCK if row.seq in struck else _place(row, sides.get(row.seq)),
-            "" if row.seq in struck else _residual(residuals.get(row.seq)),
+            reasons.get(row.seq, "") if row.seq in struck else _residual(residuals.get(row.seq)),
         )
         for row in rows
     ]
+
+
+def strike_reasons(book: FieldBook) -> dict[int, str]:
+    """Why each struck row was struck, as far as its strike says so."""
+    strikes = (row for row in book.rows if row.kind is ReadingKind.STRIKE)
+    return {int(row.text): row.note for row in strikes if row.text.isdecimal()}
 
 
 def _kind(row: Reading) -> str:

@@ -11,8 +11,8 @@ from textual.widgets import Static
 
 from surveyapp.tui import texts
 
-STATE = 4
-RIGHT = (0, 5)
+STATE, RESIDUAL = 4, 5
+RIGHT = (0, RESIDUAL)
 
 
 class Ledger(Vertical):
@@ -27,11 +27,12 @@ class Ledger(Vertical):
     def show(self, rows: Sequence[Sequence[str]]) -> None:
         """Replace all rows."""
         table = [texts.LEDGER_COLUMNS, *rows]
-        widths = [max(len(row[i]) for row in table) for i in range(len(texts.LEDGER_COLUMNS))]
+        shown = [i for i in range(len(texts.LEDGER_COLUMNS)) if any(row[i] for row in rows)]
+        widths = {i: max(len(row[i]) for row in table if not _reason(row, i)) for i in shown}
         lines = [
             " ".join(
-                cell.rjust(width) if i in RIGHT else cell.ljust(width)
-                for i, (cell, width) in enumerate(zip(row, widths, strict=True))
+                row[i].rjust(width) if i in RIGHT else row[i].ljust(width)
+                for i, width in widths.items()
             )
             for row in table
         ]
@@ -42,3 +43,8 @@ class Ledger(Vertical):
         text.rstrip()
         self.query_one("#ledger-rows", Static).update(text)
         self.query_one(VerticalScroll).scroll_end(animate=False)
+
+
+def _reason(row: Sequence[str], column: int) -> bool:
+    """Whether a cell holds the reason of a strike, which may hang over."""
+    return column == RESIDUAL and row[STATE] == texts.LEDGER_STRUCK
