@@ -69,7 +69,7 @@ D_DRIFT: Final = "sights after minus before"
 D_READING: Final = "line reading {target}"
 D_AZIMUTH: Final = "gyro azimuth {target}"
 D_GYRO: Final = "gyro azimuth"
-D_PLUS_CONSTANT: Final = "+ constant ({choice})"
+D_PLUS_CONSTANT: Final = "+ instrument constant"
 D_TRUE: Final = "= true azimuth ({reference})"
 D_DEFLECTION: Final = "- deflection of the vertical"
 D_CONVERGENCE: Final = "- meridian convergence"
@@ -79,6 +79,12 @@ D_SOUTH: Final = "direction from south"
 D_EXISTING: Final = "azimuth from coordinates"
 D_BUDGET: Final = "budget"
 D_SHARE: Final = "share"
+CONSTANT_VALUE: Final = '- - {choice} {value}" ±{sigma}", ±{interval}" (95 %)'
+CONSTANT_TEST: Final = "{verdict}: {text}"
+CONSTANT_UNTESTED: Final = "nothing tests it: that takes two lines, or two epochs"
+CONSTANT_DAYS: Final = "days (UTC)"
+CONSTANT_ORDER: Final = "in order"
+CONSTANT_AXIS: Final = 'constant ", bars ±1 sigma; {axis}'
 STABLE: Final = "stable"
 NOT_STABLE: Final = "NOT STABLE"
 PURPOSES: Final = {"survey": "survey", "calibration": "calibration"}
@@ -318,14 +324,43 @@ KEY_CLOSE: Final = "Close"
 RESULT_TITLE: Final = "{project}  {session}  result"
 R_CHAIN: Final = "From the readings to the azimuth"
 R_CHECKS: Final = "Checks"
-R_BUDGET: Final = "What the sigma is made of; the first helps most"
+R_BUDGET: Final = "What the sigma is made of"
+R_HELPS: Final = 'Most helps: {advice}. Without this part ±{without}" instead of ±{sigma}".'
+R_AT_CALIBRATION: Final = "at the calibration, {advice}"
+IMPROVE: Final = {
+    "centring": "centre more exactly, or take a longer line",
+    "clamp reading": "read the clamped circle several times",
+    "constant instability": "calibrate near the survey, before and after it",
+    "damping": "read more turning points",
+    "deflection": "have the deflection of the vertical determined there",
+    "eccentricity": "measure the eccentric elements again, or set up on the mark",
+    "known azimuth": "calibrate on a line whose azimuth is known better",
+    "known constant": "calibrate on a known line, before and after",
+    "rounds": "take more rounds",
+    "run-to-run scatter": "repeat the session: runs differ by more than their readings tell",
+    "sights": "sight the target more often in both faces",
+    "tape zero": "read more turning points of the tape zero, before and after",
+    "torsion ratio": "have the torsion ratio determined from T1 and T2",
+    "turning points": "read more turning points",
+    "unknown damping": "read at least four turning points",
+}
 R_CONSTANTS: Final = "Instrument constant through time"
 R_WARNINGS: Final = "To know"
 R_POINTS: Final = "Turning points"
 R_LIMIT: Final = "limit {limit}"
 R_NO_LINE: Final = "no gyro north from this session"
 R_TRUE: Final = "true azimuth, {reference}"
-R_NOT_MET: Final = "Not met"
+S_POINTINGS: Final = "{count} pointings"
+S_POINTS: Final = "{count} points"
+S_ROUNDS: Final = "{count} round(s)"
+S_DEFLECTION: Final = "of the station"
+S_NO_DEFLECTION: Final = "unknown, 0 taken"
+S_GRID: Final = "the grid, at {station}"
+S_ENDS: Final = "both ends in the grid"
+S_NO_ENDS: Final = "a position is missing"
+S_CLOCKWISE: Final = "from grid north"
+S_AXES: Final = "the grid's axes ask it"
+S_COMPARE: Final = "for comparison only"
 KEY_PDF: Final = "PDF"
 KEY_OBSERVE: Final = "Observe"
 KEY_NEW: Final = "New"

@@ -6,6 +6,7 @@ result comes back as a message.
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import ClassVar
 
@@ -27,12 +28,13 @@ from surveyapp.tui.page_keys import page_bindings
 from surveyapp.tui.screens.diagnosis import DiagnosisScreen
 from surveyapp.tui.screens.new_session import NewSessionScreen
 from surveyapp.tui.screens.traverse import TraverseScreen
-from surveyapp.tui.views.checks import CHECK_COLUMNS, check_rows, check_texts, summary
-from surveyapp.tui.views.constants import CONSTANT_COLUMNS, constant_rows
-from surveyapp.tui.views.lines import LINE_COLUMNS, budget_rows, chain_rows, line_rows
-from surveyapp.tui.views.session import SESSION_COLUMNS, session_details, session_rows
+from surveyapp.tui.views.checks import CHECK_COLUMNS, check_rows, summary
+from surveyapp.tui.views.lines import LINE_COLUMNS, line_rows
+from surveyapp.tui.views.project import details_of
+from surveyapp.tui.views.session import SESSION_COLUMNS, session_rows
+from surveyapp.tui.widgets.constants import ConstantsPage
 from surveyapp.tui.widgets.problems import Problems
-from surveyapp.tui.widgets.records import Records, pairs_text, table_text
+from surveyapp.tui.widgets.records import Records
 from surveyapp.tui.widgets.titlebar import TitleBar
 
 PAGES = {
@@ -93,15 +95,29 @@ class ProjectScreen(Screen[None]):
         yield TitleBar(self.title_text)
         with TabbedContent():
             with TabPane(texts.TAB_SESSIONS, id="sessions"):
-                yield Records(SESSION_COLUMNS, empty=texts.NO_SESSIONS, details=self._session)
+                yield Records(
+                    SESSION_COLUMNS,
+                    empty=texts.NO_SESSIONS,
+                    details=partial(self.details, "sessions"),
+                )
             with TabPane(texts.TAB_LINES, id="lines"):
-                yield Records(LINE_COLUMNS, empty=texts.NO_LINES, details=self._line)
+                yield Records(
+                    LINE_COLUMNS, empty=texts.NO_LINES, details=partial(self.details, "lines")
+                )
             with TabPane(texts.TAB_CONSTANTS, id="constants"):
-                yield Records(CONSTANT_COLUMNS, empty=texts.NO_CONSTANTS)
+                yield ConstantsPage()
             with TabPane(texts.TAB_CHECKS, id="checks"):
-                yield Records(CHECK_COLUMNS, empty=texts.NO_CHECK_ROWS, details=self._check)
+                yield Records(
+                    CHECK_COLUMNS,
+                    empty=texts.NO_CHECK_ROWS,
+                    details=partial(self.details, "checks"),
+                )
             with TabPane(texts.TAB_WARNINGS, id="warnings"):
-                yield Records((texts.COL_WARNING,), empty=texts.NO_WARNINGS, details=self._warning)
+                yield Records(
+                    (texts.COL_WARNING,),
+                    empty=texts.NO_WARNINGS,
+                    details=partial(self.details, "warnings"),
+                )
         yield Footer(show_command_palette=False)
 
     def on_mount(self) -> None:
@@ -134,12 +150,12 @@ class ProjectScreen(Screen[None]):
         rows: dict[str, list[tuple[str, ...]]] = {
             "sessions": session_rows(message.project, result),
             "lines": line_rows(result, unit),
-            "constants": constant_rows(result),
             "checks": check_rows(result),
             "warnings": [(warning.code,) for warning in result.warnings],
         }
         for name, values in rows.items():
             self.query_one(f"#{name} Records", Records).show(values)
+        self.query_one(ConstantsPage).show(result)
         self.action_page(self.query_one(TabbedContent).active)
         if not self.resumed:
             self.resumed = True
@@ -205,26 +221,8 @@ class ProjectScreen(Screen[None]):
         """Leave the project; nothing is unsaved here."""
         await self.app.run_action("leave")
 
-    def _session(self, row: int) -> Text:
+    def details(self, page: str, row: int) -> Text:
+        """What is known of a row of a page."""
         if self.result is None or self.project is None:
             return Text()
-        wanted = self.project.sessions[row].id
-        for session in self.result.sessions:
-            if session.id == wanted:
-                return pairs_text(session_details(session, self.project.angle_unit))
-        return Text(texts.BEING_OBSERVED)
-
-    def _line(self, row: int) -> Text:
-        if self.result is None or self.project is None:
-            return Text()
-        line = self.result.lines[row]
-        text = table_text(chain_rows(line, self.project.angle_unit))
-        text.append("\n")
-        head = (texts.D_BUDGET, texts.COL_SIGMA, texts.D_SHARE)
-        return text.append_text(table_text([head, *budget_rows(line)]))
-
-    def _check(self, row: int) -> Text:
-        return Text() if self.result is None else Text(check_texts(self.result)[row])
-
-    def _warning(self, row: int) -> Text:
-        return Text() if self.result is None else Text(self.result.warnings[row].text)
+        return details_of(self.project, self.result, page, row)
