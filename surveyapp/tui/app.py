@@ -156,11 +156,14 @@ class SurveyApp(App[int]):
         self.open_session(api_practice.SESSION)
 
     def on_home_screen_practice_chosen(self, message: HomeScreen.PracticeChosen) -> None:
-        """Practise at the usual speed."""
-        folder = api_practice.practice_folder()
+        """Practise as wished."""
+        wish = message.wish
         try:
             practice = api_practice.begin(
-                folder, speed=api_practice.USUAL_SPEED, disturbed=message.disturbed
+                api_practice.practice_folder(),
+                method=wish.method,
+                speed=wish.speed,
+                disturbed=wish.disturbed,
             )
         except SurveyError as error:
             self.notify(str(error), severity="error", markup=False)

@@ -367,6 +367,7 @@ KEY_NEW: Final = "New"
 PDF_WRITTEN: Final = "written: {path}"
 KEY_NEW_PROJECT: Final = "New project"
 KEY_FOLDER: Final = "Folder"
+KEY_PRACTISE: Final = "Practise"
 KEY_MAKE: Final = "Make it"
 KEY_FIELD: Final = "Next field"
 
@@ -405,13 +406,31 @@ ADOPTED: Final = "written: {place}"
 PRACTICE_INSTRUMENT: Final = "instrument, {speed:g} x"
 PRACTICE_CIRCLE: Final = "circle {reading}"
 PRACTICE_SCALE: Final = "scale {div} div"
+PRACTICE_AZIMUTH: Final = "shows {reading}"
+PRACTICE_MEASURING: Final = "measuring ..."
 PRACTICE_NOTHING: Final = "nothing to read"
-PRACTICE_TRUTH: Final = 'Truth {north}; yours is {error}" off: ±{interval}" {verdict}.'
+PRACTICE_TRUTH: Final = 'Truth {truth}; yours is {error}" off: ±{interval}" {verdict}.'
 PRACTICE_HOLDS: Final = "holds it"
 PRACTICE_MISSES: Final = "does NOT hold it"
 PRACTICE_CLEAN: Final = "Nothing was hidden in this run."
 PRACTICE_HIDDEN: Final = "Hidden in this run: {effect}."
-HOME_PRACTISE_HIDDEN: Final = "Practise with something hidden ..."
+PRACTISE_TITLE: Final = "Practise on a simulated instrument"
+PRACTISE_STATE: Final = "F8 begins"
+F_SPEED: Final = "Time"
+F_HIDDEN: Final = "Hidden"
+KEY_BEGIN: Final = "Begin"
+SPEEDS: Final = {
+    "10": "10 x: a half swing takes 20 s",
+    "1": "real time, as underground",
+    "5": "5 x",
+    "30": "30 x",
+    "100": "100 x",
+}
+HIDDEN: Final = {
+    "nothing": "nothing: a clean run",
+    "something": "one disturbance, to be found",
+    "lot": "perhaps: the lot decides",
+}
 
 # closing
 SIGN_TITLE: Final = "Close and sign this session"

@@ -132,7 +132,7 @@ def truth_text(outcome: PracticeOutcome | None, unit: AngleUnit) -> str:
         return ""
     verdict = texts.PRACTICE_HOLDS if outcome.inside else texts.PRACTICE_MISSES
     truth = texts.PRACTICE_TRUTH.format(
-        north=format_angle(outcome.north, unit),
+        truth=format_angle(outcome.truth, unit),
         error=arcsec_text(outcome.error, sign=True),
         interval=arcsec_text(outcome.interval95),
         verdict=verdict,
