@@ -23,7 +23,7 @@ from surveyapp.core.progress import Progress
 from surveyapp.core.steps import BEFORE, Step, kinds_of, steps_of
 from surveyapp.domain.readings import QUANTITY, Face, Quantity, Reading, ReadingKind
 from surveyapp.errors import SurveyError
-from surveyapp.io.clock import Stamp
+from surveyapp.io.clock import NOTICED_S, Stamp
 from surveyapp.tui import texts
 from surveyapp.tui.views.form import small_text
 from surveyapp_models.angles import AngleUnit, format_angle
@@ -49,6 +49,7 @@ class Desk:
         self.target: str | None = None
         self.stamp: Stamp | None = None
         self.asked: str | None = None
+        self.clock_off_s = -observation.clock.set_back_s
 
     @property
     def step(self) -> Step:
@@ -163,6 +164,14 @@ class Desk:
         told = texts.RECORDED.format(seq=seq, kind=kind, value=value)
         return f"{told}{texts.STEP_COMPLETE if self.complete() else ''}"
 
+    def clock_note(self) -> str:
+        """That the computer's clock was set, once each time that it was."""
+        off = self.observation.clock.wall_clock_off_s()
+        if abs(off - self.clock_off_s) <= NOTICED_S:
+            return ""
+        self.clock_off_s = off
+        return texts.CLOCK_SET.format(seconds=off)
+
     def complete(self) -> bool:
         """Whether the step has all that it needs, and nothing more is usual."""
         if self.step is Step.SWING:
@@ -263,4 +272,5 @@ def problem_text(error: SurveyError) -> str:
     """The first problem of an error in one line."""
     problem = error.problems[0]
     what = f"{problem.what}: {problem.found}" if problem.found else problem.what
-    return texts.NOT_WRITTEN.format(what=what, hint=problem.hint)
+    hint = problem.hint[:1].upper() + problem.hint[1:]
+    return texts.NOT_WRITTEN.format(what=what, hint=hint).strip()

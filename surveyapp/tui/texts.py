@@ -260,10 +260,12 @@ NOTHING_TO_STRIKE: Final = "there is no reading to strike"
 MISSED_NOTED: Final = "on disk: row {seq}, turning point missed; the count goes on"
 NOT_WRITTEN: Final = "NOT written: {what}. {hint}"
 ASK_AGAIN: Final = "{question} Enter keeps it, typing replaces it."
+BOOK_CHANGED: Final = "the book was changed by another hand: this is how it stands now"
+BOOK_BROKEN: Final = "the book was changed by another hand and cannot be read. {what}"
 DRAFT_KEPT: Final = "what you typed is kept; Escape again leaves, Enter writes it"
 CLOSED_BEFORE: Final = "the swing has begun: what is read now counts as after it (F8 goes on)"
 CLOCK_SET: Final = (
-    "the computer's clock was set by {seconds:+.0f} s; the session's time goes on unbroken"
+    "; the computer's clock is off by {seconds:+.0f} s now, the session's time goes on unbroken"
 )
 TORN: Final = "a torn line stands in {file}: is that reading missing here?"
 CLOCK_BACK: Final = (

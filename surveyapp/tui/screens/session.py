@@ -18,13 +18,15 @@ from textual.widgets import Footer, Input
 from surveyapp.api_practice import Practice
 from surveyapp.api_session import Observation
 from surveyapp.core.steps import Step
+from surveyapp.errors import SurveyError
 from surveyapp.tui import help_texts, texts
-from surveyapp.tui.desk import Desk, NotWrittenError
+from surveyapp.tui.desk import Desk, NotWrittenError, problem_text
 from surveyapp.tui.drafts import Draft
 from surveyapp.tui.messages import ResultWanted, SessionLeft
 from surveyapp.tui.screens.help import HelpScreen
 from surveyapp.tui.screens.strike import StrikeScreen
 from surveyapp.tui.session_keys import HIDDEN, KEYS, ORDERED
+from surveyapp.tui.views.observation import opening_warning, session_title
 from surveyapp.tui.widgets.entry import EntryLine, ReadingInput
 from surveyapp.tui.widgets.instrument import InstrumentPane
 from surveyapp.tui.widgets.run import RunPane
@@ -60,20 +62,14 @@ class SessionScreen(Screen[None]):
         self.draft = draft
         self.reason: Draft = {}
         self.warned = False
+        self.shown = observation.book
 
     def compose(self) -> ComposeResult:
         """Title, steps, the run, the entry line, keys."""
         session = self.observation.session
-        line = f"{session.station}-{session.target}" if session.target else session.station
-        title = texts.SESSION_TITLE.format(
-            project=self.observation.project.name,
-            session=session.id,
-            method=session.method,
-            line=line,
-        )
-        yield TitleBar(title)
+        yield TitleBar(session_title(self.observation))
         with Horizontal(id="work"):
-            with Vertical(id="side"):
+            with Vertical(id="side", classes="steps-only" if self.practice is None else ""):
                 yield StepList(session.method)
                 if self.practice is not None:
                     yield InstrumentPane(self.practice, self.desk)
@@ -87,18 +83,30 @@ class SessionScreen(Screen[None]):
         closed = texts.CLOSED_SESSION if self.observation.closed else texts.READING_ONLY
         self.query_one(TitleBar).state = texts.WRITING if writable else closed
         entry = self.query_one(EntryLine)
-        back = self.observation.clock.set_back_s
-        if back:
-            entry.tell(texts.CLOCK_BACK.format(seconds=back), serious=True)
-        torn = self.observation.torn
-        if torn is not None:
-            entry.tell(texts.TORN.format(file=torn), serious=True)
+        warning = opening_warning(self.observation)
+        if warning:
+            entry.tell(warning, serious=True)
         entry.text = self.draft
         self.query_one(ReadingInput).focus()
+        self.show_book()
+        self.set_interval(1.0, self.watch_book)
+
+    def watch_book(self) -> None:
+        """Take over what another hand has changed in the book, and say so."""
+        if not self.observation.changed_outside():
+            return
+        try:
+            self.observation.read_again()
+        except SurveyError as error:
+            told = texts.BOOK_BROKEN.format(what=problem_text(error))
+            self.query_one(EntryLine).tell(told, serious=True)
+            return
+        self.query_one(EntryLine).tell(texts.BOOK_CHANGED, serious=True)
         self.show_book()
 
     def show_book(self) -> None:
         """Show steps, readings and prompt as the book stands."""
+        self.shown = self.observation.book
         self.query_one(StepList).show(self.observation.steps(), self.desk.step)
         self.query_one(RunPane).show_book()
         self.show_prompt()
@@ -133,9 +141,10 @@ class SessionScreen(Screen[None]):
             told = act()
         except NotWrittenError as refusal:
             entry.tell(str(refusal), serious=True)
+            if self.observation.book is not self.shown:
+                self.show_book()
             return False
-        off = self.observation.clock.wall_clock_off_s()
-        entry.tell(texts.CLOCK_SET.format(seconds=off) if off else told)
+        entry.tell(told + self.desk.clock_note())
         self.show_book()
         return True
 
