@@ -28,6 +28,7 @@ def put_back(form: Widget, draft: Draft) -> None:
     """Fill the fields of a form with what was taken down; a choice that is gone stays away."""
     for line in form.query(Input):
         line.value = draft.get(line.id or "", line.value)
+        line.cursor_position = len(line.value)
     for area in form.query(TextArea):
         area.text = draft.get(area.id or "", area.text)
     for choice in form.query(Select):

@@ -27,7 +27,7 @@ class FolderScreen(ModalScreen[str | None]):
         """One line."""
         with Vertical(id="dialog"):
             yield Static(texts.HOME_FOLDER_TITLE, classes="heading", markup=False)
-            line = Input(placeholder=texts.HOME_FOLDER, compact=True)
+            line = Input(placeholder=texts.HOME_FOLDER, compact=True, select_on_focus=False)
             line.cursor_blink = False
             yield line
 

@@ -28,7 +28,7 @@ class SignatureScreen(ModalScreen[str | None]):
         with Vertical(id="dialog"):
             yield Static(texts.SIGN_TITLE, classes="heading", markup=False)
             yield Static(texts.SIGN_MEANING, markup=False)
-            line = Input(placeholder=texts.SIGN_NAME, compact=True)
+            line = Input(placeholder=texts.SIGN_NAME, compact=True, select_on_focus=False)
             line.cursor_blink = False
             yield line
 

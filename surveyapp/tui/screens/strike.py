@@ -36,7 +36,9 @@ class StrikeScreen(ModalScreen[tuple[int, str] | None]):
         with Vertical(id="dialog"):
             yield Static(texts.STRIKE_TITLE, classes="heading", markup=False)
             yield OptionList(*[Option(_line(row), id=str(row.seq)) for row in self.rows])
-            reason = Input(placeholder=texts.STRIKE_REASON, id="reason", compact=True)
+            reason = Input(
+                placeholder=texts.STRIKE_REASON, id="reason", compact=True, select_on_focus=False
+            )
             reason.cursor_blink = False
             yield reason
             yield Static(texts.STRIKE_KEYS, classes="hint", markup=False)

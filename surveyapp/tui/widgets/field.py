@@ -22,7 +22,9 @@ class TextField(Horizontal):
     def compose(self) -> ComposeResult:
         """Label and line."""
         yield Static(self.label, classes="label", markup=False)
-        line = Input(self.start, placeholder=self.hint, compact=True, id=self.name)
+        line = Input(
+            self.start, placeholder=self.hint, compact=True, id=self.name, select_on_focus=False
+        )
         line.cursor_blink = False
         yield line
 
