@@ -139,7 +139,8 @@ class Observation:
             If it cannot be read so; what was known of it stays.
         """
         self._read_again(self.path)
-        self._step = None
+        if self.writable:  # who only reads stays at the step that is looked at
+            self._step = None
         self._begin_behind_the_book()
 
     @property
@@ -272,7 +273,7 @@ class Observation:
         """Note that the surveyor goes to a step, unless the book stands there already."""
         if step is self.step:
             return
-        if "note" not in self._columns:  # an older book: the step is not remembered
+        if not self.writable or "note" not in self._columns:  # who only reads leaves no trace
             self._step = step
         else:
             self.record(NewRow(ReadingKind.NOTE, note=f"{STEP_NOTE}{step}"))

@@ -20,6 +20,7 @@ from surveyapp_models.angles import wrap_pi
 
 if TYPE_CHECKING:
     from pyproj import Geod, Proj
+    from pyproj.database import CRSInfo
 
 MAX_LATITUDE_DEG = 75.0
 WARN_LATITUDE_DEG = 70.0
@@ -166,7 +167,8 @@ def find_projected(
     coordinates : tuple of float or None
         East and north [m] that must lie where the grid is made for.
     limit : int
-        Largest number returned; of more, those with the shortest names.
+        Largest number returned; of more, those for the smallest area where the place is known,
+        else those with the shortest names.
 
     Returns
     -------
@@ -189,13 +191,24 @@ def find_projected(
         )
         if all(word in item.name.lower() or word in item.code for word in words)
     ]
-    named.sort(key=lambda item: (item.code not in words, len(item.name)))
+    local = place is not None or coordinates is not None
+    named.sort(
+        key=lambda item: (item.code not in words, _extent(item) if local else 0.0, len(item.name))
+    )
     found = (
         (f"EPSG:{item.code}", item.name)
         for item in named
         if coordinates is None or _holds(f"EPSG:{item.code}", coordinates)
     )
     return tuple(itertools.islice(found, limit))
+
+
+def _extent(item: CRSInfo) -> float:
+    """Size of the area that a grid is made for [square degrees]: the local ones come first."""
+    area = item.area_of_use
+    if area is None:
+        return math.inf
+    return ((area.east - area.west) % 360.0 or 360.0) * (area.north - area.south)
 
 
 def _holds(code: str, coordinates: tuple[float, float]) -> bool:

@@ -93,8 +93,9 @@ class Desk:
             detail = texts.PROMPT_FACE.format(target=what.target, face=what.face)
         elif what.side is not None:
             detail = texts.PROMPT_SIDE.format(side=what.side)
-        kind = texts.KIND_NAMES[what.kind]
-        return texts.PROMPT.format(kind=kind, number=what.number, detail=detail)
+        kind, _, unit = texts.KIND_NAMES[what.kind].partition(", ")
+        shown = texts.PROMPT_UNIT.format(unit=unit) if unit else ""
+        return texts.PROMPT.format(kind=kind, number=what.number, detail=detail, unit=shown)
 
     def hint(self) -> str:
         """What to do with the line."""
@@ -272,5 +273,7 @@ def problem_text(error: SurveyError) -> str:
     """The first problem of an error in one line."""
     problem = error.problems[0]
     what = f"{problem.what}: {problem.found}" if problem.found else problem.what
-    hint = problem.hint[:1].upper() + problem.hint[1:]
+    hint = problem.hint
+    if not hint.startswith("surveyapp "):  # a command is written as it is typed
+        hint = hint[:1].upper() + hint[1:]
     return texts.NOT_WRITTEN.format(what=what, hint=hint).strip()

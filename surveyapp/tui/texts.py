@@ -122,7 +122,7 @@ F_GRID_HINT: Final = "part of its name, or EPSG code; empty for none"
 F_FOLDER_MADE: Final = "becomes {path}"
 F_GRIDS: Final = "{count} grids; Down and Enter choose"
 F_GRIDS_HERE: Final = "{count} grids where the stations lie; Down and Enter choose"
-F_GRIDS_MANY: Final = "the first {count} grids; type more of the name, or the stations"
+F_GRIDS_MANY: Final = "the first {count} grids; type more of the name"
 F_GRIDS_NONE: Final = "no grid of this name"
 F_GRIDS_NONE_HERE: Final = "no grid of this name where the stations lie"
 F_UNIT: Final = "Angles"
@@ -243,7 +243,8 @@ KIND_NAMES: Final = {
     "note": "note",
     "strike": "strike",
 }
-PROMPT: Final = "{kind} {number}{detail}"
+PROMPT: Final = "{kind} {number}{detail}{unit}"
+PROMPT_UNIT: Final = " ({unit})"
 PROMPT_FACE: Final = " {target} face {face}"
 PROMPT_SIDE: Final = " {side}"
 ENTRY_HINT: Final = "type the reading, Enter writes it"
@@ -437,11 +438,11 @@ HIDDEN: Final = {
 # closing
 SIGN_TITLE: Final = "Close and sign this session"
 SIGN_MEANING: Final = (
-    "Its book and its table are sealed in the ledger. Nothing is hidden or locked away:\n"
+    "Its book and its table are sealed in the ledger. Nothing is locked away:\n"
     "`surveyapp reopen` opens it again and keeps the reason."
 )
 SIGN_NAME: Final = "your name; Enter signs, Escape does not"
-SIGNED: Final = "closed and signed by {name}, {files} files sealed"
+SIGNED: Final = "closed and signed by {name}; files sealed: {files}"
 CLOSED_SESSION: Final = "READING ONLY: closed and signed"
 KEY_SIGN: Final = "Close and sign"
 

@@ -92,3 +92,23 @@ async def test_the_screen_shows_what_another_hand_wrote_and_keeps_what_is_typed(
         await pilot.pause()
         assert "cannot be read" in told(pilot)
         assert screen.query_one(EntryLine).text == "02 1"
+
+
+def test_a_second_opener_reads_along_and_looks_at_every_step(tmp_path: Path) -> None:
+    first, book, clock = opened(tmp_path)
+    second = Observation(tmp_path / "p", "r1", now=clock.now, steady=clock.steady)
+    assert not second.writable
+    before = book.read_bytes()
+    second.go_to(Step.RESULT)
+    assert second.step is Step.RESULT
+    assert book.read_bytes() == before
+    first.record(NewRow(ReadingKind.BACKSIGHT, "359-02-12", "dms", "R"))
+    assert second.changed_outside()
+    second.read_again()
+    assert second.step is Step.RESULT
+    assert [row.text for row in second.book.rows[1:]] == ["179-01-56", "359-02-12"]
+    with pytest.raises(SurveyError, match="cannot be written"):
+        second.record(NewRow(ReadingKind.BACKSIGHT, "179-01-58", "dms", "L"))
+    second.close()
+    assert first.record(NewRow(ReadingKind.BACKSIGHT, "179-01-58", "dms", "L")) == 4
+    first.close()

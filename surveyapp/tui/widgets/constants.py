@@ -25,7 +25,6 @@ from surveyapp.tui.views.constants import (
 )
 from surveyapp.tui.widgets.canvas import Canvas
 from surveyapp.tui.widgets.records import Records
-from surveyapp.tui.widgets.swing import BRAILLE
 from surveyapp_models.angles import ARCSEC
 
 SIGNS = "●○◆◇■□▲△"
@@ -134,12 +133,11 @@ def draw_constant(constant: ConstantResult, width: int, height: int) -> Text:
         for value, decimals in _ticks(low / ARCSEC, high / ARCSEC, canvas.height // 3 + 1)
     }
     text = Text(no_wrap=True)
-    drawn = canvas.text().plain.replace(chr(BRAILLE), " ")
-    for row, line in enumerate(drawn.split("\n")):
+    for row, line in enumerate(canvas.text().plain.split("\n")):
         label = labels.get(row, "")
         text.append(f"{label:>{GUTTER - 2}} {'┤' if label else '│'}{line}\n")
     text.append(_foot([(round(across(p)) // 2, label) for p, label in along.ticks], canvas.width))
-    return text.append(_legend(constant, along)[:width], style="dim")
+    return text.append(_legend(constant, along)[:width])
 
 
 def _signs(items: Sequence[Determination]) -> dict[tuple[str, str], str]:

@@ -81,8 +81,8 @@ def pairs_text(pairs: Sequence[tuple[str, str]]) -> Text:
     width = max((len(label) for label, _ in pairs), default=0)
     text = Text()
     for label, value in pairs:
-        text.append(f"{label:<{width}}  ", style="dim")
-        text.append(f"{value}\n")
+        text.append(f"{label:<{width}}  ")
+        text.append(f"{value}\n", style="bold")
     return text
 
 

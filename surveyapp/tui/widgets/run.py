@@ -16,7 +16,7 @@ from surveyapp.core.steps import Step, kinds_of
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.errors import SurveyError
 from surveyapp.tui.desk import Desk
-from surveyapp.tui.views.ledger import book_rows, ledger_rows
+from surveyapp.tui.views.ledger import QUIET, book_rows, ledger_rows
 from surveyapp.tui.widgets.forecast import Forecast
 from surveyapp.tui.widgets.ledger import Ledger
 from surveyapp.tui.widgets.swing import SwingPlot
@@ -75,6 +75,8 @@ class RunPane(Vertical):
         kinds = kinds_of(self.desk.step, observation.session.method)
         if self.desk.step is Step.SWING:
             kinds = (*kinds, ReadingKind.MISSED)
+        elif self.desk.step is Step.RESULT:  # once more all that was read
+            kinds = tuple(kind for kind in ReadingKind if kind not in QUIET)
         rows = book_rows(observation.book, kinds)
         self.query_one(Ledger).show(ledger_rows(observation.book, self.desk.progress, rows))
 
