@@ -81,6 +81,7 @@ D_BUDGET: Final = "budget"
 D_SHARE: Final = "share"
 CONSTANT_VALUE: Final = '- - {choice} {value}" ±{sigma}", ±{interval}" (95 %)'
 CONSTANT_TEST: Final = "{verdict}: {text}"
+CONSTANT_NUMBERS: Final = "{text}: {value}, limit {limit}"
 CONSTANT_UNTESTED: Final = "nothing tests it: that takes two lines, or two epochs"
 CONSTANT_DAYS: Final = "days (UTC)"
 CONSTANT_ORDER: Final = "in order"
@@ -222,6 +223,16 @@ SWING_NAMES: Final = {
     "amplitude": "scale points",
     "transit": "transits",
     "automatic": "azimuths",
+}
+STEP_HINTS: Final = {
+    "set-up": "Set up and level. Nothing needs to be typed here;\nF8 goes on, F1 explains.",
+    "sights-before": "Sight each target in face left, then face right.\nF8 goes on, F1 explains.",
+    "tape-zero-before": "Rotor at rest: read three or more turning points\nof the mark on the scale.",
+    "run-up": "Start the rotor and wait until it runs steadily.\nF8 when the gyro is lowered.",
+    "observation": "Nothing is read yet. F1 explains what to read here.",
+    "tape-zero-after": "Rotor at rest again: read three or more turning points\nof the mark.",
+    "sights-after": "Sight each target once more in both faces.",
+    "result": "Nothing is read in this session.",
 }
 STEP_MARKS: Final = {"open": "·", "begun": "~", "done": "√"}
 STEP_HERE: Final = ">"

@@ -8,13 +8,22 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from helpers_tui import LARGE, SMALL, Clock, make_project, simulated
+from helpers_tui import (
+    LARGE,
+    SMALL,
+    Clock,
+    make_calibrations,
+    make_network,
+    make_project,
+    simulated,
+)
 from textual.pilot import Pilot
 
 from surveyapp import api_practice
 from surveyapp.api_session import NewRow, Observation
 from surveyapp.core.simulate.session import book_text
 from surveyapp.core.steps import Step
+from surveyapp.domain.project import Method
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.widgets.instrument import InstrumentPane
@@ -64,10 +73,9 @@ def test_home(snap_compare: Snap, size: tuple[int, int]) -> None:
     assert snap_compare(app_on(None), terminal_size=size, run_before=keys())
 
 
+@sizes
 @pytest.mark.parametrize(
-    ("page", "size"),
-    [("1", SMALL), ("2", SMALL), ("2", LARGE), ("3", SMALL), ("4", LARGE), ("5", SMALL)],
-    ids=["sessions", "lines", "lines-large", "constants", "checks-large", "warnings"],
+    "page", list("12345"), ids=["sessions", "lines", "constants", "checks", "warnings"]
 )
 def test_project(snap_compare: Snap, tmp_path: Path, page: str, size: tuple[int, int]) -> None:
     folder = sample(tmp_path, "tongjin-2015")
@@ -83,10 +91,23 @@ def test_broken_project(snap_compare: Snap, tmp_path: Path) -> None:
 
 
 @sizes
-@pytest.mark.parametrize("form", ["new-project", "new-session"])
+@pytest.mark.parametrize("form", ["new-project", "new-session", "practice", "folder"])
 def test_forms(snap_compare: Snap, tmp_path: Path, form: str, size: tuple[int, int]) -> None:
-    folder = None if form == "new-project" else sample(tmp_path, "tongjin-2015")
-    assert snap_compare(app_on(folder), terminal_size=size, run_before=keys("n"))
+    folder = sample(tmp_path, "tongjin-2015") if form == "new-session" else None
+    key = {"practice": "p", "folder": "o"}.get(form, "n")
+    assert snap_compare(app_on(folder), terminal_size=size, run_before=keys(key))
+
+
+@sizes
+def test_constant_through_days(snap_compare: Snap, tmp_path: Path, size: tuple[int, int]) -> None:
+    folder = make_calibrations(tmp_path / "calibrations")
+    assert snap_compare(app_on(folder), terminal_size=size, run_before=keys("3"))
+
+
+@sizes
+def test_traverse(snap_compare: Snap, tmp_path: Path, size: tuple[int, int]) -> None:
+    app = app_on(make_network(tmp_path / "network"))
+    assert snap_compare(app, terminal_size=size, run_before=keys("t"))
 
 
 @sizes
@@ -98,27 +119,43 @@ def test_session(snap_compare: Snap, tmp_path: Path, rows: int, size: tuple[int,
     assert snap_compare(app, terminal_size=size, run_before=keys("enter"))
 
 
-def test_alarm(snap_compare: Snap, tmp_path: Path) -> None:
+@sizes
+def test_alarm(snap_compare: Snap, tmp_path: Path, size: tuple[int, int]) -> None:
     folder = observed(tmp_path, 17)
     book = folder / "observations" / "r1.csv"
     text = book.read_text(encoding="utf-8").replace("101-58-01.5", "101-59-31.5")
     book.write_text(text, encoding="utf-8")
     app = app_on(folder, seconds=2980.0)
-    assert snap_compare(app, terminal_size=SMALL, run_before=keys("enter"))
+    assert snap_compare(app, terminal_size=size, run_before=keys("enter"))
 
 
-def test_question(snap_compare: Snap, tmp_path: Path) -> None:
+@sizes
+def test_question(snap_compare: Snap, tmp_path: Path, size: tuple[int, int]) -> None:
     folder = observed(tmp_path, 17)
     app = app_on(folder, seconds=2980.0)
     typed = keys("enter", *"101-48-00", "enter")
+    assert snap_compare(app, terminal_size=size, run_before=typed)
+
+
+@sizes
+@pytest.mark.parametrize("key", ["f1", "f6"])
+def test_help_and_strike(
+    snap_compare: Snap, tmp_path: Path, key: str, size: tuple[int, int]
+) -> None:
+    folder = observed(tmp_path, 17)
+    app = app_on(folder, seconds=2980.0)
+    assert snap_compare(app, terminal_size=size, run_before=keys("enter", key))
+
+
+def test_a_struck_reading(snap_compare: Snap, tmp_path: Path) -> None:
+    app = app_on(observed(tmp_path, 17), seconds=2980.0)
+    typed = keys("enter", "f6", "down", *"jerk", "enter")
     assert snap_compare(app, terminal_size=SMALL, run_before=typed)
 
 
-@pytest.mark.parametrize("key", ["f1", "f6"])
-def test_help_and_strike(snap_compare: Snap, tmp_path: Path, key: str) -> None:
-    folder = observed(tmp_path, 17)
-    app = app_on(folder, seconds=2980.0)
-    assert snap_compare(app, terminal_size=SMALL, run_before=keys("enter", key))
+def test_a_narrow_window(snap_compare: Snap, tmp_path: Path) -> None:
+    app = app_on(observed(tmp_path, 17), seconds=2980.0)
+    assert snap_compare(app, terminal_size=(40, 12), run_before=keys("enter"))
 
 
 @sizes
@@ -148,16 +185,20 @@ def test_no_colour(snap_compare: Snap, tmp_path: Path, monkeypatch: pytest.Monke
     assert snap_compare(app, terminal_size=SMALL, run_before=keys("enter"))
 
 
-def test_practice(snap_compare: Snap, tmp_path: Path) -> None:
+@sizes
+@pytest.mark.parametrize("method", ["tracking", "transit", "automatic"])
+def test_practice(
+    snap_compare: Snap, tmp_path: Path, method: Method, size: tuple[int, int]
+) -> None:
     clock = Clock()
-    begun = api_practice.begin(tmp_path / "p", seed=11, speed=10.0, disturbed=True)
+    begun = api_practice.begin(tmp_path / "p", method=method, seed=11, speed=10.0, disturbed=True)
     practice = replace(begun, now=clock.now, steady=clock.steady)
     app = SurveyApp(None, practice=practice)
 
     async def swing(pilot: Pilot[int]) -> None:
-        await keys(*["f8"] * 4)(pilot)
-        clock.pass_by(100.0)
+        await keys(*["f8"] * (2 if method == "automatic" else 4))(pilot)
+        clock.pass_by(250.0)
         app.screen.query_one(InstrumentPane).look()
         await pilot.pause()
 
-    assert snap_compare(app, terminal_size=SMALL, run_before=swing)
+    assert snap_compare(app, terminal_size=size, run_before=swing)

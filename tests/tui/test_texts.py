@@ -28,6 +28,8 @@ def test_every_text_is_shown_somewhere() -> None:
 
 def test_whatever_comes_in_kinds_has_a_text_for_each() -> None:
     assert set(texts.STEP_NAMES) == set(Step)
+    assert set(texts.STEP_HINTS) == set(Step)
+    assert max(len(line) for text in texts.STEP_HINTS.values() for line in text.split("\n")) <= 55
     assert set(texts.STEP_MARKS) == set(State)
     assert set(texts.KIND_NAMES) == set(ReadingKind)
     assert set(texts.QUESTIONS) == set(Doubt)

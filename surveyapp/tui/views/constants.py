@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from surveyapp.domain.results import Check, ConstantResult, OrientationResult
 from surveyapp.tui import texts
-from surveyapp.tui.views.checks import verdict_word
+from surveyapp.tui.views.checks import quantity_text, verdict_word
 from surveyapp.tui.views.form import arcsec_text, number_text
 
 CONSTANT_COLUMNS = (
@@ -76,8 +76,14 @@ def constant_told(result: OrientationResult, constant: ConstantResult) -> list[s
         sigma=arcsec_text(constant.sigma, 2),
         interval=arcsec_text(constant.interval95),
     )
-    tests = [
-        texts.CONSTANT_TEST.format(verdict=verdict_word(check), text=check.text or check.rule)
-        for check in tests_of(result, constant)
-    ]
+    tests = [_test(check) for check in tests_of(result, constant)]
     return [value, *(tests or [texts.CONSTANT_UNTESTED])]
+
+
+def _test(check: Check) -> str:
+    """A test in words, with its numbers where the words do not tell them."""
+    text = check.text or check.rule
+    value, limit = quantity_text(check.value, check.unit), quantity_text(check.limit, check.unit)
+    if value not in text:
+        text = texts.CONSTANT_NUMBERS.format(text=text, value=value, limit=limit)
+    return texts.CONSTANT_TEST.format(verdict=verdict_word(check), text=text)

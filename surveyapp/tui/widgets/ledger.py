@@ -24,8 +24,12 @@ class Ledger(Vertical):
         with VerticalScroll(can_focus=False):
             yield Static(id="ledger-rows", markup=False)
 
-    def show(self, rows: Sequence[Sequence[str]]) -> None:
-        """Replace all rows."""
+    def show(self, rows: Sequence[Sequence[str]], *, hint: str = "") -> None:
+        """Replace all rows; without any, say what is to be done."""
+        if not rows:
+            self.query_one("#ledger-head", Static).update("")
+            self.query_one("#ledger-rows", Static).update(hint)
+            return
         table = [texts.LEDGER_COLUMNS, *rows]
         shown = [i for i in range(len(texts.LEDGER_COLUMNS)) if any(row[i] for row in rows)]
         widths = {i: max(len(row[i]) for row in table if not _reason(row, i)) for i in shown}

@@ -20,7 +20,7 @@ class Problems(VerticalScroll):
 
     def compose(self) -> ComposeResult:
         """The problems as text."""
-        text = Text(f"{texts.CANNOT_USE}\n\n", style="bold")
+        text = Text().append(f"{texts.CANNOT_USE}\n\n", style="bold")
         yield Static(text.append_text(problems_text(self.error)), markup=False)
 
 

@@ -15,6 +15,7 @@ from surveyapp.core.progress import Progress
 from surveyapp.core.steps import Step, kinds_of
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.errors import SurveyError
+from surveyapp.tui import texts
 from surveyapp.tui.desk import Desk
 from surveyapp.tui.views.ledger import QUIET, book_rows, ledger_rows
 from surveyapp.tui.widgets.forecast import Forecast
@@ -78,7 +79,9 @@ class RunPane(Vertical):
         elif self.desk.step is Step.RESULT:  # once more all that was read
             kinds = tuple(kind for kind in ReadingKind if kind not in QUIET)
         rows = book_rows(observation.book, kinds)
-        self.query_one(Ledger).show(ledger_rows(observation.book, self.desk.progress, rows))
+        hint = texts.STEP_HINTS[self.desk.step]
+        shown = ledger_rows(observation.book, self.desk.progress, rows)
+        self.query_one(Ledger).show(shown, hint=hint)
 
     @work(thread=True, exclusive=True)
     def judge(self) -> None:
