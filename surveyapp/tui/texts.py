@@ -227,7 +227,7 @@ SWING_NAMES: Final = {
 STEP_HINTS: Final = {
     "set-up": "Set up and level. Nothing needs to be typed here;\nF8 goes on, F1 explains.",
     "sights-before": "Sight each target in face left, then face right.\nF8 goes on, F1 explains.",
-    "tape-zero-before": "Rotor at rest: read three or more turning points\nof the mark on the scale.",
+    "tape-zero-before": "Rotor at rest: read three or more turning points\nof the mark.",
     "run-up": "Start the rotor and wait until it runs steadily.\nF8 when the gyro is lowered.",
     "observation": "Nothing is read yet. F1 explains what to read here.",
     "tape-zero-after": "Rotor at rest again: read three or more turning points\nof the mark.",

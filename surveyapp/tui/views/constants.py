@@ -84,6 +84,6 @@ def _test(check: Check) -> str:
     """A test in words, with its numbers where the words do not tell them."""
     text = check.text or check.rule
     value, limit = quantity_text(check.value, check.unit), quantity_text(check.limit, check.unit)
-    if value not in text:
+    if '"' not in text:
         text = texts.CONSTANT_NUMBERS.format(text=text, value=value, limit=limit)
     return texts.CONSTANT_TEST.format(verdict=verdict_word(check), text=text)
