@@ -10,21 +10,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from surveyapp import api
 from surveyapp.api_entry import Expected
 from surveyapp.api_session import Observation
-from surveyapp.core.practice import (
-    Instrument,
-    Looked,
-    PracticeOutcome,
-    View,
-    judge,
-    simulate_instrument,
-)
 from surveyapp.core.steps import STEP_NOTE, Step
 from surveyapp.domain.project import Method
 from surveyapp.domain.results import OrientationResult
@@ -32,6 +24,9 @@ from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.clock import local_now, steady_seconds
 from surveyapp.io.fieldbook import COLUMNS
 from surveyapp.io.tomltext import atomic_write
+
+if TYPE_CHECKING:  # the simulator is loaded when somebody practises
+    from surveyapp.core.practice import Instrument, PracticeOutcome, View
 
 SESSION: Final = "practice"
 SLOWEST: Final = 0.1
@@ -116,6 +111,8 @@ class Practice:
 
     def view(self, observation: Observation, what: Expected) -> View:
         """What the eye sees in the step that the book stands at."""
+        from surveyapp.core.practice import Looked
+
         now = observation.clock.stamp().elapsed_s
         begun = _begun(observation, what.step)
         lowered = _begun(observation, Step.SWING)
@@ -126,6 +123,8 @@ class Practice:
 
     def outcome(self, result: OrientationResult) -> PracticeOutcome | None:
         """Truth against result; None where there is no result with an interval."""
+        from surveyapp.core.practice import judge
+
         session = result.sessions[0] if result.sessions else None
         if session is None:
             return None
@@ -171,6 +170,8 @@ def begin(
     SurveyError
         If the folder holds anything, or the speed is impossible.
     """
+    from surveyapp.core.practice import simulate_instrument
+
     if not SLOWEST <= speed <= FASTEST:
         raise SurveyError(
             Problem(

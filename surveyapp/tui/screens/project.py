@@ -25,9 +25,7 @@ from surveyapp.errors import SurveyError
 from surveyapp.tui import texts
 from surveyapp.tui.drafts import Draft
 from surveyapp.tui.page_keys import page_bindings
-from surveyapp.tui.screens.diagnosis import DiagnosisScreen
 from surveyapp.tui.screens.new_session import NewSessionScreen
-from surveyapp.tui.screens.traverse import TraverseScreen
 from surveyapp.tui.views.checks import CHECK_COLUMNS, check_rows, summary
 from surveyapp.tui.views.lines import LINE_COLUMNS, line_rows
 from surveyapp.tui.views.project import details_of
@@ -197,6 +195,8 @@ class ProjectScreen(Screen[None]):
 
     def action_diagnose(self) -> None:
         """Ask what the model lacks; the project is read anew on return."""
+        from surveyapp.tui.screens.diagnosis import DiagnosisScreen  # half of all there is to load
+
         name = Path(self.folder).resolve().name
         self.app.push_screen(DiagnosisScreen(self.folder, name), self._diagnosed)
 
@@ -204,6 +204,8 @@ class ProjectScreen(Screen[None]):
         """Show the adjusted traverses, if there are any."""
         if self.project is None:
             return
+        from surveyapp.tui.screens.traverse import TraverseScreen
+
         names = tuple(name for option, name in api.subjects(self.project) if option == "traverse")
         if names:
             self.app.push_screen(TraverseScreen(self.folder, names, self.project.angle_unit))

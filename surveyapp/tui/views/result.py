@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from rich.text import Text
 
-from surveyapp.core.practice import PracticeOutcome
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import (
     AngleResult,
@@ -22,6 +23,9 @@ from surveyapp.tui.views.session import session_details
 from surveyapp.tui.widgets.constants import draw_constant
 from surveyapp.tui.widgets.records import pairs_text, table_text
 from surveyapp_models.angles import AngleUnit, format_angle
+
+if TYPE_CHECKING:
+    from surveyapp.core.practice import PracticeOutcome
 
 Section = tuple[str, Text]
 CONSTANT_HEIGHT = 11
