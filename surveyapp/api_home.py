@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import csv
 import io
+from collections import Counter
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
@@ -18,6 +19,8 @@ from surveyapp.io.lock import ProjectLock
 from surveyapp.io.settings import Settings, read_settings, write_settings
 
 OBSERVATIONS: Final = "observations"
+LONGEST_ID: Final = 80
+"""Bytes of a session's id, which names its field book."""
 MOST_GRIDS: Final = 30
 """More are no choice: a further word of the name is."""
 
@@ -193,10 +196,10 @@ def read_stations(text: str) -> tuple[NewStation, ...]:
                     str(error),
                 )
             )
-    names = [station.name for station in stations]
+    counts = Counter(station.name for station in stations)
     problems += [
         Problem("a station stands twice", "stations", name, "each name once")
-        for name in sorted({name for name in names if names.count(name) > 1})
+        for name in sorted(name for name, count in counts.items() if count > 1)
     ]
     if problems:
         raise SurveyError(problems)
@@ -233,7 +236,7 @@ def create_project(form: NewProject) -> str:
     SurveyError
         If the folder holds anything already, if the grid is none, or if a name stands twice.
     """
-    from surveyapp.io.writing import append_table, set_value
+    from surveyapp.io.writing import append_tables, set_value
 
     constant = _constant(form.constant)
     folder = api.new_project(
@@ -247,13 +250,13 @@ def create_project(form: NewProject) -> str:
         set_value(path, ("angle_typing",), form.angle_typing)
     if form.rule_book:
         set_value(path, ("rule_book",), form.rule_book)
+    tables: list[tuple[str, dict[str, object]]] = []
     for number, (identity, card, serial) in enumerate(form.instruments):
         table = {"id": identity, "card": card, "serial": serial or None}
-        known = constant if number == 0 else None
-        append_table(path, "instrument", {**table, "constant": known})
-    for station in form.stations:
-        values = {key: getattr(station, key) for key in ("name", "e", "n", "lat", "lon", "h")}
-        append_table(path, "station", values)
+        tables.append(("instrument", {**table, "constant": constant if number == 0 else None}))
+    keys = ("name", "e", "n", "lat", "lon", "h")
+    tables += [("station", {key: getattr(item, key) for key in keys}) for item in form.stations]
+    append_tables(path, tables)
     api.open_project(folder)
     return str(folder)
 
@@ -290,7 +293,7 @@ def create_session(folder: api.Folder, form: NewSession) -> None:
     from surveyapp.io.writing import append_table
 
     path = Path(folder) / "project.toml"
-    book = f"{OBSERVATIONS}/{form.id}.csv"
+    book = _book_name(form.id)
     with ProjectLock(Path(folder)) as lock:
         if not lock.writable:
             raise SurveyError(
@@ -318,6 +321,22 @@ def create_session(folder: api.Folder, form: NewSession) -> None:
             atomic_write(path, before.encode("utf-8"))
             (Path(folder) / book).unlink()
             raise
+
+
+def _book_name(identity: str) -> str:
+    """Path of the book of a session; the id names a file, so it must be able to."""
+    usable = identity.isprintable() and not set(identity) & set('/\\:*?"<>|')
+    if not usable or identity.startswith(".") or len(identity.encode("utf-8")) > LONGEST_ID:
+        raise SurveyError(
+            Problem(
+                "this id cannot name a field book",
+                "id",
+                identity,
+                f'at most {LONGEST_ID} letters or digits, without / \\ : * ? " < > |',
+                "the book is observations/<id>.csv",
+            )
+        )
+    return f"{OBSERVATIONS}/{identity}.csv"
 
 
 def _new_book(path: Path) -> None:

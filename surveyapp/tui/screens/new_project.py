@@ -37,7 +37,7 @@ class NewProjectScreen(Screen[str | None]):
     class GridsFound(Message):
         """The search for a grid has ended."""
 
-        def __init__(self, grids: tuple[GridChoice, ...], *, here: bool) -> None:
+        def __init__(self, grids: tuple[GridChoice, ...] | None, *, here: bool) -> None:
             super().__init__()
             self.grids = grids
             self.here = here
@@ -92,34 +92,33 @@ class NewProjectScreen(Screen[str | None]):
 
     def search_grids(self) -> None:
         """Search for what is typed, or without it for all grids where the stations lie."""
-        text, stations = typed(self, "grid"), self.placed()
-        if len(text) >= 3 or (not text and any(s.lat is not None for s in stations)):
-            self.search(text, stations)
-        else:
-            self.query_one("#grids").display = False
-            self.query_one("#grids-told", Static).update("")
-
-    def placed(self) -> tuple[NewStation, ...]:
-        """Stations typed so far, as far as they make sense."""
-        try:
-            return self.stations()
-        except SurveyError:
-            return ()
+        self.search(typed(self, "grid"), self.query_one("#stations", TextArea).text)
 
     def stations(self) -> tuple[NewStation, ...]:
         """Stations typed, pasted, or in the file that is named."""
         return api_home.read_stations(self.query_one("#stations", TextArea).text)
 
     @work(thread=True, exclusive=True)
-    def search(self, text: str, stations: tuple[NewStation, ...]) -> None:
-        """Look for grids in a thread."""
-        here = any(s.lat is not None or s.e is not None for s in stations)
-        grids = api_home.find_grids(text, stations)
-        self.post_message(self.GridsFound(grids, here=here))
+    def search(self, text: str, stations: str) -> None:
+        """Look for grids in a thread; the stations may be a long file."""
+        try:
+            placed = api_home.read_stations(stations)
+        except SurveyError:
+            placed = ()  # not typed to their end yet
+        local = any(s.lat is not None for s in placed)
+        found = None
+        if len(text) >= 3 or (not text and local):
+            found = api_home.find_grids(text, placed)
+        here = local or any(s.e is not None for s in placed)
+        self.post_message(self.GridsFound(found, here=here))
 
     def on_new_project_screen_grids_found(self, message: GridsFound) -> None:
-        """Show the grids."""
+        """Show the grids, if any were asked for."""
         options = self.query_one("#grids", OptionList)
+        if message.grids is None:
+            options.display = False
+            self.query_one("#grids-told", Static).update("")
+            return
         options.clear_options()
         options.add_options([Option(f"{g.code}  {g.name}", id=g.code) for g in message.grids])
         exact = any(g.code == typed(self, "grid") for g in message.grids)
