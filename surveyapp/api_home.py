@@ -112,6 +112,13 @@ def keep_theme(theme: str) -> None:
     write_settings(replace(read_settings(), theme=theme))
 
 
+def keep_sound(*, sound: bool) -> Settings:
+    """Remember whether the countdown may be heard."""
+    settings = replace(read_settings(), sound=sound)
+    write_settings(settings)
+    return settings
+
+
 def samples() -> tuple[str, ...]:
     """Names of the measured samples."""
     from surveyapp.io.locations import sample_names

@@ -51,6 +51,7 @@ class SurveyApp(App[int]):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("f1", "help", texts.KEY_HELP),
         Binding("f9", "next_theme", texts.KEY_THEME, show=False),
+        Binding("f10", "sound", texts.KEY_SOUND, show=False),
         Binding("ctrl+q", "quit", texts.KEY_QUIT, priority=True, show=False),
     ]
 
@@ -105,6 +106,11 @@ class SurveyApp(App[int]):
         names = [theme.name for theme in THEMES]
         self.theme = names[(names.index(self.theme) + 1) % len(names)]
         api_home.keep_theme(self.theme)
+
+    def action_sound(self) -> None:
+        """Let the countdown be heard, or not; remembered."""
+        self.settings = api_home.keep_sound(sound=not self.settings.sound)
+        self.notify(texts.SOUND_ON if self.settings.sound else texts.SOUND_OFF, markup=False)
 
     def open_folder(self, folder: str) -> None:
         """Open a project and remember it."""

@@ -178,6 +178,9 @@ MISSING_FIELD: Final = "{field} is missing"
 
 # keys; what is too short for the palette has a longer name below
 KEY_QUIT: Final = "Quit"
+KEY_SOUND: Final = "Sound of the countdown: on, off"
+SOUND_ON: Final = "the countdown is heard"
+SOUND_OFF: Final = "the countdown is silent"
 KEY_THEME: Final = "Next theme: dark, light, high contrast"
 KEY_BACK: Final = "Back"
 KEY_TABS: Final = "Page"
@@ -360,7 +363,8 @@ IMPROVE: Final = {
 }
 R_CONSTANTS: Final = "Instrument constant through time"
 R_WARNINGS: Final = "To know"
-R_POINTS: Final = "Turning points"
+R_POINTS: Final = "Readings and their residuals"
+R_DIVISIONS: Final = "{value} div"
 R_LIMIT: Final = "limit {limit}"
 R_NO_LINE: Final = "no gyro north from this session"
 R_TRUE: Final = "true azimuth, {reference}"

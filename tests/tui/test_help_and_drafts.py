@@ -215,3 +215,16 @@ def test_a_bare_code_is_an_epsg_code(tmp_path: Path) -> None:
     form = api_home.NewProject(folder=str(tmp_path / "p"), name="p", crs="4546")
     folder = api_home.create_project(form)
     assert 'crs = "EPSG:4546"' in (Path(folder) / "project.toml").read_text(encoding="utf-8")
+
+
+async def test_the_sound_is_switched_and_remembered(monkeypatch: pytest.MonkeyPatch) -> None:
+    bells: list[int] = []
+    app = SurveyApp(None)
+    monkeypatch.setattr(app, "bell", lambda: bells.append(1))
+    async with app.run_test(size=SMALL) as pilot:
+        await settle(pilot)
+        app.on_run_pane_near()
+        await pilot.press("f10")
+        app.on_run_pane_near()
+    assert bells == [1]
+    assert not SurveyApp(None).settings.sound

@@ -17,7 +17,13 @@ from surveyapp.domain.results import (
 from surveyapp.tui import texts
 from surveyapp.tui.views.checks import ordered_checks, quantity_text, verdict_word
 from surveyapp.tui.views.constants import constant_told
-from surveyapp.tui.views.form import angle_text, arcsec_text, interval_text, sigma_text
+from surveyapp.tui.views.form import (
+    angle_text,
+    arcsec_text,
+    interval_text,
+    number_text,
+    sigma_text,
+)
 from surveyapp.tui.views.lines import Row, budget_rows, chain_rows, helps_text
 from surveyapp.tui.views.session import session_details
 from surveyapp.tui.widgets.constants import draw_constant
@@ -45,6 +51,9 @@ def result_headline(result: OrientationResult, session: str, unit: AngleUnit) ->
     own = next(item for item in result.sessions if item.id == session)
     if own.gyro_north is not None:
         return _headline(own.station, texts.COL_NORTH, own.gyro_north, unit)
+    if own.main is not None and own.main.gyro_azimuth is not None:
+        name = f"{own.station}-{own.main.target}"
+        return _headline(name, texts.COL_AZIMUTH, own.main.gyro_azimuth, unit)
     return texts.R_NO_LINE
 
 
@@ -120,13 +129,17 @@ def _chain(project: Project, own: SessionResult, line: LineResult) -> list[Row]:
 
 
 def _points(own: SessionResult, unit: AngleUnit) -> list[tuple[str, ...]]:
+    """Readings with their residuals, on the circle or on the scale."""
     rows: list[tuple[str, ...]] = []
     for point in own.points:
+        name = f"{point.index + 1} {point.side}"
         if own.method in ("tracking", "automatic"):
-            reading = format_angle(point.observed, unit)
-            rows.append(
-                (f"{point.index + 1} {point.side}", reading, arcsec_text(point.residual, sign=True))
-            )
+            residual = arcsec_text(point.residual, sign=True)
+            rows.append((name, format_angle(point.observed, unit), residual))
+        else:
+            observed = number_text(point.observed, 2, sign=True)
+            residual = number_text(point.residual, 3, sign=True)
+            rows.append((name, texts.R_DIVISIONS.format(value=observed), residual))
     return rows
 
 
