@@ -170,7 +170,7 @@ def begin(
     SurveyError
         If the folder holds anything, or the speed is impossible.
     """
-    from surveyapp.core.practice import simulate_instrument
+    from surveyapp.core.practice_setup import simulate_instrument
 
     if not SLOWEST <= speed <= FASTEST:
         raise SurveyError(

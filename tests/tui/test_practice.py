@@ -24,8 +24,8 @@ from surveyapp.core.practice import (
     Looked,
     PracticeOutcome,
     SuspendedInstrument,
-    simulate_instrument,
 )
+from surveyapp.core.practice_setup import simulate_instrument
 from surveyapp.core.simulate.turning_points import timetable
 from surveyapp.core.steps import Step
 from surveyapp.domain.project import Method
