@@ -23,7 +23,10 @@ STEPS = 160
 
 @dataclass(frozen=True)
 class Truth:
-    """What nature does in one line of the table; sizes in arc-seconds and half swings."""
+    """What nature does in one line of the table; sizes in arc-seconds and half swings.
+
+    ``amplitude`` is the first one [deg], within a tenth.
+    """
 
     name: str
     size: int
@@ -41,6 +44,7 @@ class Truth:
     ar1: float = 0.0
     noise: float = 4.0
     rounding: float = 0.1
+    amplitude: float = 1.0
     reference: tuple[float | None, float | None, float | None] = field(default=(None, None, None))
 
 
@@ -57,7 +61,7 @@ def simulate(truth: Truth, runs: int, seed: int) -> Runs:
     """Integrate a'' + 2 k a' + b a'|a'| + f sign(a') + pi^2 sin(a - N) = 0, read its turns."""
     g = np.random.default_rng(seed)
     n = truth.size
-    first = np.radians(g.uniform(0.9, 1.1, runs)) * g.choice([-1.0, 1.0], runs)
+    first = np.radians(truth.amplitude * g.uniform(0.9, 1.1, runs)) * g.choice([-1.0, 1.0], runs)
     decay = g.uniform(0.012, 0.02, runs)
     north = midpoint(truth, runs, g)
     temperature = g.uniform(10.0, 25.0, (runs, 1)) + temperature_walk(n, runs, g)
@@ -181,7 +185,7 @@ def campaign_problem(truth: CampaignTruth, seed: int) -> tuple[Problem, float]:
     g = np.random.default_rng(seed)
     n = truth.size
     block = np.repeat(np.arange(n), 3)[:n]
-    dates = np.sort(g.uniform(0.0, 3.0 * n, n))
+    dates = np.sort(g.choice(3 * n, n, replace=False)) + 0.3
     days = dates[block] + np.tile([0.0, 0.05, 0.1], n)[:n]
     season = 8.0 * np.sin(2.0 * np.pi * days / 365.25 + g.uniform(0.0, 6.28))
     theta = 12.0 + season + (3.0 * g.standard_normal(n))[block] + 0.5 * g.standard_normal(n)

@@ -23,6 +23,8 @@ from surveyapp.api_office import export_zip as export_zip
 from surveyapp.api_office import reopen as reopen
 from surveyapp.api_office import report as report
 from surveyapp.api_office import report_text as report_text
+from surveyapp.api_unfinished import unfinished as unfinished
+from surveyapp.api_unfinished import without_unfinished as without_unfinished
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import Project
@@ -91,24 +93,43 @@ def orient(
     Raises
     ------
     SurveyError
-        If the project cannot be used, if a session or line of that name does not exist, or if a
-        line asked for has no azimuth.
+        If the project cannot be used, if a session or line of that name does not exist, if a line
+        asked for has no azimuth, or if no session of the project is finished.
+
+    Notes
+    -----
+    Sessions that are still being observed are left out, with a warning ``session_unfinished``.
     """
+    if not isinstance(project, Project):
+        project = open_project(project)
+    if session is not None:
+        _require(session, [item.id for item in project.sessions], "session")
+    kept = without_unfinished(project, keep=() if session is None else (session,))
+    if not kept.sessions:
+        kept = project
+    return _oriented(kept, session=session, line=line, estimator=estimator)
+
+
+def _oriented(
+    project: Project,
+    *,
+    session: str | None = None,
+    line: str | None = None,
+    estimator: str | None = None,
+) -> OrientationResult:
+    """Orient every session of a project; it may have none."""
     from dataclasses import replace
 
     from surveyapp.core.outcome import outcome
     from surveyapp.io.project_checks import project_checks
 
-    if not isinstance(project, Project):
-        project = open_project(project)
-    if session is not None:
-        _require(session, [item.id for item in project.sessions], "session")
     computed = _computed(project, estimator=estimator, only=session)
     checks = project_checks(project, computed)
     result = outcome(computed, software=SOFTWARE, only=session, more_checks=checks)
     if line is not None:
         names = {f"{item.station}-{item.target}": item for item in result.lines}
-        _require(line, names, "line")
+        told = [item.text for item in project.warnings if item.code == "session_unfinished"]
+        _require(line, names, "line", "; ".join(told))
         if names[line].true_azimuth is None:
             raise SurveyError(
                 Problem(
@@ -123,7 +144,7 @@ def orient(
     return result
 
 
-def _require(name: str, known: Iterable[str], kind: str) -> None:
+def _require(name: str, known: Iterable[str], kind: str, more: str = "") -> None:
     names = list(known)
     if name not in names:
         raise SurveyError(
@@ -132,7 +153,7 @@ def _require(name: str, known: Iterable[str], kind: str) -> None:
                 where=f"--{kind}",
                 found=name,
                 expected=f"the name of a {kind} of the project",
-                hint=nearest_names(name, names),
+                hint=". ".join(filter(None, [nearest_names(name, names), more])),
             )
         )
 
@@ -150,16 +171,16 @@ def check(project: Project | Folder) -> tuple[Check, ...]:
     try:
         if not isinstance(project, Project):
             project = open_project(project)
-        return _with_traverses(project, orient(project).checks)
+        if project.tables.get("traverse"):
+            return _with_traverses(project, _oriented(without_unfinished(project)).checks)
+        return orient(project).checks
     except SurveyError as error:
         folder = project.path if isinstance(project, Project) else project
         raise SurveyError([*changed_after_closing(Path(folder)), *error.problems]) from None
 
 
 def _with_traverses(project: Project, checks: tuple[Check, ...]) -> tuple[Check, ...]:
-    """Checks of the orientation with those of the traverses, where there are any."""
-    if not project.tables.get("traverse"):
-        return checks
+    """Checks of the orientation with those of the traverses."""
     from surveyapp.io.traverse_checks import traverse_checks
     from surveyapp.io.traverseheader import traverse_headers
 
@@ -218,6 +239,7 @@ def network(source: Project | Folder, *, traverse: str | None = None) -> Network
     from dataclasses import replace
 
     from surveyapp.core.network.oriented import oriented_lines
+    from surveyapp.core.unfinished import waiting_sides
     from surveyapp.io.importers.gkf import read_gkf
     from surveyapp.io.traversebook import network_of
 
@@ -226,9 +248,11 @@ def network(source: Project | Folder, *, traverse: str | None = None) -> Network
         if path.suffix.lower() in (".gkf", ".xml") or path.is_file():
             return read_gkf(path)
         source = open_project(path)
-    lines, constants, warnings = oriented_lines(orient(source).lines if source.sessions else ())
-    found = network_of(source, traverse, lines, constants)
-    return replace(found, warnings=(*found.warnings, *warnings))
+    kept = without_unfinished(source)
+    left_out = kept.warnings[len(source.warnings) :]
+    lines, constants, warnings = oriented_lines(_oriented(kept).lines if kept.sessions else ())
+    found = network_of(source, traverse, lines, constants, waiting_sides(source, kept))
+    return replace(found, warnings=(*found.warnings, *warnings, *left_out))
 
 
 def models() -> tuple[InstrumentCard, ...]:
@@ -413,8 +437,9 @@ def diagnose(
     if not isinstance(project, Project):
         project = open_project(project)
     own = () if effects is None else load_effects(Path(effects))
+    kept = without_unfinished(project, keep=[name for name in (session, confirm) if name])
     return diagnose_project(
-        _computed(project),
+        _computed(kept if kept.sessions else project),
         Request(session, campaign, confirm, own, traverse),
         folder=Path(project.path) if project.path else None,
         adopt=adopt,
@@ -435,7 +460,8 @@ def subjects(project: Project | Folder) -> tuple[tuple[SubjectKeyword, str], ...
         "--campaign": "campaign",
         "--traverse": "traverse",
     }
-    return tuple((keywords[item.option], item.id) for item in subjects_of(project))
+    kept = without_unfinished(project)
+    return tuple((keywords[item.option], item.id) for item in subjects_of(kept))
 
 
 def _computed(

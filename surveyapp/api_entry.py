@@ -14,7 +14,7 @@ from typing import Final
 
 from surveyapp.api_session import NewRow, Observation
 from surveyapp.core.entry import EntryError, complete_angle, complete_number
-from surveyapp.core.plausible import Question, doubt_sight, doubt_turning_point
+from surveyapp.core.plausible import Question, doubt_scale_point, doubt_sight, doubt_turning_point
 from surveyapp.core.progress import Progress
 from surveyapp.core.steps import Step, kinds_of, next_sight
 from surveyapp.domain.readings import QUANTITY, Face, Quantity, Reading, ReadingKind, Side
@@ -30,6 +30,7 @@ LARGEST: Final = {
     Quantity.SUPPLY: ("V", 1e5),
 }
 """Unit and largest possible magnitude of what is no angle."""
+TURNING: Final = (ReadingKind.REVERSAL, ReadingKind.SCALE_REVERSAL)
 _SUPPLY: Final = re.compile(r"(.*?)\s*(mA|Hz|V)?", re.IGNORECASE)
 _SUPPLY_UNITS: Final = {"ma": "mA", "hz": "Hz", "v": "V"}
 _AGO: Final = re.compile(r"-\s*(\d+(?:\.\d*)?)\s*s?")
@@ -113,8 +114,8 @@ def expected(
         target, face = next_sight(_as_sights(sights), observation.targets)
         near = _near_sight(observation, target, face) if chosen is ReadingKind.BACKSIGHT else None
         return Expected(step, chosen, face, target, near=near, number=number)
-    if chosen is ReadingKind.REVERSAL:
-        return _expected_point(step, rows, progress)
+    if chosen in TURNING:
+        return _expected_point(step, rows, progress, chosen)
     same = [row for row in rows if row.kind is chosen]
     near = same[-1].value if same and QUANTITY[chosen] is Quantity.ANGLE else None
     side = _alternate(same[-1]) if same else None
@@ -138,23 +139,23 @@ def _alternate(row: Reading) -> Side | None:
     return Side.LEFT if row.side is Side.RIGHT else Side.RIGHT
 
 
-def _expected_point(step: Step, rows: tuple[Reading, ...], progress: Progress | None) -> Expected:
-    swing = [r for r in rows if r.kind in (ReadingKind.REVERSAL, ReadingKind.MISSED)]
-    points = [row for row in swing if row.kind is ReadingKind.REVERSAL]
+def _expected_point(
+    step: Step, rows: tuple[Reading, ...], progress: Progress | None, kind: ReadingKind
+) -> Expected:
+    """The next turning point: its side and the leading part of its reading from the forecast."""
+    swing = [r for r in rows if r.kind in (kind, ReadingKind.MISSED)]
+    points = [row for row in swing if row.kind is kind]
     number = len(swing) + 1
+    circle = kind is ReadingKind.REVERSAL
     progress = of_this_book(progress, points)
     forecast = progress.next if progress is not None else None
     if progress is None or forecast is None:
-        near = swing[-2].value if len(swing) > 1 else None
-        return Expected(step, ReadingKind.REVERSAL, near=near, number=number)
+        near = swing[-2].value if circle and len(swing) > 1 else None
+        side = None if circle or not points else _alternate(swing[-1])
+        return Expected(step, kind, side=side, near=near, number=number)
     side = Side(forecast.side) if len(points) > 1 else None
-    return Expected(
-        step,
-        ReadingKind.REVERSAL,
-        side=side,
-        near=progress.next_reading,
-        number=number,
-    )
+    near = progress.next_reading if circle else None
+    return Expected(step, kind, side=side, near=near, number=number)
 
 
 def of_this_book(progress: Progress | None, points: list[Reading]) -> Progress | None:
@@ -281,11 +282,19 @@ def _questions(
         series = [row for row in sights if row in here]
         earlier = [row for row in sights if row not in here]
         return doubt_sight(value, what.face, series=series, earlier=earlier)
-    if what.kind is not ReadingKind.REVERSAL or progress is None or progress.next is None:
+    if what.kind not in TURNING or progress is None or progress.next is None:
         return ()
-    if of_this_book(progress, list(observation.book.of_kind(ReadingKind.REVERSAL))) is None:
+    if of_this_book(progress, list(observation.book.of_kind(what.kind))) is None:
         return ()
     middle = progress.middle
+    if what.kind is ReadingKind.SCALE_REVERSAL:
+        return doubt_scale_point(
+            value,
+            middle=middle,
+            predicted=progress.next_reading,
+            half_width=progress.next.half_width,
+            side=what.side,
+        )
     return doubt_turning_point(
         value,
         middle=None if middle is None else wrap_two_pi(progress.origin + middle),

@@ -15,7 +15,6 @@ from typing import Final
 from surveyapp import api
 from surveyapp.core.progress import Progress
 from surveyapp.core.steps import (
-    NEEDED_POINTS,
     STEP_NOTE,
     Step,
     StepState,
@@ -24,6 +23,7 @@ from surveyapp.core.steps import (
     step_states,
     swing_begun,
 )
+from surveyapp.core.target import Target, target_of
 from surveyapp.domain.project import OrientationSession, Project
 from surveyapp.domain.readings import FieldBook, Reading, ReadingKind
 from surveyapp.domain.results import OrientationResult
@@ -33,10 +33,27 @@ from surveyapp.io.clock import SessionClock, Stamp, local_now, steady_seconds
 from surveyapp.io.fieldbook import append_row, book_columns, read_field_book
 from surveyapp.io.lock import ProjectLock
 from surveyapp.io.seals import is_closed
-from surveyapp_models.angles import ARCSEC
 
-WANTED_KEY: Final = "wanted_interval_arcsec"
-"""Key of an [[orientation]] table: half-width of the 95 % interval of gyro north to stop at."""
+FARTHEST: Final = 10.0
+"""Periods beyond which a countdown is none: its moments stand on another clock than the session."""
+
+
+@dataclass(frozen=True, slots=True)
+class Aim:
+    """What a session is observed for.
+
+    Parameters
+    ----------
+    target : Target or None
+    book : str
+        Id of the project's rule book, empty without one: tells why there is no target.
+    problem : str
+        Why the rule book cannot be used, empty if it can.
+    """
+
+    target: Target | None
+    book: str = ""
+    problem: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -278,18 +295,29 @@ class Observation:
         else:
             self.record(NewRow(ReadingKind.NOTE, note=f"{STEP_NOTE}{step}"))
 
-    def wanted_interval(self) -> float | None:
-        """Half-width of the 95 % interval to stop at [rad], None where nobody has named one."""
-        value = dict(self.session.override).get(WANTED_KEY)
-        return float(value) * ARCSEC if isinstance(value, int | float) else None
+    def aim(self) -> Aim:
+        """Target of this session: its own wanted interval, else what the rule book tells."""
+        from surveyapp.io.project_checks import project_rule_book
+
+        own = target_of(self.session, None)
+        if own is not None:
+            return Aim(own)
+        try:
+            book = project_rule_book(self.project)
+        except SurveyError as error:
+            return Aim(None, self.project.rule_book or "", error.problems[0].what)
+        return Aim(target_of(self.session, book), "" if book is None else book.id)
 
     def remaining_s(self, progress: Progress) -> float | None:
-        """Seconds to the next turning point, None where its moment is not known or long past."""
-        if progress.next is None or progress.next.moment_s is None:
+        """Seconds to the next passage or turning point; None where not known or long past."""
+        due, period = progress.due_s, progress.period_s
+        if due is None:
             return None
-        remaining = progress.next.moment_s - self.clock.stamp().elapsed_s
-        late = progress.period_s is not None and -remaining > 0.5 * progress.period_s
-        return None if late else remaining
+        remaining = due - self.clock.stamp().elapsed_s
+        if period is None:
+            return remaining
+        late = 0.25 if progress.passage is not None else 0.5
+        return remaining if -late * period <= remaining <= FARTHEST * period else None
 
     def close(self) -> None:
         """Give the right to write back."""
@@ -297,7 +325,7 @@ class Observation:
 
 
 def progress(project: Project, session: str) -> Progress:
-    """What a tracking session says so far: forecast, interval, alarm.
+    """What a session says so far: forecast, interval, alarm.
 
     Parameters
     ----------
@@ -307,7 +335,7 @@ def progress(project: Project, session: str) -> Progress:
         Id of the session.
     """
     from surveyapp.core.geodesy import open_grid, position_of
-    from surveyapp.core.progress import progress_of
+    from surveyapp.core.observing import progress_of
 
     item = project.session(session)
     grid = open_grid(project.crs) if project.crs is not None else None
@@ -317,44 +345,21 @@ def progress(project: Project, session: str) -> Progress:
     return progress_of(item, card, rng, latitude=position.latitude)
 
 
-def orient_observed(project: Project) -> tuple[OrientationResult, tuple[str, ...]]:
-    """Orient a project whose newest sessions are still being observed.
-
-    Parameters
-    ----------
-    project : Project
-
-    Returns
-    -------
-    result : OrientationResult
-        As ``api.orient`` gives it without the sessions that have too few readings yet.
-    left_out : tuple of str
-        Their ids; empty where the whole project could be oriented.
+def orient_observed(project: Project) -> OrientationResult:
+    """Orient a project of which no session may be finished yet.
 
     Raises
     ------
     SurveyError
         If what has enough readings cannot be oriented.
     """
+    kept = api.without_unfinished(project)
     try:
-        return api.orient(project), ()
+        return api.orient(project)
     except SurveyError:
-        enough = {
-            item.id
-            for item in project.sessions
-            if _swing_count(item) >= (1 if item.method == "automatic" else NEEDED_POINTS)
-        }
-        if len(enough) == len(project.sessions):
+        if kept.sessions:
             raise
-    kept = tuple(item for item in project.sessions if item.id in enough)
-    left_out = tuple(item.id for item in project.sessions if item.id not in enough)
-    return api.orient(replace(project, sessions=kept)), left_out
-
-
-def _swing_count(session: OrientationSession) -> int:
-    quiet = (ReadingKind.CLAMP, ReadingKind.MISSED)
-    rows = rows_of(session.book, Step.SWING, session.method)
-    return sum(row.kind not in quiet for row in rows)
+    return api.orient(kept)
 
 
 def write_record(folder: api.Folder) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from surveyapp.cli.orient import checks_text
+from surveyapp.cli.orient import checks_text, warnings_text
 from surveyapp.cli.output import print_json
 
 
@@ -19,9 +19,12 @@ def run(options: argparse.Namespace) -> int:
     from surveyapp import api
 
     checks = api.check(options.folder)
+    warnings = api.unfinished(options.folder)
     if options.json:
         rows = [check.to_dict() for check in checks]
-        print_json({"schema": "surveyapp.check/1", "checks": rows})
+        told = [item.to_dict() for item in warnings]
+        print_json({"schema": "surveyapp.check/1", "checks": rows, "warnings": told})
     else:
-        print(checks_text(checks) or "Nothing in this project can be checked yet.")
+        text = checks_text(checks) or "Nothing in this project can be checked yet."
+        print("\n\n".join(filter(None, [text, warnings_text(warnings)])))
     return int(any(check.confirmed and check.passed is False for check in checks))

@@ -49,7 +49,7 @@ def orientation_text(result: OrientationResult, unit: AngleUnit) -> str:
     parts = [heading(f"{result.project}: orientation")]
     parts += [_sessions(result, unit), _gyro_azimuths(result, unit), _constants(result)]
     parts += [_line(line, unit) for line in result.lines]
-    parts += [checks_text(result.checks, told=result.warnings), warnings_text(result)]
+    parts += [checks_text(result.checks, told=result.warnings), warnings_text(result.warnings)]
     return "\n\n".join(part for part in parts if part)
 
 
@@ -223,9 +223,9 @@ def _verdict(check: Check) -> str:
     return "open" if check.passed is None else "met"
 
 
-def warnings_text(result: OrientationResult) -> str:
+def warnings_text(warnings: Sequence[ResultWarning]) -> str:
     """The warnings, one a paragraph."""
-    if not result.warnings:
+    if not warnings:
         return ""
-    texts = [paragraph(f"{item.code}: {item.text}") for item in result.warnings]
+    texts = [paragraph(f"{item.code}: {item.text}") for item in warnings]
     return "Warnings\n" + "\n".join(texts)

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from surveyapp.core.campaign_columns import Circumstances, circumstances, columns_of
+from surveyapp.core.campaign_columns import Circumstances, circumstances, columns_of, in_blocks
 from surveyapp.core.geodesy import Position
 from surveyapp.core.session import ReducedSession, TargetReduction
 from surveyapp.core.uncertain import Source, Uncertain, combine
@@ -66,14 +66,16 @@ def apply_adopted(
         for j, target in enumerate(item.targets)
         if target.gyro_azimuth is not None
     ]
-    facts = [
-        circumstances(
-            reduced[place.session],
-            reduced[place.session].targets[place.target],
-            latitude=positions[reduced[place.session].session.station].latitude,
-        )
-        for place in places
-    ]
+    facts = in_blocks(
+        [
+            circumstances(
+                reduced[place.session],
+                reduced[place.session].targets[place.target],
+                latitude=positions[reduced[place.session].session.station].latitude,
+            )
+            for place in places
+        ]
+    )
     targets = {place: reduced[place.session].targets[place.target] for place in places}
     warnings: list[ResultWarning] = []
     for effect in instrument.effects:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,8 @@ from surveyapp.domain.readings import SWING_KINDS, ReadingKind
 Floats = NDArray[np.float64]
 
 SECONDS_PER_DAY = 86400.0
+BLOCK_GAP_DAYS = 0.25
+"""A pause of six hours ends a block: a shift is one block, also over midnight of any zone."""
 NUMBERS = ("temperature_c", "latitude", "line_reading", "north_reading", "running_s")
 
 
@@ -37,7 +39,7 @@ class Circumstances:
     line : str
         ``station-target``.
     block : str
-        The day, empty without one.
+        The block of work, named by the day on which it began (UTC); empty without a day.
     temperature_c : float or None
         Mean of the temperatures read.
     latitude : float or None
@@ -62,7 +64,7 @@ class Circumstances:
 def circumstances(
     item: ReducedSession, target: TargetReduction, *, latitude: float | None
 ) -> Circumstances:
-    """Collect the circumstances of one target of a reduced session."""
+    """Collect the circumstances of one target of a reduced session; ``in_blocks`` names blocks."""
     session = item.session
     stamp = session_timestamp(session)
     if stamp is None and session.date is not None:
@@ -73,13 +75,45 @@ def circumstances(
         elapsed_days=days,
         order=session.order,
         line=f"{session.station}-{target.target}",
-        block="" if days is None else f"day {math.floor(days)}",
+        block="",
         temperature_c=session_temperature(session),
         latitude=latitude,
         line_reading=None if target.line_reading is None else target.line_reading.value,
         north_reading=None if north is None else north.value,
         running_s=_running(session),
     )
+
+
+def block_names(days: Sequence[float | None]) -> list[str]:
+    """Name the block of work of each determination, by the day on which the block began.
+
+    Parameters
+    ----------
+    days : sequence of float or None
+        Days since 1970-01-01 UTC, in any order; None where unknown.
+
+    Returns
+    -------
+    list of str
+        ``day 16732``; a second block that begins on the same day is ``day 16732 b``.
+    """
+    known = sorted({day for day in days if day is not None})
+    names: dict[float, str] = {}
+    used: dict[int, int] = {}
+    name = ""
+    for i, day in enumerate(known):
+        if i == 0 or day - known[i - 1] > BLOCK_GAP_DAYS:
+            first = math.floor(day)
+            used[first] = used.get(first, 0) + 1
+            name = f"day {first}" + ("" if used[first] == 1 else f" {chr(96 + used[first])}")
+        names[day] = name
+    return ["" if day is None else names[day] for day in days]
+
+
+def in_blocks(items: Sequence[Circumstances]) -> tuple[Circumstances, ...]:
+    """The same circumstances with their block of work, which only all of them together tell."""
+    names = block_names([item.elapsed_days for item in items])
+    return tuple(replace(item, block=name) for item, name in zip(items, names, strict=True))
 
 
 def session_temperature(session: OrientationSession) -> float | None:

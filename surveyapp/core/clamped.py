@@ -29,6 +29,8 @@ SCALE_RANGE_DIV = 15.0
 """Half length of the gyro scale (physics.md 2.6: +-15 div)."""
 NOMINAL_SIGMA_DIV, NOMINAL_SIGMA_S = 0.1, 0.2
 """Relative weights where the card states none (physics.md 2.2, 2.3)."""
+LEAST_OF_SCALE = {"amplitude": 3, "transit": 2}
+"""Fewest turning points on the scale that a method lives on."""
 LEAST_FOR_RESOLUTION = 4
 SAME_CLAMPING = math.radians(0.1)
 
@@ -97,8 +99,28 @@ def circle_resolution(session: OrientationSession, rows: Sequence[Reading]) -> f
     return float(size * 10.0**-decimals)
 
 
-def observe(session: OrientationSession, card: InstrumentCard) -> Observed:
-    """Collect scale readings and passages, number the turning points, check what is impossible."""
+@dataclass(frozen=True, slots=True)
+class NumberedRows:
+    """Rows of a clamped swing with the number of the turning point at or before them.
+
+    Parameters
+    ----------
+    readings, passages : tuple of (int, Reading)
+        The first turning point of the book has the number 0; a passage before it -1.
+    last : int
+        Number of the last turning point, read or missed or implied; -1 before the first.
+    at_passage : bool
+        Whether the last row is a passage: a turning point comes next.
+    """
+
+    readings: tuple[tuple[int, Reading], ...]
+    passages: tuple[tuple[int, Reading], ...]
+    last: int
+    at_passage: bool
+
+
+def number_rows(session: OrientationSession) -> NumberedRows:
+    """Number the scale turning points, and the passages by the turning point before each."""
     kinds = (ReadingKind.SCALE_REVERSAL, ReadingKind.MISSED, ReadingKind.TRANSIT)
     turning = -1
     readings: list[tuple[int, Reading]] = []
@@ -115,11 +137,36 @@ def observe(session: OrientationSession, card: InstrumentCard) -> Observed:
         last = None
         if row.kind is ReadingKind.SCALE_REVERSAL:
             readings.append((turning, row))
-    need_points(session, found=len(readings), needed=2, kind="scale_reversal")
-    _check_scale(session, [row for _, row in readings])
-    first = readings[0][0]
-    passage_rows = tuple(row for _, row in passages)
-    times = moments(passage_rows) if passage_rows else np.empty(0)
+    return NumberedRows(tuple(readings), tuple(passages), turning, last is not None)
+
+
+def triples_of(after: Sequence[float]) -> list[int]:
+    """Places of the first of every three passages in a row."""
+    return [
+        i
+        for i in range(len(after) - 2)
+        if after[i + 2] - after[i] == 2 and after[i + 1] - after[i] == 1
+    ]
+
+
+def check_rows(session: OrientationSession) -> None:
+    """Refuse what is impossible in a clamped swing, however few its rows are so far.
+
+    Raises
+    ------
+    SurveyError
+        For different clampings, a reading beyond the scale, passages without time or out of order.
+    """
+    if session.book.of_kind(ReadingKind.CLAMP):
+        clamp_reading(session)
+    check_scale(session)
+    passages = number_rows(session).passages
+    times = _passage_times(session, tuple(row for _, row in passages))
+    _check_order(session, times, np.array([turn for turn, _ in passages], dtype=np.float64))
+
+
+def _passage_times(session: OrientationSession, rows: tuple[Reading, ...]) -> Floats:
+    times = moments(rows) if rows else np.empty(0)
     if times is None:
         raise session_problem(
             session,
@@ -128,6 +175,20 @@ def observe(session: OrientationSession, card: InstrumentCard) -> Observed:
             expected="elapsed_s on every transit row",
             hint="A passage without its moment says nothing: strike it or add the time.",
         )
+    return times
+
+
+def observe(session: OrientationSession, card: InstrumentCard) -> Observed:
+    """Collect scale readings and passages, number the turning points, check what is impossible."""
+    check_scale(session)
+    rows = number_rows(session)
+    readings, passages = rows.readings, rows.passages
+    need_points(
+        session, found=len(readings), needed=LEAST_OF_SCALE["transit"], kind="scale_reversal"
+    )
+    first = readings[0][0]
+    passage_rows = tuple(row for _, row in passages)
+    times = _passage_times(session, passage_rows)
     after = np.array([turn - first for turn, _ in passages], dtype=np.float64)
     _check_order(session, times, after)
     swing = ClampedSwing(
@@ -148,21 +209,23 @@ def observe(session: OrientationSession, card: InstrumentCard) -> Observed:
             expected="turning points on both sides",
             hint="The amplitude is half the distance of the two sides.",
         )
-    swing = replace(swing, sides=swing.sides * _polarity(swing))
+    swing = replace(swing, sides=swing.sides * polarity(swing.readings, swing.sides))
     return Observed(swing, tuple(row for _, row in readings), passage_rows, estimate_period(swing))
 
 
-def _polarity(swing: ClampedSwing) -> float:
+def polarity(readings: Floats, sides: Floats) -> float:
     """-1 where the sides are written as east and west and the scale reads the other way, else +1.
 
     The fits take +1 for the larger reading; which way the scale reads stands in the sign of the
     scale value alone.
     """
-    right, left = swing.readings[swing.sides > 0], swing.readings[swing.sides < 0]
+    right, left = readings[sides > 0], readings[sides < 0]
     return -1.0 if float(right.mean()) < float(left.mean()) else 1.0
 
 
-def _check_scale(session: OrientationSession, rows: list[Reading]) -> None:
+def check_scale(session: OrientationSession) -> None:
+    """Refuse readings beyond the scale."""
+    rows = session.book.of_kind(ReadingKind.SCALE_REVERSAL)
     beyond = [row for row in rows if row.value is not None and abs(row.value) > SCALE_RANGE_DIV]
     if beyond:
         raise SurveyError(

@@ -30,6 +30,9 @@ HELD: Final = 0.995
 PERIOD_SHARE: Final = 0.02
 """Doubt of a card's period at another latitude and spin, as a share of it (physics.md 1.2: one
 degree of latitude is 0.5 to 2.4 %, one percent of spin is 0.5 %)."""
+PERIOD_SHARE_ANYWHERE: Final = 0.15
+"""The same where the latitude is not known: from 47 degrees to the equator T2 loses 15 %, to 60
+degrees it gains 13 % (physics.md 1.2, table)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +88,14 @@ class Timing:
         return self.start_s + self.half_period_s * index, math.sqrt(variance)
 
 
-def fit_timing(index: Floats, moments: Floats, period_s: float | None) -> Timing | None:
+def period_share(latitude: float | None) -> float:
+    """Doubt of a card's period at a latitude [rad], as a share of it."""
+    return PERIOD_SHARE_ANYWHERE if latitude is None else PERIOD_SHARE
+
+
+def fit_timing(
+    index: Floats, moments: Floats, period_s: float | None, *, share: float = PERIOD_SHARE
+) -> Timing | None:
     """Combine the known period with the moments of the points.
 
     Parameters
@@ -93,7 +103,9 @@ def fit_timing(index: Floats, moments: Floats, period_s: float | None) -> Timing
     index, moments : ndarray, shape (n,)
         Numbers and moments [s] of the points that have one.
     period_s : float or None
-        T1 at this latitude [s].
+        T1 at this latitude [s] (T2 of a clamped swing).
+    share : float
+        Its doubt, as a share of it.
 
     Returns
     -------
@@ -107,7 +119,7 @@ def fit_timing(index: Floats, moments: Floats, period_s: float | None) -> Timing
         rows = [np.array([1.0, k]) / sigma for k in index.tolist()]
         right = [float(moment - moments[0]) / sigma for moment in moments.tolist()]
         if period_s is not None:
-            doubt = 0.5 * PERIOD_SHARE * period_s
+            doubt = 0.5 * share * period_s
             rows.append(np.array([0.0, 1.0 / doubt]))
             right.append(0.5 * period_s / doubt)
         basis, values = np.vstack(rows), np.array(right)

@@ -14,7 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.core.cardphysics import card_at
-from surveyapp.core.clamped import Observed, clamp_reading, observe, session_problem
+from surveyapp.core.clamped import (
+    LEAST_OF_SCALE,
+    Observed,
+    clamp_reading,
+    observe,
+    session_problem,
+    triples_of,
+)
 from surveyapp.core.goodness import FitTest, Judge, goodness_of_fit
 from surveyapp.core.gyrofit import damping_left, design, fit_swing, schuler_means
 from surveyapp.core.reduction import (
@@ -80,16 +87,13 @@ def _transit_middle(
     times, after = swing.passages_s[usable], swing.after[usable]
     parity = 1.0 if int(swing.index[0]) % 2 == 0 else -1.0
     weights = np.zeros(times.size)
-    triples = 0
-    for i in range(times.size - 2):
-        if after[i + 2] - after[i] != 2 or after[i + 1] - after[i] != 1:
-            continue
+    triples = triples_of(after.tolist())
+    for i in triples:
         # between passages i and i+1 the swing is on the side of the turning point after[i] + 1
         side = float(swing.sides[0]) * parity * (1.0 if int(after[i] + 1) % 2 == 0 else -1.0)
         weights[i : i + 3] += side * np.array([-1.0, 2.0, -1.0])
-        triples += 1
-    need_points(session, found=triples and 3, needed=3, kind="transit (consecutive)")
-    weights /= triples
+    need_points(session, found=3 if triples else 0, needed=3, kind="transit (consecutive)")
+    weights /= len(triples)
     dt = float(weights @ (times - times[0]))
     right, left = swing.readings[swing.sides > 0], swing.readings[swing.sides < 0]
     amplitude = 0.5 * float(right.mean() - left.mean())
@@ -107,7 +111,12 @@ def _scale_middle(
 ) -> Middle:
     """Middle from scale turning points alone: Schuler means, or the damped fit."""
     swing = observed.swing
-    need_points(session, found=swing.readings.size, needed=3, kind="scale_reversal")
+    need_points(
+        session,
+        found=swing.readings.size,
+        needed=LEAST_OF_SCALE["amplitude"],
+        kind="scale_reversal",
+    )
     fit = fit_swing(swing.readings, swing.index, swing.sides)
     sigma = reading_sigma(
         count=swing.readings.size,

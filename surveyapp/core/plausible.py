@@ -42,14 +42,17 @@ class Question:
     ----------
     doubt : Doubt
     difference : float
-        From what was expected [rad].
+        From what was expected [rad], on the scale [div].
     limit : float
-        [rad].
+        In the same unit.
+    scale : bool
+        Whether it is a reading of the gyro scale.
     """
 
     doubt: Doubt
     difference: float
     limit: float
+    scale: bool = False
 
 
 def doubt_turning_point(
@@ -83,6 +86,22 @@ def doubt_turning_point(
     if abs(difference) > half_width:
         return (Question(Doubt.OUTSIDE_FORECAST, difference, half_width),)
     return ()
+
+
+def doubt_scale_point(
+    reading: float,
+    *,
+    middle: float | None,
+    predicted: float | None,
+    half_width: float | None,
+    side: Side | None,
+) -> tuple[Question, ...]:
+    """Compare a turning point on the scale [div] with its forecast, as ``doubt_turning_point``."""
+    if middle is not None and side is not None and (reading > middle) != (side is Side.RIGHT):
+        return (Question(Doubt.WRONG_SIDE, abs(reading - middle), 0.0, scale=True),)
+    if predicted is None or half_width is None or abs(reading - predicted) <= half_width:
+        return ()
+    return (Question(Doubt.OUTSIDE_FORECAST, reading - predicted, half_width, scale=True),)
 
 
 def doubt_sight(

@@ -1,55 +1,28 @@
-"""A tracking session while it is observed: what is known now, and what two more points would bring.
+"""What a session says while it is observed: the values that screens show. Nothing is computed here.
 
-It uses the reduction that ``orient`` uses, on the book as it stands; forecast and alarm come on
-top. The order of the computation stands here, the formulas in the modules it calls.
+The observation of every method fills one ``Progress``; ``surveyapp.core.observing`` chooses who.
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
-from surveyapp.core.cardphysics import card_at
-from surveyapp.core.forecast import (
-    PointForecast,
-    Timing,
-    fit_timing,
-    forecast_reading,
-    swing_curve,
-)
-from surveyapp.core.goodness import Judge
-from surveyapp.core.gyrofit import SwingFit, design, fit_swing, schuler_means, unwrap
-from surveyapp.core.reduction import ReadingSigma, reading_sigma
-from surveyapp.core.resolution import reading_resolution
-from surveyapp.core.run_alert import Alert, channels, find_trouble
-from surveyapp.core.sights import moments
-from surveyapp.core.statistics.distributions import student_quantile
-from surveyapp.core.tracking import LEAST_SQUARES_FROM, MIN_POINTS, reduce_tracking
-from surveyapp.domain.instrument import InstrumentCard
-from surveyapp.domain.project import OrientationSession
-from surveyapp.domain.readings import Reading, ReadingKind, Side
-from surveyapp.errors import SurveyError
-from surveyapp_models.angles import wrap_two_pi
-
-Floats = NDArray[np.float64]
-
-CURVE_STEPS: Final = 24
-"""Points of the drawn swing in one half swing."""
-AHEAD: Final = 2
-"""Half swings that are drawn beyond the last point."""
+from surveyapp.core.forecast import PointForecast
+from surveyapp.core.passages import PassageForecast
+from surveyapp.core.run_alert import Alert
 
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """One turning point of a run under observation; residuals and readings in radians."""
+    """One turning point, or round, of a run under observation.
+
+    Readings, offsets and residuals in radians, those of a scale in divisions.
+    """
 
     seq: int
     index: int
-    side: Literal["L", "R"]
+    side: Literal["L", "R", ""]
     reading: float
     offset: float
     residual: float | None
@@ -63,252 +36,67 @@ class Progress:
     ----------
     points : tuple of Point
         ``offset`` is the reading relative to ``origin``, unwrapped.
+    scale : bool
+        Whether points, forecast, curve, middle, Schuler means and channels are divisions of the
+        gyro scale and not angles.
     origin : float
-        First reading [rad].
+        First reading [rad]; 0 on the scale.
     next : PointForecast or None
-        None before the first point.
+        Next turning point; None before the first, and where nothing swings.
     next_reading : float or None
-        Its circle reading [rad] in [0, 2 pi).
+        Its circle reading [rad] in [0, 2 pi), or scale reading [div].
+    passage : PassageForecast or None
+        Next timed passage.
     period_s : float or None
-        T1 in force, from card, latitude and points.
+        T1 (clamped: T2) in force, from card, latitude and points.
     schuler_means : tuple of float
-        [rad].
+    time_differences : tuple of float
+        East minus west of every three passages in a row [s].
     north : float or None
-        Gyro north as ``orient`` would give it now [rad].
+        Gyro north (``delivered``: the gyro azimuth) as ``orient`` would give it now [rad].
+    delivered : bool
     interval95, interval95_two_more : float or None
         Half-width now, and expected after two more points [rad]; None where nothing tells.
     sigma_source : str or None
+    missing : str
+        Why there is no north although there are readings enough, empty where there is one.
     midpoint, amplitude : tuple of float
-        Residuals in the two channels [rad].
+        Residuals in the two channels.
     curve : tuple of (float, float)
-        The swing with its forecast: number of half swings, offset [rad].
+        The swing with its forecast: number of half swings, offset.
     middle : float or None
-        N relative to ``origin``, without the tape-zero correction [rad].
+        Middle of the swing relative to ``origin``, without the tape-zero correction.
     alert : Alert or None
     """
 
     points: tuple[Point, ...] = ()
+    scale: bool = False
     origin: float = 0.0
     next: PointForecast | None = None
     next_reading: float | None = None
+    passage: PassageForecast | None = None
     period_s: float | None = None
     schuler_means: tuple[float, ...] = ()
+    time_differences: tuple[float, ...] = ()
     north: float | None = None
+    delivered: bool = False
     interval95: float | None = None
     interval95_two_more: float | None = None
     sigma_source: str | None = None
+    missing: str = ""
     midpoint: tuple[float, ...] = ()
     amplitude: tuple[float, ...] = ()
     curve: tuple[tuple[float, float], ...] = ()
     middle: float | None = None
     alert: Alert | None = None
 
+    @property
+    def due_s(self) -> float | None:
+        """Moment of what is waited for: the next passage, else the next turning point [s]."""
+        if self.passage is not None:
+            return self.passage.moment_s
+        return None if self.next is None else self.next.moment_s
+
     def enough(self, target: float | None) -> bool:
         """Whether the interval is at or below the wanted one [rad]."""
         return target is not None and self.interval95 is not None and self.interval95 <= target
-
-
-def tracking_period(card: InstrumentCard, latitude: float | None) -> float | None:
-    """T1 [s] of an instrument at a latitude [rad], None where its card states none."""
-    period = card_at(card, latitude).tracking_s
-    return None if period is None else period.value
-
-
-def progress_of(
-    session: OrientationSession,
-    card: InstrumentCard,
-    rng: np.random.Generator,
-    *,
-    latitude: float | None,
-) -> Progress:
-    """Judge a tracking session as it stands.
-
-    Parameters
-    ----------
-    session : OrientationSession
-    card : InstrumentCard
-    rng : numpy.random.Generator
-        For the null distributions of the tests.
-    latitude : float or None
-        [rad].
-    """
-    swing = session.book.of_kind(ReadingKind.REVERSAL, ReadingKind.MISSED)
-    numbered = [(i, row) for i, row in enumerate(swing) if row.kind is ReadingKind.REVERSAL]
-    period = tracking_period(card, latitude)
-    if not numbered:
-        return Progress(period_s=period)
-    rows = [row for _, row in numbered]
-    first = numbered[0][0]
-    index = np.array([i - first for i, _ in numbered], dtype=np.float64)
-    next_index = len(swing) - first
-    readings = np.array([row.value for row in rows], dtype=np.float64)
-    values = unwrap(readings)
-    sides = np.array([1.0 if row.side is Side.RIGHT else -1.0 for row in rows])
-    fit = _fit(values, index, sides)
-    sigma = _sigma(session, card, rows, fit)
-    forecast, timing = _forecast(rows, values, index, sides, (next_index, period, sigma))
-    means, _ = schuler_means(values, index)
-    north, interval, source = _north(session, card, rng, latitude)
-    origin = float(readings[0])
-    return Progress(
-        points=_points(rows, index, sides, values, fit),
-        origin=origin,
-        next=forecast,
-        next_reading=_absolute(origin, forecast.reading),
-        period_s=2.0 * timing.half_period_s if timing is not None else period,
-        schuler_means=tuple(wrap_two_pi(origin + mean) for mean in means.tolist()),
-        north=north,
-        interval95=interval,
-        interval95_two_more=_two_more(fit, index, sides, (next_index, sigma)),
-        sigma_source=source,
-        midpoint=_channel(fit, sides, 0),
-        amplitude=_channel(fit, sides, 1),
-        curve=_curve(fit, sides, next_index),
-        middle=None if fit is None else fit.north,
-        alert=_alert(fit, index, sides, rows, rng),
-    )
-
-
-def _absolute(origin: float, offset: float | None) -> float | None:
-    return None if offset is None else wrap_two_pi(origin + offset)
-
-
-def _fit(values: Floats, index: Floats, sides: Floats) -> SwingFit | None:
-    if values.size < MIN_POINTS or not (np.any(sides > 0) and np.any(sides < 0)):
-        return None
-    return fit_swing(values, index, sides)
-
-
-def _sigma(
-    session: OrientationSession, card: InstrumentCard, rows: list[Reading], fit: SwingFit | None
-) -> ReadingSigma:
-    stated = session.resolution
-    return reading_sigma(
-        count=len(rows),
-        variance=None if fit is None else fit.variance,
-        dof=0 if fit is None else fit.dof,
-        card_sigma=card.sigma.reversal,
-        resolution=stated if stated is not None else reading_resolution(rows),
-    )
-
-
-def _forecast(
-    rows: list[Reading],
-    values: Floats,
-    index: Floats,
-    sides: Floats,
-    known: tuple[int, float | None, ReadingSigma],
-) -> tuple[PointForecast, Timing | None]:
-    next_index, period, sigma = known
-    times = moments(rows)
-    timing = None if times is None else fit_timing(index, times, period)
-    reading, half_width = forecast_reading(
-        values,
-        index,
-        sides,
-        next_index=next_index,
-        sigma=sigma.value if math.isfinite(sigma.value) else None,
-        dof=sigma.dof,
-    )
-    moment, spread = (None, None) if timing is None else timing.moment(float(next_index))
-    flips = round(next_index - float(index[-1])) % 2
-    right = (float(sides[-1]) > 0.0) != bool(flips)
-    forecast = PointForecast(
-        index=next_index,
-        side="R" if right else "L",
-        reading=reading,
-        half_width=half_width,
-        moment_s=moment,
-        moment_half_width_s=None if spread is None else 1.96 * spread,
-    )
-    return forecast, timing
-
-
-def _north(
-    session: OrientationSession,
-    card: InstrumentCard,
-    rng: np.random.Generator,
-    latitude: float | None,
-) -> tuple[float | None, float | None, str | None]:
-    """Gyro north and its interval exactly as the reduction gives them."""
-    try:
-        reduction = reduce_tracking(session, card, Judge(rng), latitude=latitude, estimator=None)
-    except SurveyError:
-        return None, None, None
-    north = reduction.north
-    if north is None:
-        return None, None, None
-    interval = north.interval95 if math.isfinite(north.sigma) else None
-    return wrap_two_pi(north.value), interval, reduction.sigma_source
-
-
-def _two_more(
-    fit: SwingFit | None, index: Floats, sides: Floats, known: tuple[int, ReadingSigma]
-) -> float | None:
-    """95 % half-width of north after two more points, if the readings stay as they are."""
-    next_index, sigma = known
-    if fit is None or not math.isfinite(sigma.value):
-        return None
-    last = float(sides[-1]) * (-1.0 if round(next_index - float(index[-1])) % 2 else 1.0)
-    longer = np.concatenate([index, [next_index, next_index + 1.0]])
-    both = np.concatenate([sides, [last, -last]])
-    if longer.size < LEAST_SQUARES_FROM:
-        _, weights = schuler_means(np.zeros(longer.size), longer)
-        norm = float(np.sqrt(weights @ weights))
-    else:
-        basis = design(longer, both, amplitude=fit.amplitude, log_decrement=fit.log_decrement)
-        inverse = np.linalg.pinv(basis)
-        norm = float(np.linalg.norm(inverse[0]))
-    dof = math.inf if sigma.origin == "card" else float(longer.size - 3)
-    return student_quantile(0.975, dof) * norm * sigma.value
-
-
-def _points(
-    rows: list[Reading], index: Floats, sides: Floats, values: Floats, fit: SwingFit | None
-) -> tuple[Point, ...]:
-    residuals: list[float | None] = [None] * len(rows)
-    if fit is not None and fit.dof > 0:
-        residuals = list(fit.residuals.tolist())
-    return tuple(
-        Point(row.seq, int(k), "R" if side > 0 else "L", row.value or 0.0, value, residual)
-        for row, k, side, value, residual in zip(
-            rows, index.tolist(), sides.tolist(), values.tolist(), residuals, strict=True
-        )
-    )
-
-
-def _channel(fit: SwingFit | None, sides: Floats, which: int) -> tuple[float, ...]:
-    if fit is None or fit.dof < 1:
-        return ()
-    return tuple(channels(fit.residuals, sides)[which].tolist())
-
-
-def _curve(fit: SwingFit | None, sides: Floats, next_index: int) -> tuple[tuple[float, float], ...]:
-    if fit is None or not fit.converged:
-        return ()
-    last = next_index - 1 + AHEAD
-    positions = np.linspace(0.0, last, last * CURVE_STEPS + 1)
-    offsets = swing_curve(
-        north=fit.north,
-        amplitude=fit.amplitude,
-        log_decrement=fit.log_decrement,
-        first_side=float(sides[0]),
-        index=positions,
-    )
-    return tuple(zip(positions.tolist(), offsets.tolist(), strict=True))
-
-
-def _alert(
-    fit: SwingFit | None,
-    index: Floats,
-    sides: Floats,
-    rows: list[Reading],
-    rng: np.random.Generator,
-) -> Alert | None:
-    if fit is None:
-        return None
-    found = find_trouble(fit, index, sides, rng)
-    if found is None:
-        return None
-    trouble, place, p = found
-    return Alert(trouble, rows[place].seq, int(index[place]), p)

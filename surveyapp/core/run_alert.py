@@ -39,6 +39,8 @@ class Trouble(StrEnum):
     STEP = "midpoint_step"
     DAMPING = "damping_break"
     UNCLEAR = "unclear"
+    MISSED = "passage_missed"
+    MISTIMED = "passage_mistimed"
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +54,8 @@ class Alert:
     seq : int or None
         Row of the suspected reading, or of the first reading behind the break.
     index : int
-        Number of that turning point, from 0.
+        Number of that turning point (for a passage: of that passage; for a round: of that round),
+        from 0.
     p : float
         Probability of so large a statistic, the search included, if nothing were wrong.
     """
@@ -104,17 +107,44 @@ def find_trouble(
     if index.size < MIN_POINTS or not fit.converged:
         return None
     basis = design(index, sides, amplitude=fit.amplitude, log_decrement=fit.log_decrement)
+    return search(fit.residuals, basis, _candidates(index, sides), rng)
+
+
+Candidates = tuple[Floats, list[tuple[Trouble, int]]]
+"""Regressors, shape (n, m), and the trouble and place that each stands for."""
+
+
+def search(
+    residuals: Floats, basis: Floats, candidates: Candidates, rng: np.random.Generator
+) -> tuple[Trouble, int, float] | None:
+    """Search residuals of any linear model for the candidate that explains them best.
+
+    Parameters
+    ----------
+    residuals : ndarray, shape (n,)
+        Of equal weight.
+    basis : ndarray, shape (n, p)
+        Columns of the model.
+    candidates : (ndarray of shape (n, m), list)
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    (trouble, place, p) or None
+        None where the largest share is no larger than chance makes it.
+    """
+    size = residuals.size
     orthogonal = np.linalg.qr(basis)[0]
-    columns, names = _candidates(index, sides)
+    columns, names = candidates
     columns = columns - orthogonal @ (orthogonal.T @ columns)
     norms = np.linalg.norm(columns, axis=0)
-    usable = norms > 1e-8 * np.sqrt(index.size)
+    usable = norms > 1e-8 * np.sqrt(size)
     columns, names = (
         columns[:, usable] / norms[usable],
         [name for name, good in zip(names, usable.tolist(), strict=True) if good],
     )
-    shares = _shares(fit.residuals[:, None], columns)[:, 0]
-    noise = rng.standard_normal((index.size, DRAWS))
+    shares = _shares(residuals[:, None], columns)[:, 0]
+    noise = rng.standard_normal((size, DRAWS))
     noise -= orthogonal @ (orthogonal.T @ noise)
     null = _shares(noise, columns).max(axis=0)
     best = int(np.argmax(shares))
@@ -127,8 +157,10 @@ def find_trouble(
         for (name, _), share in zip(names, shares.tolist(), strict=True)
         if name is not trouble
     ]
-    gap = index.size * (np.log1p(-max(rivals)) - np.log1p(-min(float(shares[best]), 1.0 - 1e-12)))
-    if gap < CLOSE and index.size < SEPARATE_FROM:
+    if not rivals:
+        return trouble, place, p
+    gap = size * (np.log1p(-max(rivals)) - np.log1p(-min(float(shares[best]), 1.0 - 1e-12)))
+    if gap < CLOSE and size < SEPARATE_FROM:
         return Trouble.UNCLEAR, place, p
     return trouble, place, p
 
@@ -141,7 +173,7 @@ def _shares(residuals: Floats, columns: Floats) -> Floats:
     return shares
 
 
-def _candidates(index: Floats, sides: Floats) -> tuple[Floats, list[tuple[Trouble, int]]]:
+def _candidates(index: Floats, sides: Floats) -> Candidates:
     """Regressors of every trouble at every place: one point, two plateaus, two decays."""
     columns: list[Floats] = []
     names: list[tuple[Trouble, int]] = []

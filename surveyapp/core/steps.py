@@ -107,11 +107,20 @@ def rows_of(book: FieldBook, step: Step, method: Method) -> tuple[Reading, ...]:
         return tuple(row for row in rows if book.place_of(row) is Place.BEFORE)
     if step in AFTER:
         return tuple(row for row in rows if book.place_of(row) is Place.AFTER)
-    if step is Step.SWING:
-        extra = (ReadingKind.MISSED,)
-        swing = book.of_kind(*kinds, *extra)
-        return tuple(r for r in swing if r.kind in kinds or book.place_of(r) is Place.DURING)
-    return rows
+    return _swing_rows(book, kinds) if step is Step.SWING else rows
+
+
+def _swing_rows(book: FieldBook, kinds: tuple[ReadingKind, ...]) -> tuple[Reading, ...]:
+    """Rows of the observation; a missed point below it belongs to it until the tape is read."""
+    found = []
+    zero_after = False
+    for row in book.of_kind(*kinds, ReadingKind.MISSED, ReadingKind.TAPE_ZERO):
+        place = book.place_of(row)
+        if row.kind is ReadingKind.TAPE_ZERO:
+            zero_after = zero_after or place is Place.AFTER
+        elif row.kind in kinds or (place is not Place.BEFORE and not zero_after):
+            found.append(row)
+    return tuple(found)
 
 
 def swing_begun(book: FieldBook, method: Method) -> bool:

@@ -42,6 +42,8 @@ class ClampedSwing:
         Number of the turning point before each passage (-1 before the first).
     sigma_div, sigma_s : float
         Standard deviations a priori; their ratio sets the weights.
+    first_side : float or None
+        Side of the turning point with the number 0; None: the readings tell.
     """
 
     readings: Floats
@@ -52,6 +54,7 @@ class ClampedSwing:
     after: Floats
     sigma_div: float
     sigma_s: float
+    first_side: float | None = None
 
     @property
     def count(self) -> int:
@@ -117,6 +120,8 @@ def shape(tau: Floats, *, decrement: float, period: float) -> tuple[Floats, Floa
 
 def _polarity(swing: ClampedSwing) -> float:
     """Side of the turning point with the number 0."""
+    if swing.first_side is not None:
+        return swing.first_side
     return float(swing.sides[0]) * (1.0 if int(swing.index[0]) % 2 == 0 else -1.0)
 
 
@@ -144,15 +149,19 @@ def passage_times(swing: ClampedSwing, parameters: Floats) -> tuple[Floats, Floa
     return start + tau, amplitude * s0 * rate
 
 
-def _model(swing: ClampedSwing, parameters: Floats) -> tuple[Floats, Floats]:
+def modelled(swing: ClampedSwing, parameters: Floats) -> tuple[Floats, Floats]:
+    """Readings [div] and passage times [s] that the parameters B, A, c, t0, T predict."""
     middle, amplitude, decrement = parameters[:3].tolist()
     readings = middle + amplitude * swing.sides * np.exp(-decrement * swing.index)
     times, _ = passage_times(swing, parameters)
     return readings, times
 
 
-def _jacobian(swing: ClampedSwing, parameters: Floats) -> Floats:
-    """Whitened derivatives; those of a passage are dt = -(dx at fixed time) / (rate)."""
+def whitened_jacobian(swing: ClampedSwing, parameters: Floats) -> Floats:
+    """Whitened derivatives by B, A, c, t0, T; readings first, then passages.
+
+    Those of a passage are dt = -(dx at fixed time) / (rate).
+    """
     _, amplitude, decrement, start, period = parameters.tolist()
     times, rate = passage_times(swing, parameters)
     tau = times - start
@@ -222,8 +231,8 @@ def fit_clamped(swing: ClampedSwing, *, period_s: float) -> ClampedFit:
     observed = np.concatenate([swing.readings / swing.sigma_div, swing.passages_s / swing.sigma_s])
     converged = False
     for _ in range(MAX_ITERATIONS):
-        jacobian = _jacobian(swing, parameters)
-        readings, times = _model(swing, parameters)
+        jacobian = whitened_jacobian(swing, parameters)
+        readings, times = modelled(swing, parameters)
         computed = np.concatenate([readings / swing.sigma_div, times / swing.sigma_s])
         step = np.linalg.lstsq(jacobian, observed - computed, rcond=None)[0]
         step[2] = min(max(float(step[2]), -0.3), 0.3)
@@ -233,8 +242,8 @@ def fit_clamped(swing: ClampedSwing, *, period_s: float) -> ClampedFit:
         if float(np.max(np.abs(step) / np.array([1.0, 1.0, 1.0, period_s, period_s]))) < 1e-7:
             converged = True
             break
-    readings, times = _model(swing, parameters)
-    jacobian = _jacobian(swing, parameters)
+    readings, times = modelled(swing, parameters)
+    jacobian = whitened_jacobian(swing, parameters)
     v_readings, v_times = swing.readings - readings, swing.passages_s - times
     dof = swing.count - PARAMETERS
     square = float(np.sum((v_readings / swing.sigma_div) ** 2))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from surveyapp.core.campaign_columns import block_names
 from surveyapp.diagnosis.problem import Array, Problem
 from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem as InputProblem
@@ -121,6 +122,7 @@ def campaign(
         labels=tuple(d.label or f"determination {i + 1}" for i, d in enumerate(determinations)),
         grid_labels=labels,
         warnings=tuple(warnings),
+        position_unit="d" if all(d.elapsed_days is not None for d in determinations) else "",
     )
 
 
@@ -203,6 +205,5 @@ def _columns(
     if all(d.block for d in determinations):
         columns["block"], labels["block"] = _numbered([d.block for d in determinations])
     elif "elapsed_days" in columns and all(d is not None for d in days):
-        day = np.floor(columns["elapsed_days"])
-        columns["block"], labels["block"] = _numbered([f"day {int(x)}" for x in day])
+        columns["block"], labels["block"] = _numbered(block_names(days))
     return columns, labels, warnings

@@ -27,6 +27,11 @@ NOT_SEPARABLE_LAW = 0.004
 """The same for amplitude laws, whose tangent lies close to exponential damping."""
 
 
+GROSS_WEIGHT = 3.0
+"""A slip is the commonest cause, and short records show little else; the false alarms that all
+candidates share stay where they are (weighted p values: Genovese, Roeder & Wasserman 2006)."""
+SHAPE_WEIGHT = 0.5
+"""A generic shape ends in no name."""
 AMPLITUDE_SHAPES = frozenset({"amplitude_step", "amplitude_smooth"})
 """Generic shapes of the amplitude of a swing."""
 
@@ -71,6 +76,15 @@ class Candidate:
     def describes_amplitude(self) -> bool:
         """Whether it is a description of the amplitude, named or generic; a model has one."""
         return self.is_law or self.id in AMPLITUDE_SHAPES
+
+    @property
+    def weight(self) -> float:
+        """Share of the false alarms that it may spend, a named effect taking one."""
+        if self.kind == "shape":
+            return SHAPE_WEIGHT
+        if self.effect is not None and self.effect.acts_on == "observation" and self.count == 1:
+            return GROSS_WEIGHT
+        return 1.0
 
     @property
     def one_sided(self) -> bool:

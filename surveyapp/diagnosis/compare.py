@@ -8,6 +8,7 @@ compete at every depth.
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
@@ -24,6 +25,8 @@ ANCHORS = 8
 """Best sets of one depth from which those of the next are built."""
 REFINED = 12.0
 """Sets whose approximate BIC lies within this of the best are fitted exactly."""
+COUNT_LEVEL = 0.05
+"""Probability of taking a sound reading for one more gross error."""
 GROSS_SHARE = 6
 """At most one observation in so many is taken for a gross error."""
 SPANNED = 0.05
@@ -114,31 +117,22 @@ def may_join_gross(candidate: Candidate, fit: Fit) -> bool:
     return few and (known == 0 or candidate.count == 1)
 
 
+Draft = tuple[float, tuple[Member, ...], Fit]
+"""Approximate BIC, members, and the set that was added to."""
+
+
 def next_level(problem: Problem, level: Level, candidates: Iterable[Candidate]) -> Level:
     """Best fit of every set that has one candidate more than the best sets of a level."""
-    pool = tuple(candidates)
-    drafts: dict[frozenset[str], tuple[float, float, tuple[Member, ...], Fit]] = {}
-    for anchor in level.fits[:ANCHORS]:
-        q = orthonormal_design(anchor)
-        for candidate in pool:
-            if not may_join(candidate, anchor):
-                continue
-            draft = _best_addition(problem, anchor, candidate, q)
-            if draft is None:
-                continue
-            bic, members = draft
-            key = anchor.key | {candidate.id}
-            # Each further gross error must earn the margin, as any other name.
-            handicapped = bic + MARGIN * (sum(m.candidate.count for m in members) - len(key))
-            if key not in drafts or handicapped < drafts[key][0]:
-                drafts[key] = (handicapped, bic, members, anchor)
+    drafts = _drafts(problem, level, tuple(candidates))
     if not drafts:
         return Level(level.depth + 1, (), ())
-    best = min(bic for _, bic, _, _ in drafts.values())
-    fits = []
-    for _, bic, members, anchor in drafts.values():
+    best = min(bic for bic, _, _ in drafts.values())
+    exact: dict[frozenset[str], dict[int, Fit]] = {}
+    for (names, count), (bic, members, anchor) in drafts.items():
         if level.depth == 0 or bic <= best + REFINED:
-            fits.append(_refined(problem, members, anchor, every=level.depth > 0))
+            fit = _refined(problem, members, anchor, every=level.depth > 0)
+            exact.setdefault(names, {})[count] = fit
+    fits = [settled_count(problem, counts) for counts in exact.values()]
     fits.sort(key=lambda fit: fit.bic)
     least = min(fit.bic for fit in fits)
     fits = [scored(problem, fit) if fit.bic < least + REFINED else fit for fit in fits]
@@ -148,6 +142,57 @@ def next_level(problem: Problem, level: Level, candidates: Iterable[Candidate]) 
     unique = {fit.key: fit for fit in sorted(noises, key=lambda f: -f.bic)}
     ordered = sorted(unique.values(), key=lambda fit: fit.bic)
     return Level(level.depth + 1, tuple(fits), tuple(ordered))
+
+
+def _drafts(
+    problem: Problem, level: Level, pool: tuple[Candidate, ...]
+) -> dict[tuple[frozenset[str], int], Draft]:
+    """Best addition for each set of names and each number of gross errors in it."""
+    drafts: dict[tuple[frozenset[str], int], Draft] = {}
+    for anchor in level.fits[:ANCHORS]:
+        q = orthonormal_design(anchor)
+        for candidate in pool:
+            if not may_join(candidate, anchor):
+                continue
+            found = _best_addition(problem, anchor, candidate, q)
+            if found is None:
+                continue
+            bic, members = found
+            key = (anchor.key | {candidate.id}, sum(m.candidate.count for m in members))
+            if key not in drafts or bic < drafts[key][0]:
+                drafts[key] = (bic, members, anchor)
+    return drafts
+
+
+def settled_count(problem: Problem, counts: Mapping[int, Fit]) -> Fit:
+    """As many gross errors as each prove themselves beside the others.
+
+    Fits of the same effects with more and more gross errors. A further one is taken for real when
+    chance shows as large a reduction among all the places it could lie at less often than the
+    gate allows: F test, Bonferroni over the places. BIC would take every tenth record of 20 for one
+    with two. Several at once may prove themselves where one alone does not: they hide each other.
+    """
+    order = sorted(counts)
+    chosen = order[0]
+    for count in order[1:]:
+        fewer, more = counts[chosen], counts[count]
+        added = count - chosen
+        dof = problem.size - more.design.shape[1]
+        if dof < 1:
+            break
+        places = math.comb(max(problem.size - chosen, added), added)
+        left = max(more.sum_of_squares, problem.size * problem.noise_floor**2, 1e-300)
+        f = (fewer.sum_of_squares - more.sum_of_squares) / added / (left / dof)
+        if f > f_limit(COUNT_LEVEL / places, added, dof):
+            chosen = count
+    return counts[chosen]
+
+
+def f_limit(p: float, upper: int, lower: int) -> float:
+    """Value of F that chance exceeds with probability p."""
+    from scipy.special import fdtri
+
+    return float(fdtri(upper, lower, 1.0 - p))
 
 
 def _best_addition(

@@ -12,6 +12,7 @@ from surveyapp.diagnosis.checks import check_input
 from surveyapp.diagnosis.compare import Level
 from surveyapp.diagnosis.fits import Fit, unit_variance
 from surveyapp.diagnosis.ledger import ledger_entry
+from surveyapp.diagnosis.long_record import LongRecord, is_long, reduce_record, unnamed, with_lines
 from surveyapp.diagnosis.loop import DEFAULT_DRAWS, Search, rivals_delta, search
 from surveyapp.diagnosis.problem import Problem
 from surveyapp.diagnosis.prove import confirm_rms, forecast, leave_one_out
@@ -43,7 +44,8 @@ def diagnose(
     Parameters
     ----------
     problem : Problem
-        Made by ``reversal_run`` or ``campaign``, or by another subject.
+        Made by ``reversal_run`` or ``campaign``, or by another subject. Of more than 400
+        observations in time order the lines are taken out and block means are diagnosed.
     confirm : Problem, optional
         A second, independent set of the same subject and instrument.
     draws : int
@@ -56,11 +58,32 @@ def diagnose(
     Raises
     ------
     SurveyError
-        If there are too few observations, or the second set is of another subject or instrument.
+        If there are too few observations, the second set is of another subject or instrument, or
+        a long record cannot be averaged over 50 blocks and more.
     """
     check_input(problem, confirm)
-    digest = problem.digest()
+    if confirm is not None and is_long(confirm):
+        confirm = reduce_record(confirm).problem
+    if not is_long(problem):
+        return _diagnosed(problem, confirm, draws)
+    record = reduce_record(problem)
+    found = _diagnosed(record.problem, confirm, draws, record=record, digest=problem.digest())
+    return with_lines(found, record)
+
+
+def _diagnosed(
+    problem: Problem,
+    confirm: Problem | None,
+    draws: int,
+    *,
+    record: LongRecord | None = None,
+    digest: str | None = None,
+) -> Diagnosis:
+    """Diagnose a record that is not too long, or the block means of one that is."""
+    digest = problem.digest() if digest is None else digest
     found = search(problem, draws=draws, confirm=confirm)
+    if record is not None and not record.white:
+        found = unnamed(found)
     base = found.levels[0].fits[0]
     averaged = _widened(problem, found, averaged_value(problem, found.levels[-1].every))
     battery = run_battery(problem, base, int(digest[:15], 16))

@@ -6,6 +6,7 @@ for and the likelihood. It does not choose anything.
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -212,21 +213,14 @@ def with_noise(problem: Problem, fit: Fit) -> tuple[Fit, ...]:
         scale=problem.scale,
         floor=problem.noise_floor**2,
     )
-    result = []
-    for noise in found:
-        parameters = fit.parameters + EXTRA_PARAMETERS[noise.kind]
-        bic = noise.minus_two_log + parameters * float(np.log(problem.size))
-        result.append(
-            Fit(
-                fit.members,
-                fit.linear,
-                fit.theta,
-                fit.design,
-                fit.residual,
-                parameters,
-                bic,
-                bic + fit.score - fit.bic,
-                noise,
-            )
+    # The grid of the noise is paid for by the average over it.
+    return tuple(
+        dataclasses.replace(
+            fit,
+            parameters=fit.parameters + EXTRA_PARAMETERS[noise.kind],
+            bic=fit.bic - noise.gain,
+            score=fit.score - noise.gain,
+            noise=noise,
         )
-    return tuple(result)
+        for noise in found
+    )

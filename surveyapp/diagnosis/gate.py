@@ -9,14 +9,12 @@ import numpy as np
 
 from surveyapp.diagnosis.candidates import Candidate, Projected, project
 from surveyapp.diagnosis.compare import may_join, orthonormal_design
-from surveyapp.diagnosis.fits import Fit, scan_law, unit_variance, with_noise
+from surveyapp.diagnosis.fits import Fit, scan_law, unit_variance
 from surveyapp.diagnosis.nulls import Noise, null_of, ratio, reductions
 from surveyapp.diagnosis.problem import Array, Problem
 
 GATE = 0.05
 """Family p at which the search goes on (diagnosis.md step 3)."""
-NOTABLE = 0.5
-"""Gain of -2 log likelihood below which correlated noise is white noise."""
 FINE = 0.3
 """Rounding below this share of the noise's standard deviation changes nothing."""
 
@@ -87,53 +85,6 @@ def statistic(problem: Problem, fit: Fit, item: Projected, q: Array) -> float:
         return reduction / known
     floor = (problem.size - q.shape[1]) * problem.noise_floor**2
     return float(ratio(np.array(reduction), np.array(fit.sum_of_squares), floor))
-
-
-def imitating_noise(
-    problem: Problem, fits: tuple[Fit, Fit], identity: str, pool: Iterable[Candidate], draws: int
-) -> str | None:
-    """Kind of correlated noise that would show an effect as strong as this one too often.
-
-    Each stochastic rival is fitted to the model without the effect, as if the effect were nothing
-    but noise; the effect, with its whole scan, then runs over draws of that noise. BIC alone does
-    not do this: a walk that happens to look like a ramp is less likely than a ramp, and yet every
-    tenth walk looks like one. A walk leaves traces of itself beside the effect that it imitates:
-    where none are left, it is no rival.
-
-    Parameters
-    ----------
-    problem : Problem
-    fits : tuple of Fit
-        The model with the effect and without it.
-    identity : str
-    pool : iterable of Candidate
-    draws : int
-
-    Returns
-    -------
-    str or None
-        None where every rival is refuted.
-    """
-    after, without = fits
-    traces = [f.noise.gain for f in with_noise(problem, after) if f.noise is not None]
-    if problem.sigma_known or max(traces, default=np.inf) < NOTABLE:
-        return None
-    q = orthonormal_design(without)
-    joining = [c for c in pool if may_join(c, without)]
-    own = [c for c in joining if c.id == identity]
-    family = tuple(item for item in (project(c, q) for c in own) if item.index.size)
-    if not family:
-        return None
-    observed = np.array([statistic(problem, without, item, q) for item in family])
-    for rival in with_noise(problem, without):
-        if rival.noise is None or rival.noise.gain < NOTABLE:
-            continue
-        colour: Array = np.asarray(np.linalg.inv(rival.noise.model.whitener), dtype=np.float64)
-        noise = Noise(draws, 0.0, problem.root_weights, colour=colour)
-        null = null_of(family, q, noise)
-        if float(null.p_values(observed).min()) > GATE:
-            return rival.noise.kind
-    return None
 
 
 def open_gate(problem: Problem, fit: Fit, pool: Iterable[Candidate], draws: int) -> Gate:

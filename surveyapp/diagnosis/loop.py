@@ -24,10 +24,10 @@ from surveyapp.diagnosis.compare import (
     next_level,
     within_margin,
 )
-from surveyapp.diagnosis.fits import Fit, fit_members
-from surveyapp.diagnosis.gate import Gate, imitating_noise, open_gate
+from surveyapp.diagnosis.fits import Fit, fit_members, with_noise
+from surveyapp.diagnosis.gate import Gate, open_gate
 from surveyapp.diagnosis.problem import Problem
-from surveyapp.diagnosis.prove import confirm_rms, flagged, leave_one_out
+from surveyapp.diagnosis.prove import confirm_rms, flagged, leave_one_out, unforetold
 from surveyapp.diagnosis.value import plausible
 
 DEFAULT_DRAWS = 4000
@@ -36,8 +36,10 @@ DEPTHS = ((45, 4), (20, 3), (12, 2), (8, 1))
 NAMED_DEPTH = 2
 """Effects that enter later are named only when a second set confirms them."""
 LEAST_TO_NAME = 8
-COLOURED_DRAWS = 1000
-"""Draws of each coloured null: enough for a test at 5 %."""
+NOISE_MARGIN = 2.0 * MARGIN
+"""BIC by which noise that wanders must be worse: it is no single rival but stands for every shape
+that it may take by chance. By simulation of walks and of drifts and steps beside them
+(docs/reference/operating-characteristics.md)."""
 NOISE_WORDS = {
     "random_walk": "a north that wanders at random",
     "amplitude_walk": "a following that is irregular at random",
@@ -119,8 +121,7 @@ def search(problem: Problem, *, draws: int, confirm: Problem | None) -> Search:
     near = within_margin(last)
     chosen = last.preferred or base
     names = _names(problem, levels, near, confirmed=confirm is not None)
-    proofs = Proofs(current, min(draws, COLOURED_DRAWS), confirm)
-    adopted, refused, after = _proved(problem, chosen, names, base, proofs)
+    adopted, refused, after = _proved(problem, chosen, names, base, confirm)
     return Search(
         tuple(levels),
         tuple(gates),
@@ -165,24 +166,15 @@ def _names(
     return [i for i in found if early is not None and i in early.key]
 
 
-@dataclass(frozen=True, slots=True)
-class Proofs:
-    """What the proofs need beside the fits."""
-
-    pool: tuple[Candidate, ...]
-    draws: int
-    confirm: Problem | None
-
-
 def _proved(
-    problem: Problem, best: Fit, names: list[str], base: Fit, proofs: Proofs
+    problem: Problem, best: Fit, names: list[str], base: Fit, confirm: Problem | None
 ) -> tuple[tuple[str, ...], tuple[tuple[str, str], ...], Fit]:
     """Keep the names that predict better and are missed when removed; fit them jointly."""
     refused: list[tuple[str, str]] = []
     names = list(names)
     while names:
         after = reduced(problem, best, names)
-        failure = _failure(problem, after, names, proofs)
+        failure = _failure(problem, after, names, confirm)
         if failure is None:
             return tuple(names), tuple(refused), after
         refused.append(failure)
@@ -198,31 +190,38 @@ def reduced(problem: Problem, fit: Fit, names: Iterable[str]) -> Fit:
 
 
 def _failure(
-    problem: Problem, after: Fit, names: list[str], proofs: Proofs
+    problem: Problem, after: Fit, names: list[str], confirm: Problem | None
 ) -> tuple[str, str] | None:
     """First adopted effect that fails a proof and why, else None."""
-    mask = flagged(after)
-    with_all = leave_one_out(problem, after)
+    mask = unforetold(after)
+    with_all = leave_one_out(problem, after, mask)
     for name in names:
         without = reduced(problem, after, [n for n in names if n != name])
         if without.bic <= after.bic:
             return name, "the model is as good without it"
-        gross = float(np.sum(mask)) > float(np.sum(flagged(without)))
+        gross = float(np.sum(flagged(after))) > float(np.sum(flagged(without)))
         if not gross:
             other = leave_one_out(problem, without, mask)
             if with_all is not None and other is not None and with_all >= other:
                 return name, "it does not help to predict observations that were left out"
-        kind = imitating_noise(problem, (after, without), name, proofs.pool, proofs.draws)
+        kind = imitating_noise(problem, after, without)
         if kind is not None:
             return name, f"{NOISE_WORDS[kind]} would look like it too often"
-        if proofs.confirm is not None:
-            here = confirm_rms(proofs.confirm, after)
-            there = confirm_rms(proofs.confirm, without)
+        if confirm is not None:
+            here = confirm_rms(confirm, after)
+            there = confirm_rms(confirm, without)
             if here is None or there is None:
                 return name, "the second set lacks what is needed to confirm it"
             if here >= there:
                 return name, "the second set is predicted no better with it"
     return None
+
+
+def imitating_noise(problem: Problem, after: Fit, without: Fit) -> str | None:
+    """Kind of noise that explains the record without an effect nearly as well, else None."""
+    rivals = [fit for fit in with_noise(problem, without) if fit.bic < after.bic + NOISE_MARGIN]
+    best = min(rivals, key=lambda fit: fit.bic, default=None)
+    return None if best is None or best.noise is None else best.noise.kind
 
 
 def rivals_delta(level: Level, identity: str) -> float | None:

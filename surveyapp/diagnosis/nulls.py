@@ -30,11 +30,14 @@ class Null:
     statistics : ndarray, shape (candidates, draws)
         Sorted per candidate.
     smallest : ndarray, shape (draws,)
-        Sorted smallest p value of each draw.
+        Sorted smallest weighted p value of each draw.
+    weights : ndarray, shape (candidates,)
+        A p value counts divided by its weight.
     """
 
     statistics: Array
     smallest: Array
+    weights: Array
 
     def p_values(self, observed: Array) -> Array:
         """P of each candidate: share of draws at least as large, never 0."""
@@ -48,7 +51,8 @@ class Null:
     def family(self, p: Array) -> Array:
         """Westfall-Young p of each candidate: how often noise shows one as small anywhere."""
         draws = self.smallest.size
-        below = np.searchsorted(self.smallest, p * (1.0 + 1e-12), side="right")
+        weighted = p / self.weights
+        below = np.searchsorted(self.smallest, weighted * (1.0 + 1e-12), side="right")
         return np.asarray((1.0 + below) / (draws + 1.0))
 
 
@@ -136,11 +140,12 @@ def _simulate(projected: tuple[Projected, ...], q: Array, noise: Noise, key: byt
         largest = _largest(item, residuals)
         found[c] = largest if noise.known else ratio(largest, total, floor)
     order = np.sort(found, axis=1)
-    smallest = np.ones(noise.draws)
-    for row, values in zip(order, found, strict=True):
+    weights = np.array([item.candidate.weight for item in projected])
+    smallest = np.full(noise.draws, np.inf)
+    for row, values, weight in zip(order, found, weights, strict=True):
         above = noise.draws - np.searchsorted(row, values, side="left")
-        np.minimum(smallest, above / noise.draws, out=smallest)
-    return Null(order, np.sort(smallest))
+        np.minimum(smallest, above / noise.draws / weight, out=smallest)
+    return Null(order, np.sort(smallest), weights)
 
 
 def ratio(reduction: Array, total: Array, floor: float) -> Array:

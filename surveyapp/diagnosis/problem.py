@@ -74,6 +74,8 @@ class Problem:
     grid_labels : mapping
         Names behind numbered columns: ``{"line": {0.0: "A-B"}}``.
     warnings : tuple of ResultWarning
+    position_unit : str
+        Of ``position`` where it is a time: ``s`` makes frequencies Hz; empty = an order.
     """
 
     subject: Subject
@@ -100,6 +102,7 @@ class Problem:
     labels: tuple[str, ...] = ()
     grid_labels: Mapping[str, Mapping[float, str]] = field(default_factory=dict)
     warnings: tuple[ResultWarning, ...] = ()
+    position_unit: str = ""
 
     @property
     def size(self) -> int:

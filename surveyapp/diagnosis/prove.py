@@ -1,6 +1,6 @@
 """The proof: how a model predicts what did not choose it.
 
-Leave-one-out with every grid chosen anew in each fold, the last quarter of the record from the
+Leave-one-out with every grid weighed anew in each fold, the last quarter of the record from the
 first three, and a second, independent set of observations.
 """
 
@@ -13,12 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.diagnosis.candidates import Candidate, swing_columns
-from surveyapp.diagnosis.fits import Fit, Member, fit_members
+from surveyapp.diagnosis.fits import Fit, Member, fit_members, unit_variance
 from surveyapp.diagnosis.problem import Array, Problem
 from surveyapp.diagnosis.swing import fit_swing, starting_values
 
 FOLD_POSITIONS = 8
 """Grid points of each member, best first, among which a fold may choose."""
+LEAST_CONTROL = 0.1
+"""Redundancy below which an observation determines an effect by itself: the others foretell it to
+worse than three times their own scatter, which is no prediction."""
 FORECAST_SHARE = 0.75
 """Share of the record from which the rest is predicted."""
 
@@ -68,24 +71,59 @@ def leave_one_out(problem: Problem, fit: Fit, skip: Array | None = None) -> floa
     Returns
     -------
     float or None
-        None where no observation can be left out.
+        None where no observation can be left out. Gross errors and observations that alone
+        determine an effect are not predicted; see ``unforetold``.
     """
-    errors, chosen = [], []
+    errors, left = [], []
     for trial in _alternatives(problem, fit):
         q, _ = np.linalg.qr(trial.design)
         free = 1.0 - np.einsum("np,np->n", q, q)
-        usable = free > 1e-6
+        usable = free > LEAST_CONTROL
         error = trial.residual / np.where(usable, free, 1.0)
         errors.append(np.where(usable, error, np.inf))
-        chosen.append(trial.sum_of_squares - np.where(usable, error * trial.residual, 0.0))
-    pick = np.argmin(np.array(chosen), axis=0)
-    error = np.array(errors)[pick, np.arange(problem.size)] / problem.root_weights
+        left.append(trial.sum_of_squares - np.where(usable, error * trial.residual, 0.0))
+    found = np.array(errors)
+    error = _foretold(problem, found, np.array(left)) / problem.root_weights
     mask = flagged(fit) if skip is None else np.maximum(flagged(fit), skip)
     mask = np.maximum(mask, uncontrolled(problem))
-    error = error[mask < 0.5]
-    if error.size == 0 or not np.isfinite(error).all():
+    error = error[(mask < 0.5) & np.isfinite(found).any(axis=0)]
+    if error.size == 0:
         return None
     return float(np.sqrt(np.mean(error**2)))
+
+
+def unforetold(fit: Fit) -> Array:
+    """Observations that a fit does not predict, as a mask (n,): flagged, or alone."""
+    q, _ = np.linalg.qr(fit.design)
+    alone = 1.0 - np.einsum("np,np->n", q, q) <= LEAST_CONTROL
+    return np.asarray(np.maximum(flagged(fit), alone.astype(np.float64)))
+
+
+def _foretold(problem: Problem, errors: Array, left: Array) -> Array:
+    """Error of each observation, foretold by the grid points that its own fold makes likely.
+
+    Parameters
+    ----------
+    problem : Problem
+    errors : ndarray, shape (g, n)
+        Of each grid point; infinite where it is not determined without the observation.
+    left : ndarray, shape (g, n)
+        Sum of squares of the fold.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    size = problem.size - 1
+    floor = max(problem.noise_floor**2, (1e-6 * problem.scale) ** 2)
+    known = unit_variance(problem)
+    minus = left / known if known is not None else size * np.log(np.maximum(left / size, floor))
+    minus = np.where(np.isfinite(errors), minus, np.inf)
+    least = minus.min(axis=0)
+    weights = np.exp(-0.5 * (minus - np.where(np.isfinite(least), least, 0.0)))
+    total = weights.sum(axis=0)
+    mean = np.sum(weights * np.where(np.isfinite(errors), errors, 0.0), axis=0)
+    return np.where(total > 0.0, mean / np.where(total > 0.0, total, 1.0), np.inf)
 
 
 def _subset(problem: Problem, rows: NDArray[np.intp]) -> Problem:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from surveyapp.diagnosis.battery import BatteryTest
+from surveyapp.diagnosis.lines import SpectralLine
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.domain.project import ResultWarning
 from surveyapp_models.angles import wrap_two_pi
@@ -172,7 +173,11 @@ class Diagnosis:
     ledger : mapping
         The entry for the ledger, complete but for time and software.
     residuals_before, residuals_after : tuple of float
-        [SI].
+        [SI]; of a long record those of its block means.
+    lines : tuple of SpectralLine
+        Of a long record; they are not in the residuals.
+    frequency_unit : str
+        Of the lines.
     """
 
     subject: str
@@ -196,6 +201,8 @@ class Diagnosis:
     residuals_before: tuple[float, ...]
     residuals_after: tuple[float, ...]
     residuals_best: tuple[float, ...]
+    lines: tuple[SpectralLine, ...] = ()
+    frequency_unit: str = "Hz"
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON of ``diagnose`` (design.md section 5)."""
@@ -230,6 +237,10 @@ class Diagnosis:
             "after": self._model(self.after),
             "after_best": self._model(self.after_best),
             "averaged": self._quantity(self.averaged),
+            "lines": [
+                {**line.to_dict(self.scale), "frequency_unit": self.frequency_unit}
+                for line in self.lines
+            ],
             "remedy": list(self.remedy),
             "warnings": [warning.to_dict() for warning in self.warnings],
         }

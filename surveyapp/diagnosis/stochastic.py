@@ -2,8 +2,8 @@
 
 Random walk of north, random walk of the amplitude, and an autoregressive process, each with white
 noise beside it. The white part is never smaller than the rounding of the readings and the first
-point has a variance of its own, else the likelihood runs away. Scanned on grids of variance ratios
-and correlations; every covariance is factorised once per set of positions.
+point has a variance of its own, else the likelihood runs away. Averaged over grids of variance
+ratios and correlations; every covariance is factorised once per set of positions.
 """
 
 from __future__ import annotations
@@ -26,6 +26,8 @@ SHARES = (0.5, 2.0, 8.0, 1e4)
 """Variance of the autoregressive process relative to the white noise; the last is pure AR(1)."""
 LARGE = 100
 """From this size on the grids are thinned to every second value."""
+NEGLIGIBLE = 0.005
+"""Probability below which a point of the grid is left out of what is predicted."""
 EXTRA_PARAMETERS = {"random_walk": 1.0, "amplitude_walk": 1.0, "ar1": 2.0}
 
 
@@ -114,17 +116,14 @@ def _scaled_position(position: Array) -> Array:
 
 
 @dataclass(frozen=True, slots=True)
-class NoiseFit:
-    """The likeliest member of one kind of noise beside a design.
+class NoisePoint:
+    """One covariance of the grid beside a design.
 
     Parameters
     ----------
-    kind : str
     model : NoiseModel
-    gain : float
-        Decrease of -2 log likelihood against white noise.
-    minus_two_log : float
-        -2 log likelihood up to the constant that the white model leaves out too.
+    share : float
+        Probability of this point within its kind, 1 in all.
     step : ndarray, shape (p,)
         Change of the parameters against least squares.
     white : float
@@ -133,19 +132,42 @@ class NoiseFit:
         Covariance of the parameters in units of ``white``.
     """
 
-    kind: NoiseKind
     model: NoiseModel
-    gain: float
-    minus_two_log: float
+    share: float
     step: Array
     white: float
     cofactor: Array
 
 
+@dataclass(frozen=True, slots=True)
+class NoiseFit:
+    """One kind of noise beside a design, its whole grid in it.
+
+    Parameters
+    ----------
+    kind : str
+    gain : float
+        Decrease of -2 log marginal likelihood against white noise, averaged over the grid.
+    points : tuple of NoisePoint
+        Those that carry the probability, likeliest first.
+    """
+
+    kind: NoiseKind
+    gain: float
+    points: tuple[NoisePoint, ...]
+
+
 def best_noises(
     problem: Problem, J: Array, residual: Array, *, scale: float, floor: float
 ) -> tuple[NoiseFit, ...]:
-    """Likeliest covariance of each kind for the residuals of a design.
+    """Every kind of noise for the residuals of a design, by its marginal likelihood.
+
+    The restricted likelihood (the parameters of the design integrated out) is averaged over the
+    grid. The ordinary likelihood is no substitute: it underrates a noise that hides the very
+    parameters that the design spends, and charges it for them in full.
+
+    Source: Harville 1974, Biometrika 61, eq. 2: -2 log L = (n - p) log s^2 + log |C|
+    + log |J' C^-1 J| + v' C^-1 v / s^2.
 
     Parameters
     ----------
@@ -163,36 +185,48 @@ def best_noises(
     tuple of NoiseFit
     """
     models = noise_models(problem)
-    norms = np.sqrt((J**2).sum(axis=0))
-    norms = np.where(norms > 0.0, norms, 1.0)
+    basis, triangle, norms = _independent(J)
     whiteners = np.stack([m.whitener for m in models])
-    design = whiteners @ (J / norms)
     seen = whiteners @ residual
-    q, r = np.linalg.qr(design)
+    q, r = np.linalg.qr(whiteners @ basis)
     along = np.einsum("gnp,gn->gp", q, seen)
     left = np.einsum("gn,gn->g", seen, seen) - np.einsum("gp,gp->g", along, along)
-    n = residual.size
-    white = np.maximum(np.maximum(left / n, floor), 1e-12 * scale**2)
+    dof = residual.size - basis.shape[1]
+    floor = max(floor, 1e-12 * scale**2)
     logs = np.array([m.log_determinant for m in models])
-    minus = n * np.log(white / scale**2) + logs + left / white - n
-    mean = max(float(residual @ residual) / n, floor, 1e-12 * scale**2)
-    plain = n * float(np.log(mean / scale**2))
-    best: dict[NoiseKind, int] = {}
-    for g, model in enumerate(models):
-        if model.kind not in best or minus[g] < minus[best[model.kind]]:
-            best[model.kind] = g
+    logs += 2.0 * np.log(np.abs(np.einsum("gpp->gp", r))).sum(axis=1)
+    white = np.maximum(left / dof, floor)
+    minus = dof * np.log(white / scale**2) + logs + left / white - dof
+    total = float(residual @ residual)
+    mean = max(total / dof, floor)
+    plain = dof * float(np.log(mean / scale**2)) + total / mean - dof
+    back = np.linalg.pinv(triangle) @ np.linalg.inv(r) / norms[None, :, None]
     result = []
-    for kind, g in best.items():
-        inverse = np.linalg.pinv(r[g])
-        result.append(
-            NoiseFit(
-                kind,
-                models[g],
-                float(plain - minus[g]),
-                float(minus[g]),
-                inverse @ along[g] / norms,
-                float(white[g]),
-                (inverse @ inverse.T) / np.outer(norms, norms),
+    for kind in dict.fromkeys(m.kind for m in models):
+        own = np.array([g for g, m in enumerate(models) if m.kind == kind])
+        weights = np.exp(-0.5 * (minus[own] - minus[own].min()))
+        gain = plain - float(minus[own].min()) + 2.0 * float(np.log(weights.mean()))
+        weights /= weights.sum()
+        order = np.argsort(-weights, kind="stable")
+        points = tuple(
+            NoisePoint(
+                models[own[i]],
+                float(weights[i]),
+                back[own[i]] @ along[own[i]],
+                float(white[own[i]]),
+                back[own[i]] @ back[own[i]].T,
             )
+            for i in order
+            if weights[i] >= NEGLIGIBLE
         )
+        result.append(NoiseFit(kind, gain, points))
     return tuple(result)
+
+
+def _independent(J: Array) -> tuple[Array, Array, Array]:
+    """Orthonormal basis (n, r), triangle (r, p) and column norms (p,) of a design."""
+    norms = np.sqrt((J**2).sum(axis=0))
+    norms = np.where(norms > 0.0, norms, 1.0)
+    u, s, vt = np.linalg.svd(J / norms, full_matrices=False)
+    use = s > 1e-9 * s[0]
+    return u[:, use], s[use, None] * vt[use], norms

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from surveyapp.core.adopted import SOURCE
-from surveyapp.core.campaign_columns import Circumstances, circumstances
+from surveyapp.core.campaign_columns import Circumstances, circumstances, in_blocks
 from surveyapp.core.orientation import Orientation
 from surveyapp.core.scatter import SHARED
 from surveyapp.core.sights import moments
@@ -155,13 +155,7 @@ def determinations(orientation: Orientation, instrument: str) -> tuple[Determina
     The sigma is that of what belongs to one determination alone: centring, deflection and the
     known azimuth are the line's own, and whether a line stands off is to be found, not assumed.
     """
-    by_key = {
-        (item.session.id, target.target): circumstances(
-            item, target, latitude=orientation.positions[item.session.station].latitude
-        )
-        for item in orientation.sessions
-        for target in item.targets
-    }
+    by_key = _circumstances(orientation, instrument)
     constant = next(c for c in orientation.constants if c.instrument.id == instrument)
     found = []
     for calibration in constant.calibrations:
@@ -172,6 +166,30 @@ def determinations(orientation: Orientation, instrument: str) -> tuple[Determina
         label = f"{calibration.session} ({calibration.line})"
         found.append(_determination(calibration.value.value, own, facts, label))
     return _in_time(found if found else _azimuths(orientation, instrument, by_key))
+
+
+def _circumstances(
+    orientation: Orientation, instrument: str
+) -> dict[tuple[str, str], Circumstances]:
+    """Circumstances of every gyro azimuth of one instrument, by session and target."""
+    places = [
+        (item, target)
+        for item in orientation.sessions
+        if item.session.instrument == instrument
+        for target in item.targets
+    ]
+    facts = in_blocks(
+        [
+            circumstances(
+                item, target, latitude=orientation.positions[item.session.station].latitude
+            )
+            for item, target in places
+        ]
+    )
+    return {
+        (item.session.id, target.target): fact
+        for (item, target), fact in zip(places, facts, strict=True)
+    }
 
 
 def _in_time(items: Sequence[Determination]) -> tuple[Determination, ...]:

@@ -15,12 +15,11 @@ import numpy as np
 from surveyapp.diagnosis.candidates import swing_columns
 from surveyapp.diagnosis.fits import Fit, Member, fit_members, unit_variance
 from surveyapp.diagnosis.problem import Array, Problem
+from surveyapp.diagnosis.stochastic import NoiseKind, NoisePoint
 
 NEAR_POSITIONS = 6.0
 """BIC within which other positions of a searched effect contribute to its uncertainty."""
 MOST_POSITIONS = 8
-WIDENING = 4.0
-"""BIC within which autocorrelated noise widens the averaged value."""
 SHAPE_OBSERVATIONS = frozenset({"outlier"})
 
 
@@ -138,26 +137,36 @@ def plain_value(problem: Problem, fit: Fit, row: Array | None = None) -> Value:
 
 
 def _noise_value(problem: Problem, fit: Fit) -> Value:
-    """Value beside a stochastic rival: a walk of north is predicted, other noise is noise."""
+    """Value beside a stochastic rival, averaged over what is likely of its grid."""
     noise = fit.noise
     if noise is None:
         return plain_value(problem, fit)
+    found = [_point_value(problem, fit, point, noise.kind) for point in noise.points]
+    share = np.array([point.share for point in noise.points])
+    share /= share.sum()
+    values, variances = (np.array(part) for part in zip(*found, strict=True))
+    mean = float(share @ values)
+    variance = float(share @ (variances + (values - mean) ** 2))
+    return Value(mean, math.sqrt(variance), _dof(problem, fit))
+
+
+def _point_value(
+    problem: Problem, fit: Fit, point: NoisePoint, kind: NoiseKind
+) -> tuple[float, float]:
+    """Value and variance under one covariance: a walk of north is predicted, other is noise."""
     h = functional(problem, fit)
     parameters = np.zeros(fit.design.shape[1])
     parameters[: fit.linear.size] = fit.linear
-    value = float(h @ (parameters + noise.step))
-    white = noise.white * problem.size / max(problem.size - fit.design.shape[1], 1)
-    if noise.kind != "random_walk":
-        return Value(value, math.sqrt(white * float(h @ noise.cofactor @ h)), _dof(problem, fit))
+    value = float(h @ (parameters + point.step))
+    if kind != "random_walk":
+        return value, point.white * float(h @ point.cofactor @ h)
     w = problem.value_weights
-    cross = problem.root_weights * (noise.model.process @ w)
-    whitened = noise.model.whitener @ cross
-    left = noise.model.whitener @ (fit.residual - fit.design @ noise.step)
-    value += float(whitened @ left)
-    gap = h - (noise.model.whitener @ fit.design).T @ whitened
-    spread = float(w @ noise.model.process @ w) - float(whitened @ whitened)
-    variance = white * (max(spread, 0.0) + float(gap @ noise.cofactor @ gap))
-    return Value(value, math.sqrt(variance), _dof(problem, fit))
+    whitener = point.model.whitener
+    whitened = whitener @ (problem.root_weights * (point.model.process @ w))
+    value += float(whitened @ (whitener @ (fit.residual - fit.design @ point.step)))
+    gap = h - (whitener @ fit.design).T @ whitened
+    spread = float(w @ point.model.process @ w) - float(whitened @ whitened)
+    return value, point.white * (max(spread, 0.0) + float(gap @ point.cofactor @ gap))
 
 
 def _dof(problem: Problem, fit: Fit) -> float:
@@ -204,9 +213,9 @@ def neighbours(problem: Problem, fit: Fit, member: Member) -> tuple[Fit, ...]:
 def averaged_value(problem: Problem, fits: Sequence[Fit]) -> Value:
     """Model average over sets of one depth, with the variance between the models.
 
-    Where autocorrelated noise is as good an explanation as any other within 4 BIC, sigma is not
-    smaller than under that noise: what is unattributed widens the result. The walk of a constant
-    over a campaign is no knowledge of its mean, so that a campaign counts it as such noise too.
+    White, wandering and autocorrelated noise take part with equal odds, by their marginal
+    likelihood: what is unattributed widens the result as far as the record speaks for it. The walk
+    of a constant over a campaign is no knowledge of its mean and is left out there.
     """
     if not problem.has_swing:
         plain = [f for f in fits if f.noise is None or f.noise.kind != "random_walk"]
@@ -216,18 +225,11 @@ def averaged_value(problem: Problem, fits: Sequence[Fit]) -> Value:
     weights /= weights.sum()
     keep = weights > 1e-3
     values = [value_of(problem, fit) for fit, k in zip(fits, keep, strict=True) if k]
-    near = [
-        value.sigma
-        for fit, value in zip(
-            [f for f, k in zip(fits, keep, strict=True) if k], values, strict=True
-        )
-        if fit.noise is not None and fit.noise.kind == "ar1" and fit.score < bics.min() + WIDENING
-    ]
     weights = weights[keep] / weights[keep].sum()
     middle = np.array([v.value for v in values])
     mean = float(weights @ middle)
     within = np.array([v.sigma**2 for v in values])
-    variance = max(float(weights @ (within + (middle - mean) ** 2)), *[s**2 for s in near], 0.0)
+    variance = float(weights @ (within + (middle - mean) ** 2))
     finite = [v.dof for v in values]
     dof = math.inf if any(math.isinf(d) for d in finite) else float(weights @ np.array(finite))
     return Value(mean, math.sqrt(variance), dof)

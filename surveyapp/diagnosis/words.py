@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from surveyapp.diagnosis.lines import SpectralLine
 from surveyapp.diagnosis.problem import Problem
 from surveyapp.diagnosis.result import Adoption, Diagnosis, ModelResult, Quantity
 from surveyapp_models.effects.effect import Effect
@@ -58,6 +59,7 @@ def plain_words(
     if not result.adopted and result.verdict != "adequate":
         said.append("No cause is named.")
     said += _ambiguous(result, known)
+    said += [_line(result, line, known) for line in result.lines]
     said += _consequence(result)
     said += _errors(result)
     if result.verdict == "unattributed":
@@ -79,7 +81,12 @@ def _unit(result: Diagnosis) -> str:
 def _small(result: Diagnosis, value: float | None) -> str:
     if value is None:
         return "unknown"
-    return f"{value / result.scale:.1f}{_unit(result)}"
+    return f"{_figure(result, value / result.scale)}{_unit(result)}"
+
+
+def _figure(result: Diagnosis, value: float, sign: str = "") -> str:
+    """A number: to a tenth of an arc-second, else to three figures."""
+    return format(value, f"{sign}.1f" if result.unit == "arcsec" else f"{sign}.3g")
 
 
 def _name(identity: str, known: dict[str, Effect]) -> str:
@@ -90,6 +97,8 @@ def _name(identity: str, known: dict[str, Effect]) -> str:
 
 def _seen(result: Diagnosis) -> str:
     error = _small(result, result.before.rms)
+    if any(w.code == "block_means" for w in result.warnings):
+        error = f"the block means, {error},"
     if result.verdict == "adequate":
         return f"The residuals of {error} look like noise: the model that stands is adequate."
     low = min((t.p for t in result.battery), default=1.0)
@@ -129,6 +138,24 @@ def _ambiguous(result: Diagnosis, known: dict[str, Effect]) -> list[str]:
     return said
 
 
+def _line(result: Diagnosis, line: SpectralLine, known: dict[str, Effect]) -> str:
+    """One spectral line: where, how large, how sure, whose."""
+    unit = result.frequency_unit
+    what = (
+        f"A line at {line.frequency:.6g} {unit} (sigma {line.sigma_frequency:.1g} {unit}) with an "
+        f"amplitude of {line.amplitude / result.scale:.3g}{_unit(result)} (sigma "
+        f"{line.sigma_amplitude / result.scale:.1g}{_unit(result)}) stands out of the noise; noise "
+        f"shows such a peak anywhere with a probability of {line.false_alarm:.1g}"
+    )
+    if line.effect:
+        whose = f"the catalogue has it: {_name(line.effect, known)}"
+    elif line.shared_with:
+        whose = f"{line.shared_with.replace('_', ' ')} has it too, and it is left to that"
+    else:
+        whose = "no known cause is named"
+    return f"{what}; {whose}."
+
+
 def _value(result: Diagnosis, quantity: Quantity) -> str:
     return _small(result, quantity.sigma)
 
@@ -138,7 +165,11 @@ def _consequence(result: Diagnosis) -> list[str]:
     head = f"{what[0].upper()}{what[1:]}"
     shift = (result.averaged.value - result.before.value.value) / result.scale
     sigma, before = _value(result, result.averaged), _value(result, result.before.value)
-    moved = f"moves by {shift:+.1f}{_unit(result)}" if abs(shift) >= 0.05 else "stays"
+    least = 0.05
+    if result.unit != "arcsec":
+        least *= (result.averaged.sigma or 0.0) / result.scale
+    moves = abs(shift) >= least and shift != 0.0
+    moved = f"moves by {_figure(result, shift, '+')}{_unit(result)}" if moves else "stays"
     said = [f"{head} {moved}; its sigma is {sigma} instead of {before}."]
     datum = result.after_best.value_at_datum
     if datum is not None:
@@ -146,7 +177,7 @@ def _consequence(result: Diagnosis) -> list[str]:
             apart = (quantity.value - result.averaged.value) / result.scale
             said.append(
                 f"With {datum.effect.replace('_', ' ')} in the model: {text} "
-                f"{apart:+.1f}{_unit(result)} from that."
+                f"{_figure(result, apart, '+')}{_unit(result)} from that."
             )
     return said
 

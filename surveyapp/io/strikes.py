@@ -116,7 +116,8 @@ class _Book:
         """Find successors in the order of the candidates; of two struck rows the earlier first.
 
         A ``missed`` written below a strike says that the count went on: what is read after it is a
-        later turning point, and the struck one has no successor.
+        later turning point, and the struck one has no successor. A passage has one only until the
+        next turning point is read or missed: what is timed behind it is a later passage.
         """
         begins = {s.strike: s for s in strikes}
         waiting: dict[ReadingKind, list[Struck]] = {}
@@ -126,10 +127,13 @@ class _Book:
                 kind = self.rows[strike.row].kind
                 insort(waiting.setdefault(kind, []), strike, key=lambda s: self.place(s.row))
             elif row.kind is ReadingKind.MISSED and index not in self.by_row:
-                for swing in _SWING_TURNS:
+                for swing in (*_SWING_TURNS, ReadingKind.TRANSIT):
                     waiting.pop(swing, None)
-            elif row.kind in waiting and index not in self.places:
-                self._offer(index, waiting[row.kind])
+            else:
+                if row.kind in _SWING_TURNS and index not in self.by_row:
+                    waiting.pop(ReadingKind.TRANSIT, None)
+                if row.kind in waiting and index not in self.places:
+                    self._offer(index, waiting[row.kind])
 
     def _offer(self, index: int, waiting: list[Struck]) -> None:
         """Give a candidate to the first struck row that it suits."""

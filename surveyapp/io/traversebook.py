@@ -10,7 +10,7 @@ centring is added to the header's sigmas only.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
@@ -163,9 +163,15 @@ def _oriented(
 
 
 def _collect(
-    project: Project, header: TraverseHeader, lines: Sequence[OrientedLine]
+    project: Project,
+    header: TraverseHeader,
+    lines: Sequence[OrientedLine],
+    waiting: Collection[tuple[str, str]],
 ) -> tuple[list[Observation], list[tuple[int, int]], list[Problem]]:
-    """Observations, (place of line, place of observation) of the gyro sides, problems."""
+    """Observations, (place of line, place of observation) of the gyro sides, problems.
+
+    A gyro side whose session is still being observed is passed over.
+    """
     rows = traverse_rows(project, header)
     lengths = _lengths(rows, {station.name: station for station in project.stations})
     observations: list[Observation] = []
@@ -175,6 +181,8 @@ def _collect(
         where = f"{header.book}, line {row.line}"
         if row.kind is K.GYRO:
             found = _oriented(row, header, lines)
+            if not found and (row.at, row.to) in waiting:
+                continue
             if not found:
                 hint = "Its station and target must be those of survey sessions with a sight."
                 problems.append(
@@ -271,6 +279,7 @@ def network_of(
     traverse_name: str | None,
     lines: Sequence[OrientedLine] = (),
     constants: Sequence[GyroConstant] = (),
+    waiting: Collection[tuple[str, str]] = (),
 ) -> Network:
     """Network of one traverse of a project, or of all of them together.
 
@@ -283,6 +292,8 @@ def network_of(
         What the sessions have oriented; gyro rows take their value from here.
     constants : sequence of GyroConstant
         Constants that the lines share; one that is not given is an unknown of the network.
+    waiting : collection of (station, target)
+        Sides whose session is still being observed: their gyro rows are left out.
 
     Returns
     -------
@@ -311,7 +322,7 @@ def network_of(
     warnings: list[ResultWarning] = []
     for header in chosen:
         try:
-            found, sides, faults = _collect(project, header, lines)
+            found, sides, faults = _collect(project, header, lines, waiting)
         except SurveyError as refused:
             problems += refused.problems
             continue

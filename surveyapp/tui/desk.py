@@ -25,7 +25,7 @@ from surveyapp.domain.readings import QUANTITY, Face, Quantity, Reading, Reading
 from surveyapp.errors import SurveyError
 from surveyapp.io.clock import NOTICED_S, Stamp
 from surveyapp.tui import texts
-from surveyapp.tui.views.form import small_text
+from surveyapp.tui.views.form import number_text, small_text
 from surveyapp_models.angles import AngleUnit, format_angle
 
 
@@ -217,7 +217,7 @@ class Desk:
 
     def swings(self) -> bool:
         """Whether turning points are read now that may be missed."""
-        turning = (ReadingKind.REVERSAL, ReadingKind.SCALE_REVERSAL)
+        turning = (ReadingKind.REVERSAL, ReadingKind.SCALE_REVERSAL, ReadingKind.TRANSIT)
         return self.step is Step.SWING and self.what().kind in turning
 
     def times(self) -> bool:
@@ -264,6 +264,11 @@ class Desk:
 
 def question_text(item: Question) -> str:
     """A doubt in words."""
+    if item.scale:
+        return texts.QUESTIONS[item.doubt].format(
+            difference=texts.DIVISIONS.format(value=number_text(item.difference, 2, sign=True)),
+            limit=texts.DIVISIONS.format(value=number_text(item.limit, 2)),
+        )
     return texts.QUESTIONS[item.doubt].format(
         difference=small_text(item.difference), limit=small_text(item.limit).lstrip("+")
     )

@@ -76,6 +76,11 @@ The alidade stays clamped. Type the circle reading of the clamp first
 scale, in divisions with their sign.
 
    -9.2 |---*-----------|-----------*---| +8.6
+
+From the second point on the next one is forecast: its side, its reading
+with an interval, the time to it. A reading outside is asked for once.
+F5 a point not read, F6 strike, Ctrl+Z undo. The screen says ENOUGH when
+the interval of gyro north is the wanted one.
 """
 _TRANSIT: Final = """\
 The alidade stays clamped near north. Type the circle reading of the
@@ -86,11 +91,20 @@ the scale (F2 changes the kind).
    Space     Space     Space
      |    *    |         |    *        * turning points on the scale
    --0---------0----*----0---------
+
+The next transit is forecast from the first on: < goes to smaller, > to
+larger readings. A transit you missed: F5 for each turning point that
+went by, so that the count stays right. One pressed too late: strike it
+(F6) and take the next; nothing takes its place.
 """
 _AUTOMATIC: Final = """\
 Start the measurement on the instrument and type what it delivers, one
 round a row: the gyro azimuth of the line, or (F2) the circle reading
 of gyro north, which needs sights of the target before and after.
+
+From the second round on the screen tells the interval of the mean, what
+two more rounds would make of it, and ENOUGH when it is the wanted one;
+from the fourth on it names a round that stands out.
 """
 _RESULT: Final = """\
 F8 or Enter shows the result: gyro north, the gyro azimuth of each

@@ -165,7 +165,7 @@ F_PURPOSE: Final = "Purpose"
 F_KNOWN: Final = "Known azimuth"
 F_KNOWN_HINT: Final = "grid azimuth, for a calibration; empty: from the coordinates"
 F_WANTED: Final = "Wanted 95 %"
-F_WANTED_HINT: Final = "arc-seconds of gyro north to stop at; may be empty"
+F_WANTED_HINT: Final = "arc-seconds of gyro north to stop at; empty: from the rule book"
 METHODS: Final = {
     "tracking": "tracking: turning points on the circle",
     "amplitude": "amplitude: turning points on the scale, clamped",
@@ -298,8 +298,16 @@ ALERTS: Final = {
     "midpoint_step": "Midpoint jumps at point {number}: check the tripod (p {p:.4f})",
     "damping_break": "Decay changes at point {number}: check follow-up (p {p:.4f})",
     "unclear": "Run breaks at point {number}: go on to point 12 (p {p:.4f})",
+    "passage_missed": "Transit {number} is off the count: strike it, F5 per point",
+    "passage_mistimed": "Transit {number} is mistimed: strike it, take the next",
 }
+CLAMPED_ALERTS: Final = {
+    "midpoint_step": "Midpoint jumps at point {number}: clamp, tripod (p {p:.4f})",
+    "damping_break": "Decay changes at point {number}: draught? (p {p:.4f})",
+}
+ROUND_ALERT: Final = "Round {number} stands out: strike it and repeat (p {p:.4f})"
 LEDGER_COLUMNS: Final = ("row", "time", "kind", "reading", "", 'v "')
+LEDGER_COLUMNS_DIV: Final = ("row", "time", "kind", "reading", "", "v div")
 LEDGER_STRUCK: Final = "struck"
 NEXT_POINT: Final = "next {side} in {time}"
 NEXT_NOW: Final = "next {side} NOW ({time})"
@@ -310,14 +318,38 @@ NEXT_INTERVAL: Final = ' ±{interval}"'
 NORTH_NOW: Final = 'gyro north {north} ±{interval}" (95 %)'
 NORTH_OPEN: Final = "gyro north {north}, interval not known"
 NORTH_NONE: Final = "gyro north from two turning points on"
+NORTH_NONE_SCALE: Final = "gyro north from three scale points on"
+NORTH_NONE_TRANSIT: Final = "gyro north from three transits and two points on"
+NORTH_NONE_ROUND: Final = "gyro north from the first round on"
+NORTH_MISSING: Final = "no gyro north: {problem}"
+AZIMUTH_NOW: Final = 'gyro azimuth {north} ±{interval}" (95 %)'
+AZIMUTH_OPEN: Final = "gyro azimuth {north}, interval not known"
+NEXT_PASSAGE: Final = "transit {way} in {time}"
+NEXT_PASSAGE_NOW: Final = "transit {way} NOW ({time})"
+PASSAGE_OVERDUE: Final = "transit {way} overdue: F5 for each point gone by"
+NEXT_SPREAD: Final = " ±{seconds} s"
+NEXT_READING_DIV: Final = "at {reading} div"
+NEXT_POINT_DIV: Final = "{side} at {reading} div"
+NEXT_INTERVAL_DIV: Final = " ±{interval}"
+TIME_DIFFERENCES: Final = "dt E-W, s  {values}"
+SCHULER_DIV: Final = "Schuler, div"
 AFTER_TWO: Final = '±{interval}" after two more'
 WANTED: Final = 'wanted ±{interval}"'
 ENOUGH: Final = "ENOUGH"
-NO_WANTED: Final = "no wanted interval set"
+RULE_TARGET: Final = 'rule book ±{interval}"'
+TARGET_SOURCE: Final = 'm {sigma}" x 1.96: {book}, {clause}'
+TARGET_UNCONFIRMED: Final = ", unconfirmed"
+NO_TARGET_SET: Final = "no target set"
+TARGET_NOT_IN_BOOK: Final = "no target in {book}"
+TARGET_PROBLEM: Final = "no target: {problem}"
 SCHULER: Final = "Schuler, without tape zero"
 CHANNEL_MIDPOINT: Final = 'v" midpoint '
 CHANNEL_AMPLITUDE: Final = 'v" amplitude'
+CHANNEL_MIDPOINT_DIV: Final = "v div midpoint "
+CHANNEL_AMPLITUDE_DIV: Final = "v div amplitude"
 PLOT_EMPTY: Final = "The swing is drawn from the third turning point on."
+DIVISIONS: Final = "{value} div"
+WAYS: Final = {"R": ">", "L": "<", "": ""}
 
 # strike
 STRIKE_TITLE: Final = "Strike a reading: it stays in the book and no longer counts"

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from surveyapp.core.campaign_columns import block_names
 from surveyapp.core.simulate.campaign import (
     CAMPAIGN_EFFECTS,
     CampaignSpec,
@@ -154,3 +155,11 @@ def test_all_wrong_effects_are_named_together():
     assert len(caught.value.problems) == 2
     with pytest.raises(SurveyError, match="reversal-run"):
         simulate_kind("reversal_run", effects=[], seed=1)
+
+
+def test_a_block_of_work_goes_on_over_midnight_and_ends_with_a_pause() -> None:
+    # 22:00, 23:30, 00:30 and 02:00 are one night shift; 09:00 begins a new block, 23:00 another.
+    hours = (22.0, 23.5, 24.5, 26.0, 33.0, 34.0, 47.0)
+    names = block_names([16000.0 + hour / 24.0 for hour in hours])
+    assert names == ["day 16000"] * 4 + ["day 16001"] * 2 + ["day 16001 b"]
+    assert block_names([None, 16000.9, None]) == ["", "day 16000", ""]

@@ -99,23 +99,31 @@ def test_an_effect_that_the_model_expresses_is_not_separable() -> None:
     assert project(drift, orthonormal_design(fit)).index.size == 0
 
 
-def test_noise_likelihoods_agree_with_the_multivariate_normal() -> None:
+def test_noise_likelihoods_agree_with_the_integrated_multivariate_normal() -> None:
+    # A flat prior of the parameters is a normal one that is very wide: y ~ N(0, C + w J J').
     problem = quiet_run(3)
     fit = fit_members(problem, ())
-    J = fit.design / np.sqrt((fit.design**2).sum(axis=0))
+    basis = np.linalg.qr(fit.design / np.sqrt((fit.design**2).sum(axis=0)))[0]
+    v, n, wide = fit.residual / ARCSEC, problem.size, 1e7
+
+    def minus(white: float, process: np.ndarray) -> float:
+        covariance = white * (np.eye(n) + process) + wide * basis @ basis.T
+        return float(-2.0 * stats.multivariate_normal.logpdf(v, cov=covariance))
+
+    dof = n - basis.shape[1]
+    plain = minus(float(v @ v) / dof, np.zeros((n, n)))
     for found in with_noise(problem, fit):
-        noise = found.noise
-        assert noise is not None
-        white = noise.white / ARCSEC**2
-        covariance = white * (np.eye(problem.size) + noise.model.process)
-        v = fit.residual / ARCSEC
-        b = optimize.lsq_linear(
-            np.linalg.solve(np.linalg.cholesky(covariance), J),
-            np.linalg.solve(np.linalg.cholesky(covariance), v),
-        ).x
-        minus = -2.0 * stats.multivariate_normal.logpdf(v - J @ b, cov=covariance)
-        constant = problem.size * (np.log(2.0 * np.pi) + 1.0)
-        assert noise.minus_two_log == pytest.approx(minus - constant, abs=1e-6)
+        assert found.noise is not None
+        gains = [
+            plain - minus(point.white / ARCSEC**2, point.model.process)
+            for point in found.noise.points
+        ]
+        shares = np.array([point.share for point in found.noise.points])
+        relative = np.exp(0.5 * (np.array(gains) - gains[0]))
+        np.testing.assert_allclose(relative, shares / shares[0], rtol=1e-3)
+        grid = sum(m.kind == found.noise.kind for m in noise_models(problem))
+        average = gains[0] + 2.0 * np.log(1.0 / shares[0] / grid)
+        assert found.noise.gain == pytest.approx(average, abs=1e-3)
 
 
 def test_every_noise_model_is_whitened() -> None:

@@ -143,6 +143,25 @@ def test_other_kinds_are_replaced_by_the_next_of_their_kind() -> None:
     ]
 
 
+def timed(*rows: str) -> FieldBook:
+    """A book whose rows are ten seconds apart."""
+    text = "elapsed_s," + HEADER
+    text += "".join(f"{10 * i},{i},{row}\n" for i, row in enumerate(rows, 1))
+    return parse_field_book(text, angle_unit=AngleUnit.DEG, where="b")
+
+
+@pytest.mark.parametrize("between", ["scale_reversal,-7,,,,", "missed,,,,,"])
+def test_a_passage_behind_the_next_turning_point_is_a_later_one(between: str) -> None:
+    begin = ["scale_reversal,7,,,,", "transit,0,,,,", "strike,2,,,,too late"]
+    assert order(timed(*begin, "transit,0,,,,", between)) == [
+        "1",
+        "4",
+        "5m" if between.startswith("missed") else "5",
+    ]
+    found = timed(*begin, between, "transit,0,,,,")
+    assert [row.seq for row in found.live] == [1, 4, 5]
+
+
 @pytest.mark.parametrize(
     ("rows", "word"),
     [

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import csv
 import shutil
 from collections.abc import Awaitable, Callable
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from helpers_tui import (
     LARGE,
@@ -21,7 +23,8 @@ from textual.pilot import Pilot
 
 from surveyapp import api_practice
 from surveyapp.api_session import NewRow, Observation
-from surveyapp.core.simulate.session import book_text
+from surveyapp.core.simulate.session import book_text, simulate_session
+from surveyapp.core.simulate.specification import SessionSpec, SwingMethod
 from surveyapp.core.steps import Step
 from surveyapp.domain.project import Method
 from surveyapp.domain.readings import ReadingKind
@@ -127,6 +130,56 @@ def test_alarm(snap_compare: Snap, tmp_path: Path, size: tuple[int, int]) -> Non
     book.write_text(text, encoding="utf-8")
     app = app_on(folder, seconds=2980.0)
     assert snap_compare(app, terminal_size=size, run_before=keys("enter"))
+
+
+def clamped(tmp_path: Path, method: SwingMethod, kind: str, count: int) -> tuple[Path, float]:
+    """A clamped session of the 15" class after so many rows of a kind, and 100 s later."""
+    folder = make_project(tmp_path / "ramp-3", method)
+    text = (folder / "project.toml").read_text(encoding="utf-8")
+    text = text.replace("wanted_interval_arcsec = 8.0\n", "")
+    text = text.replace("format = 1\n", 'format = 1\nrule_book = "cn-coal-15"\n')
+    (folder / "project.toml").write_text(text, encoding="utf-8")
+    spec = SessionSpec(method=method, points=8, tape_zero_div=(0.2, 0.25))
+    rows = simulate_session(spec, np.random.default_rng(5)).rows
+    places = [i for i, row in enumerate(rows) if row["kind"] == kind]
+    rows = rows[: places[count - 1] + 1]
+    (folder / "observations" / "r1.csv").write_text(book_text(rows), encoding="utf-8")
+    return folder, float(rows[-1]["elapsed_s"]) + 100.0
+
+
+@sizes
+@pytest.mark.parametrize(
+    ("method", "kind"), [("amplitude", "scale_reversal"), ("transit", "transit")]
+)
+def test_clamped_session(
+    snap_compare: Snap, tmp_path: Path, method: SwingMethod, kind: str, size: tuple[int, int]
+) -> None:
+    """After six points or passages, with the target of the rule book."""
+    folder, seconds = clamped(tmp_path, method, kind, 6)
+    assert snap_compare(app_on(folder, seconds), terminal_size=size, run_before=keys("enter"))
+
+
+def test_passage_pressed_late(snap_compare: Snap, tmp_path: Path) -> None:
+    folder, seconds = clamped(tmp_path, "transit", "transit", 5)
+    book = folder / "observations" / "r1.csv"
+    rows = list(csv.DictReader(book.read_text(encoding="utf-8").splitlines()))
+    rows[-1]["elapsed_s"] = f"{float(rows[-1]['elapsed_s']) + 5.0:.3f}"
+    book.write_text(book_text(tuple(rows)), encoding="utf-8")
+    assert snap_compare(app_on(folder, seconds), terminal_size=SMALL, run_before=keys("enter"))
+
+
+@sizes
+def test_automatic_session(snap_compare: Snap, tmp_path: Path, size: tuple[int, int]) -> None:
+    folder = make_project(tmp_path / "ramp-3", "automatic")
+    text = (folder / "project.toml").read_text(encoding="utf-8").replace("wild-gak1", "hgg05")
+    (folder / "project.toml").write_text(text, encoding="utf-8")
+    clock = Clock()
+    seen = Observation(folder, "r1", now=clock.now, steady=clock.steady)
+    for value in ("321-53-09", "321-53-15", "321-53-14", "321-54-12", "321-53-11", "321-53-12"):
+        clock.pass_by(300.0)
+        seen.record(NewRow(ReadingKind.AZIMUTH, value, "dms"))
+    seen.close()
+    assert snap_compare(app_on(folder, 2000.0), terminal_size=size, run_before=keys("enter"))
 
 
 @sizes

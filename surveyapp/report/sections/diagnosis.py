@@ -43,6 +43,8 @@ def blocks(
     for name, (before, after) in channels.items():
         found += _figures(diagnosis, name, before, after)
     found.append(_candidates(diagnosis))
+    if diagnosis.lines:
+        found += [Heading("Spectral lines", 2), _lines(diagnosis)]
     if diagnosis.ambiguous:
         found += [Heading("Not separable", 2), _ambiguous(diagnosis)]
     return tuple(found)
@@ -133,6 +135,29 @@ def _candidates(diagnosis: Diagnosis) -> Table:
             i for i, item in enumerate(diagnosis.candidates) if item.verdict == "adopted"
         ),
     )
+
+
+def _lines(diagnosis: Diagnosis) -> Table:
+    rows = tuple(
+        (
+            f"{line.frequency:.6g}",
+            f"{line.sigma_frequency:.1g}",
+            f"{line.amplitude / diagnosis.scale:.3g}",
+            f"{line.sigma_amplitude / diagnosis.scale:.1g}",
+            f"{line.false_alarm:.1g}",
+            line.effect or (f"left to {line.shared_with}" if line.shared_with else "unattributed"),
+        )
+        for line in diagnosis.lines
+    )
+    head = (
+        f"frequency {diagnosis.frequency_unit}",
+        "sigma",
+        f"amplitude {diagnosis.unit}",
+        "sigma",
+        "false alarm",
+        "cause",
+    )
+    return Table(head, rows, align="rrrrrl")
 
 
 def _ambiguous(diagnosis: Diagnosis) -> Table:

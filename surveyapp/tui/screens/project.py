@@ -132,7 +132,7 @@ class ProjectScreen(Screen[None]):
         """Orient in a thread; the result comes as a message."""
         try:
             project = api.open_project(self.folder)
-            result, _ = api_session.orient_observed(project)
+            result = api_session.orient_observed(project)
             self.post_message(self.Oriented(project, result))
         except SurveyError as error:
             self.post_message(self.Failed(error))

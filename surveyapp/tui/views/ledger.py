@@ -5,7 +5,7 @@ from __future__ import annotations
 from surveyapp.core.progress import Progress
 from surveyapp.domain.readings import FieldBook, Reading, ReadingKind
 from surveyapp.tui import texts
-from surveyapp.tui.views.form import arcsec_text
+from surveyapp.tui.views.progress import residual_text
 
 QUIET = (ReadingKind.NOTE, ReadingKind.STRIKE)
 
@@ -14,9 +14,13 @@ def ledger_rows(
     book: FieldBook, progress: Progress | None, rows: tuple[Reading, ...]
 ) -> list[tuple[str, ...]]:
     """Cells of the given rows: number, time, kind, reading, state, residual or why it is struck."""
-    residuals = {}
+    residuals: dict[int, str] = {}
     if progress is not None:
-        residuals = {point.seq: point.residual for point in progress.points}
+        residuals = {
+            point.seq: residual_text(progress, point.residual)
+            for point in progress.points
+            if point.residual is not None
+        }
     sides = {row.seq: row.side for row in book.live}
     struck = set(book.struck)
     reasons = strike_reasons(book)
@@ -27,7 +31,7 @@ def ledger_rows(
             _kind(row),
             row.text or row.note,
             texts.LEDGER_STRUCK if row.seq in struck else _place(row, sides.get(row.seq)),
-            reasons.get(row.seq, "") if row.seq in struck else _residual(residuals.get(row.seq)),
+            (reasons if row.seq in struck else residuals).get(row.seq, ""),
         )
         for row in rows
     ]
@@ -47,10 +51,6 @@ def _place(row: Reading, side: str | None) -> str:
     if row.face is not None:
         return f"{row.target} {row.face}".strip()
     return "" if side is None else str(side)
-
-
-def _residual(value: float | None) -> str:
-    return "" if value is None else arcsec_text(value, sign=True)
 
 
 def book_rows(book: FieldBook, kinds: tuple[ReadingKind, ...]) -> tuple[Reading, ...]:

@@ -7,6 +7,7 @@ from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.widgets import Static
 
+from surveyapp.api_session import Aim
 from surveyapp.core.progress import Progress
 from surveyapp.tui import texts
 from surveyapp.tui.views.progress import (
@@ -14,9 +15,12 @@ from surveyapp.tui.views.progress import (
     channel_lines,
     countdown_text,
     forecast_text,
+    is_near,
     north_text,
     outlook_text,
     schuler_text,
+    target_source_text,
+    time_difference_text,
 )
 from surveyapp_models.angles import AngleUnit
 
@@ -24,10 +28,11 @@ from surveyapp_models.angles import AngleUnit
 class Forecast(Vertical):
     """What the run says so far."""
 
-    def __init__(self, unit: AngleUnit, wanted: float | None) -> None:
+    def __init__(self, unit: AngleUnit, method: str, aim: Aim) -> None:
         super().__init__()
         self.unit = unit
-        self.wanted = wanted
+        self.method = method
+        self.aim = aim
         self.progress: Progress | None = None
 
     def compose(self) -> ComposeResult:
@@ -39,26 +44,28 @@ class Forecast(Vertical):
     def show(self, progress: Progress) -> None:
         """Show another state of the run."""
         self.progress = progress
-        text = Text(f"{north_text(progress, self.unit)}  ", no_wrap=True)
-        outlook = outlook_text(progress, self.wanted)
+        north = north_text(progress, self.unit, self.method)
+        text = Text(f"{north}  ", no_wrap=True)
+        outlook = outlook_text(progress, self.aim)
         if progress.north is not None:
             style = "bold" if outlook.endswith(texts.ENOUGH) else ""
             text.append(f"\n{outlook}", style=style)
-        if progress.schuler_means:
-            text.append(f"\n{schuler_text(progress, self.unit)}")
-        for line in channel_lines(progress, 6):
+            if source := target_source_text(self.aim.target):
+                text.append(f"\n{source}")
+        lines = (time_difference_text(progress), schuler_text(progress, self.unit))
+        for line in (*filter(None, lines), *channel_lines(progress, 6)):
             text.append(f"\n{line}")
         self.query_one("#facts", Static).update(text)
         alert = self.query_one("#alert", Static)
-        alert.update(alert_text(progress.alert))
+        alert.update(alert_text(progress, self.method))
         alert.display = progress.alert is not None
 
     def count_down(self, remaining_s: float | None) -> bool:
         """Show the time to the next turning point; True while the moment is near."""
         if self.progress is None:
             return False
-        text = countdown_text(self.progress.next, remaining_s)
-        near = text.startswith(texts.NEXT_NOW[:4]) and " NOW " in text
+        text = countdown_text(self.progress, remaining_s)
+        near = is_near(self.progress, remaining_s)
         line = Text(text, style="reverse bold" if near else "bold")
         line.append("  " + forecast_text(self.progress, self.unit), style="not reverse")
         self.query_one("#countdown", Static).update(line)

@@ -24,14 +24,23 @@ class Ledger(Vertical):
         with VerticalScroll(can_focus=False):
             yield Static(id="ledger-rows", markup=False)
 
-    def show(self, rows: Sequence[Sequence[str]], *, hint: str = "") -> None:
-        """Replace all rows; without any, say what is to be done."""
+    def on_resize(self) -> None:
+        """Keep the end in sight where an alarm or a longer forecast takes lines from the ledger."""
+        self.to_end()
+
+    def to_end(self) -> None:
+        """Scroll to the latest reading, once everything has its place."""
+        self.call_after_refresh(self.query_one(VerticalScroll).scroll_end, animate=False)
+
+    def show(self, rows: Sequence[Sequence[str]], *, hint: str = "", scale: bool = False) -> None:
+        """Replace all rows; without any, say what is to be done. ``scale``: v in divisions."""
         if not rows:
             self.query_one("#ledger-head", Static).update("")
             self.query_one("#ledger-rows", Static).update(hint)
             return
-        table = [texts.LEDGER_COLUMNS, *rows]
-        shown = [i for i in range(len(texts.LEDGER_COLUMNS)) if any(row[i] for row in rows)]
+        head = texts.LEDGER_COLUMNS_DIV if scale else texts.LEDGER_COLUMNS
+        table = [head, *rows]
+        shown = [i for i in range(len(head)) if any(row[i] for row in rows)]
         widths = {i: max(len(row[i]) for row in table if not _reason(row, i)) for i in shown}
         lines = [
             " ".join(
@@ -46,7 +55,7 @@ class Ledger(Vertical):
             text.append(f"{line}\n", style="strike" if row[STATE] == texts.LEDGER_STRUCK else "")
         text.rstrip()
         self.query_one("#ledger-rows", Static).update(text)
-        self.query_one(VerticalScroll).scroll_end(animate=False)
+        self.to_end()
 
 
 def _reason(row: Sequence[str], column: int) -> bool:

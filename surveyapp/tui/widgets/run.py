@@ -49,7 +49,8 @@ class RunPane(Vertical):
     def compose(self) -> ComposeResult:
         """The three parts."""
         yield SwingPlot()
-        yield Forecast(self.desk.unit, self.desk.observation.wanted_interval())
+        observation = self.desk.observation
+        yield Forecast(self.desk.unit, observation.session.method, observation.aim())
         yield Ledger()
 
     def on_mount(self) -> None:
@@ -57,14 +58,15 @@ class RunPane(Vertical):
         self.set_interval(1.0, self.tick)
 
     def swinging(self) -> bool:
-        """Whether turning points are being read that can be forecast."""
-        tracking = self.desk.observation.session.method == "tracking"
-        return tracking and self.desk.step is Step.SWING
+        """Whether the observation itself is being read, whatever its method."""
+        return self.desk.step is Step.SWING
 
     def show_book(self) -> None:
         """Show the readings of the step, and judge the run anew while it swings."""
         swinging = self.swinging()
-        self.query_one(SwingPlot).display = swinging
+        swings = self.desk.observation.session.method != "automatic"
+        self.query_one(SwingPlot).display = swinging and swings
+        self.query_one("#countdown").display = swings
         self.query_one(Forecast).display = swinging
         self.show_rows()
         if swinging:
@@ -79,9 +81,12 @@ class RunPane(Vertical):
         elif self.desk.step is Step.RESULT:  # once more all that was read
             kinds = tuple(kind for kind in ReadingKind if kind not in QUIET)
         rows = book_rows(observation.book, kinds)
-        hint = texts.STEP_HINTS[self.desk.step]
-        shown = ledger_rows(observation.book, self.desk.progress, rows)
-        self.query_one(Ledger).show(shown, hint=hint)
+        progress = self.desk.progress
+        self.query_one(Ledger).show(
+            ledger_rows(observation.book, progress, rows),
+            hint=texts.STEP_HINTS[self.desk.step],
+            scale=progress is not None and progress.scale,
+        )
 
     @work(thread=True, exclusive=True)
     def judge(self) -> None:

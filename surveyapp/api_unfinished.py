@@ -1,0 +1,41 @@
+"""Projects with sessions that are still being observed, re-exported by ``surveyapp.api``."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
+from surveyapp.domain.project import Project, ResultWarning
+
+Folder = str | os.PathLike[str]
+
+
+def without_unfinished(project: Project, *, keep: Iterable[str] = ()) -> Project:
+    """Project without the sessions that are still being observed, a warning for each.
+
+    Parameters
+    ----------
+    project : Project
+    keep : iterable of str
+        Ids of sessions that stay whatever they lack.
+    """
+    from surveyapp.core.unfinished import without_unfinished as without
+    from surveyapp.io.seals import is_closed
+
+    folder = Path(project.path) if project.path else None
+    return without(
+        project,
+        keep=frozenset(keep),
+        closed=lambda name: folder is not None and is_closed(folder, name),
+    )
+
+
+def unfinished(project: Project | Folder) -> tuple[ResultWarning, ...]:
+    """What is left out of a project's results because it is still being observed."""
+    from surveyapp import api
+
+    if not isinstance(project, Project):
+        project = api.open_project(project)
+    told = len(project.warnings)
+    return without_unfinished(project).warnings[told:]
