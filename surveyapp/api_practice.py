@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from surveyapp import api
-from surveyapp.api_entry import Expected
 from surveyapp.api_session import Observation
-from surveyapp.core.steps import STEP_NOTE, Step
+from surveyapp.core.steps import STEP_NOTE, Expected, Step
 from surveyapp.domain.project import Method
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import Problem, SurveyError

@@ -119,7 +119,8 @@ def open_grid(text: str) -> Grid:
     Raises
     ------
     SurveyError
-        If pyproj cannot read it, or if it is no projected CRS: then it has no convergence.
+        If pyproj cannot read it or compute with it, or if it is no projected CRS: then it has no
+        convergence.
     """
     import pyproj
     from pyproj import CRS, Proj
@@ -137,11 +138,16 @@ def open_grid(text: str) -> Grid:
         raise _crs_problem(
             f"a {kind} has no meridian convergence", f"{text} ({horizontal.name})", ""
         )
+    try:
+        projection = Proj(horizontal, preserve_units=False)
+    except CRSError as error:  # some old grids stand in the register without usable parameters
+        named = f"{text} ({horizontal.name})"
+        raise _crs_problem("this crs cannot be computed with", named, "") from error
     directions = {axis.direction.lower() for axis in horizontal.axis_info}
     return Grid(
         text=text,
         name=horizontal.name,
-        projection=Proj(horizontal, preserve_units=False),
+        projection=projection,
         geodesic=geod,
         sign_e=-1.0 if "west" in directions else 1.0,
         sign_n=-1.0 if "south" in directions and "north" not in directions else 1.0,

@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 from surveyapp.api_entry import (
-    Expected,
     Understood,
     expected,
     next_kind,
@@ -20,7 +19,7 @@ from surveyapp.api_session import NewRow, Observation
 from surveyapp.core.entry import EntryError
 from surveyapp.core.plausible import Question
 from surveyapp.core.progress import Progress
-from surveyapp.core.steps import BEFORE, Step, kinds_of, steps_of
+from surveyapp.core.steps import BEFORE, Expected, Step, kinds_of, steps_of
 from surveyapp.domain.readings import QUANTITY, Face, Quantity, Reading, ReadingKind
 from surveyapp.errors import SurveyError
 from surveyapp.io.clock import NOTICED_S, Stamp

@@ -292,6 +292,10 @@ QUESTIONS: Final = {
     "faces_contradict": "Faces differ by 180° and {difference}.",
     "sight_moved": "{difference} from the last sight.",
     "collimation_jump": "2c jumps by {difference}.",
+    "zeniths_contradict": "Faces differ from 360° by {difference}.",
+    "clamp_moved": "{difference} from the clamp reading before.",
+    "outside_rounds": "{difference} from the rounds so far, ±{limit}.",
+    "off_scale": "{difference} beyond the scale's end at {limit}.",
 }
 ALERTS: Final = {
     "gross_error": "Point {number} stands out: strike it and repeat (p {p:.4f})",

@@ -12,8 +12,10 @@ from textual.screen import ModalScreen, Screen
 from textual.widgets import Input, Select, Static, TextArea
 
 from surveyapp import api_home
+from surveyapp.core.geodesy import open_grid
 from surveyapp.core.simulate.session import book_text
 from surveyapp.domain.readings import Face
+from surveyapp.errors import SurveyError
 from surveyapp.tui import help_texts, screens
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.help import HelpScreen
@@ -228,3 +230,14 @@ async def test_the_sound_is_switched_and_remembered(monkeypatch: pytest.MonkeyPa
         app.on_run_pane_near()
     assert bells == [1]
     assert not SurveyApp(None).settings.sound
+
+
+@pytest.mark.parametrize("words", ["portugal bonne", "utm grid system", "faroe"])
+def test_a_grid_of_the_register_that_cannot_be_computed_with_is_not_offered(words: str) -> None:
+    here = api_home.read_stations("K1 180000 240000")
+    assert api_home.find_grids(words, here) == ()
+
+
+def test_a_project_on_such_a_grid_says_so() -> None:
+    with pytest.raises(SurveyError, match="cannot be computed with"):
+        open_grid("EPSG:2963")
