@@ -452,7 +452,10 @@ KEY_DIAGNOSE: Final = "Diagnose"
 KEY_ADOPT: Final = "Adopt"
 KEY_YES: Final = "Yes"
 NOTHING_TO_ADOPT: Final = "No effect is named here: there is nothing to adopt."
-ADOPT_ASK: Final = "Adopt {names}? It is written into project.toml, and the next result uses it."
+D_SENTENCE: Final = "· {sentence}\n"
+ADOPT_ASK: Final = (
+    "Adopt this?\n{names}\n\nIt is written into project.toml; the next result uses it."
+)
 CONFIRM_KEYS: Final = "Enter: yes   Escape: no"
 ADOPTED: Final = "written: {place}"
 
@@ -492,7 +495,8 @@ SIGN_MEANING: Final = (
     "Its book and its table are sealed in the ledger. Nothing is locked away:\n"
     "`surveyapp reopen` opens it again and keeps the reason."
 )
-SIGN_NAME: Final = "your name; Enter signs, Escape does not"
+SIGN_NAME: Final = "your name"
+SIGN_KEYS: Final = "Enter signs   Escape does not"
 SIGNED: Final = "closed and signed by {name}; files sealed: {files}"
 CLOSED_SESSION: Final = "READING ONLY: closed and signed"
 KEY_SIGN: Final = "Close and sign"

@@ -28,7 +28,9 @@ from surveyapp.core.simulate.specification import SessionSpec, SwingMethod
 from surveyapp.core.steps import Step
 from surveyapp.domain.project import Method
 from surveyapp.domain.readings import ReadingKind
+from surveyapp.tui import texts
 from surveyapp.tui.app import SurveyApp
+from surveyapp.tui.screens.confirm import ConfirmScreen
 from surveyapp.tui.widgets.instrument import InstrumentPane
 
 PROJECTS = Path(__file__).resolve().parents[2] / "projects"
@@ -211,8 +213,8 @@ def test_a_narrow_window(snap_compare: Snap, tmp_path: Path) -> None:
     assert snap_compare(app, terminal_size=(40, 12), run_before=keys("enter"))
 
 
-@sizes
-def test_result(snap_compare: Snap, tmp_path: Path, size: tuple[int, int]) -> None:
+def at_result(tmp_path: Path) -> SurveyApp:
+    """A session that stands at its result."""
     folder = observed(tmp_path, 26)
     clock = Clock()
     clock.pass_by(4200.0)
@@ -220,8 +222,38 @@ def test_result(snap_compare: Snap, tmp_path: Path, size: tuple[int, int]) -> No
     seen.record(NewRow(ReadingKind.NOTE, note="quiet, dry"))
     seen.go_to(Step.RESULT)
     seen.close()
-    app = app_on(folder, seconds=4210.0)
+    return app_on(folder, seconds=4210.0)
+
+
+@sizes
+def test_result(snap_compare: Snap, tmp_path: Path, size: tuple[int, int]) -> None:
+    app = at_result(tmp_path)
     assert snap_compare(app, terminal_size=size, run_before=keys("enter", "f8"))
+
+
+@sizes
+def test_signing(snap_compare: Snap, tmp_path: Path, size: tuple[int, int]) -> None:
+    app = at_result(tmp_path)
+    press = keys("enter", "f8", "f6", *"A. Mu")
+    assert snap_compare(app, terminal_size=size, run_before=press)
+
+
+@sizes
+def test_diagnosis(snap_compare: Snap, tmp_path: Path, size: tuple[int, int]) -> None:
+    """What is missing in the model of a run of 1966."""
+    folder = sample(tmp_path, "johannesburg-1966")
+    assert snap_compare(app_on(folder), terminal_size=size, run_before=keys("d"))
+
+
+@sizes
+def test_a_question_before_something_is_written(snap_compare: Snap, size: tuple[int, int]) -> None:
+    async def ask(pilot: Pilot[int]) -> None:
+        await keys()(pilot)
+        question = texts.ADOPT_ASK.format(names="Change of damping during the run")
+        pilot.app.push_screen(ConfirmScreen(question))
+        await pilot.pause()
+
+    assert snap_compare(app_on(None), terminal_size=size, run_before=ask)
 
 
 @pytest.mark.parametrize("times", [1, 2], ids=["light", "contrast"])

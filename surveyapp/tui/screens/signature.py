@@ -31,6 +31,7 @@ class SignatureScreen(ModalScreen[str | None]):
             line = Input(placeholder=texts.SIGN_NAME, compact=True, select_on_focus=False)
             line.cursor_blink = False
             yield line
+            yield Static(texts.SIGN_KEYS, classes="hint", markup=False)
 
     def on_mount(self) -> None:
         """What was half typed stands there again."""
