@@ -1,4 +1,4 @@
-"""Passages of a clamped swing: the damped cosine passes the division at them, found in few steps."""
+"""Passages of a clamped swing: the damped cosine passes the division there, in few steps."""
 
 from __future__ import annotations
 
