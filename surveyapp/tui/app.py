@@ -18,13 +18,14 @@ from surveyapp.api_session import Observation
 from surveyapp.errors import SurveyError
 from surveyapp.io.clock import local_now, steady_seconds
 from surveyapp.io.settings import read_settings
-from surveyapp.tui import help_texts, texts
+from surveyapp.tui import texts
 from surveyapp.tui.messages import ResultWanted, SessionLeft
 from surveyapp.tui.screens.help import HelpScreen
 from surveyapp.tui.screens.home import HomeScreen
 from surveyapp.tui.screens.project import ProjectScreen
 from surveyapp.tui.screens.result import ResultScreen
 from surveyapp.tui.screens.session import SessionScreen
+from surveyapp.tui.texts import help_texts
 from surveyapp.tui.themes import THEMES
 
 UNLISTED = ("command_palette", "app.focus_previous", "app.focus_next", "screen.copy_text")

@@ -16,13 +16,14 @@ from surveyapp.core.geodesy import open_grid
 from surveyapp.core.simulate.session import book_text
 from surveyapp.domain.readings import Face
 from surveyapp.errors import SurveyError
-from surveyapp.tui import help_texts, screens
+from surveyapp.tui import screens
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.help import HelpScreen
 from surveyapp.tui.screens.home import HomeScreen
 from surveyapp.tui.screens.new_project import NewProjectScreen
 from surveyapp.tui.screens.session import SessionScreen
 from surveyapp.tui.screens.strike import StrikeScreen
+from surveyapp.tui.texts import help_texts
 from surveyapp.tui.views.form import small_text
 from surveyapp.tui.views.ledger import ledger_rows
 from surveyapp.tui.widgets.entry import EntryLine

@@ -12,17 +12,21 @@ from surveyapp.core.run_alert import Trouble
 from surveyapp.core.steps import State, Step, steps_of
 from surveyapp.domain.project import Method
 from surveyapp.domain.readings import ReadingKind
-from surveyapp.tui import help_texts, texts
+from surveyapp.tui import texts
+from surveyapp.tui.texts import help_texts
 
-TUI = Path(texts.__file__).parent
+CATALOGUE = Path(texts.__file__).parent
+TUI = CATALOGUE.parent
 METHODS: tuple[Method, ...] = ("tracking", "amplitude", "transit", "automatic")
 
 
 def test_every_text_is_shown_somewhere() -> None:
-    names = re.findall(r"^([A-Z][A-Z0-9_]*): Final", Path(texts.__file__).read_text("utf-8"), re.M)
-    sources = [p.read_text("utf-8") for p in TUI.rglob("*.py") if p.name != "texts.py"]
+    catalogue = "\n".join(path.read_text("utf-8") for path in CATALOGUE.glob("*.py"))
+    names = re.findall(r"^([A-Z][A-Z0-9_]*): Final", catalogue, re.M)
+    sources = [p.read_text("utf-8") for p in TUI.rglob("*.py") if p.parent != CATALOGUE]
     source = "\n".join(sources)
     assert len(names) > 100
+    assert len(set(names)) == len(names)  # no module hides a text of another
     assert [name for name in names if not re.search(rf"\btexts\.{name}\b", source)] == []
 
 

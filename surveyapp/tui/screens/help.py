@@ -10,7 +10,8 @@ from textual.containers import VerticalScroll
 from textual.screen import ModalScreen
 from textual.widgets import Static
 
-from surveyapp.tui import help_texts, texts
+from surveyapp.tui import texts
+from surveyapp.tui.texts import help_texts
 
 
 class HelpScreen(ModalScreen[None]):

@@ -19,13 +19,14 @@ from surveyapp.api_practice import Practice
 from surveyapp.api_session import Observation
 from surveyapp.core.steps import Step
 from surveyapp.errors import SurveyError
-from surveyapp.tui import help_texts, texts
+from surveyapp.tui import texts
 from surveyapp.tui.desk import Desk, NotWrittenError, problem_text
 from surveyapp.tui.drafts import Draft
 from surveyapp.tui.messages import ResultWanted, SessionLeft
 from surveyapp.tui.screens.help import HelpScreen
 from surveyapp.tui.screens.strike import StrikeScreen
 from surveyapp.tui.session_keys import HIDDEN, KEYS, ORDERED
+from surveyapp.tui.texts import help_texts
 from surveyapp.tui.views.observation import opening_warning, session_title
 from surveyapp.tui.widgets.entry import EntryLine, ReadingInput
 from surveyapp.tui.widgets.instrument import InstrumentPane
