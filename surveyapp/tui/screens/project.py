@@ -26,10 +26,8 @@ from surveyapp.tui import texts
 from surveyapp.tui.drafts import Draft
 from surveyapp.tui.page_keys import page_bindings
 from surveyapp.tui.screens.new_session import NewSessionScreen
-from surveyapp.tui.views.checks import CHECK_COLUMNS, check_rows, summary
-from surveyapp.tui.views.lines import LINE_COLUMNS, line_rows
-from surveyapp.tui.views.project import details_of
-from surveyapp.tui.views.session import SESSION_COLUMNS, session_rows
+from surveyapp.tui.views.checks import summary
+from surveyapp.tui.views.project import LISTS, details_of, page_rows
 from surveyapp.tui.widgets.constants import ConstantsPage
 from surveyapp.tui.widgets.problems import Problems
 from surveyapp.tui.widgets.records import Records
@@ -92,30 +90,14 @@ class ProjectScreen(Screen[None]):
         """Title, pages, keys."""
         yield TitleBar(self.title_text)
         with TabbedContent():
-            with TabPane(texts.TAB_SESSIONS, id="sessions"):
-                yield Records(
-                    SESSION_COLUMNS,
-                    empty=texts.NO_SESSIONS,
-                    details=partial(self.details, "sessions"),
-                )
-            with TabPane(texts.TAB_LINES, id="lines"):
-                yield Records(
-                    LINE_COLUMNS, empty=texts.NO_LINES, details=partial(self.details, "lines")
-                )
-            with TabPane(texts.TAB_CONSTANTS, id="constants"):
-                yield ConstantsPage()
-            with TabPane(texts.TAB_CHECKS, id="checks"):
-                yield Records(
-                    CHECK_COLUMNS,
-                    empty=texts.NO_CHECK_ROWS,
-                    details=partial(self.details, "checks"),
-                )
-            with TabPane(texts.TAB_WARNINGS, id="warnings"):
-                yield Records(
-                    (texts.COL_WARNING,),
-                    empty=texts.NO_WARNINGS,
-                    details=partial(self.details, "warnings"),
-                )
+            for page, title in PAGES.items():
+                with TabPane(title, id=page):
+                    if page == "constants":
+                        yield ConstantsPage()
+                    else:
+                        columns, empty = LISTS[page]
+                        details = partial(self.details, page)
+                        yield Records(columns, empty=empty, details=details)
         yield Footer(show_command_palette=False)
 
     def on_mount(self) -> None:
@@ -142,17 +124,10 @@ class ProjectScreen(Screen[None]):
         self.query(Problems).remove()
         self.query_one(TabbedContent).display = True
         self.project, self.result = message.project, message.result
-        unit = message.project.angle_unit
         result = message.result
         self.query_one(TitleBar).state = summary(result)
-        rows: dict[str, list[tuple[str, ...]]] = {
-            "sessions": session_rows(message.project, result),
-            "lines": line_rows(result, unit),
-            "checks": check_rows(result),
-            "warnings": [(warning.code,) for warning in result.warnings],
-        }
-        for name, values in rows.items():
-            self.query_one(f"#{name} Records", Records).show(values)
+        for page, rows in page_rows(message.project, result).items():
+            self.query_one(f"#{page} Records", Records).show(rows)
         self.query_one(ConstantsPage).show(result)
         self.action_page(self.query_one(TabbedContent).active)
         if not self.resumed:

@@ -27,7 +27,7 @@ from surveyapp.tui.screens.help import HelpScreen
 from surveyapp.tui.screens.strike import StrikeScreen
 from surveyapp.tui.session_keys import HIDDEN, KEYS, ORDERED
 from surveyapp.tui.texts import help_texts
-from surveyapp.tui.views.observation import opening_warning, session_title
+from surveyapp.tui.views.observation import opening_warning, session_state, session_title
 from surveyapp.tui.widgets.entry import EntryLine, ReadingInput
 from surveyapp.tui.widgets.instrument import InstrumentPane
 from surveyapp.tui.widgets.run import RunPane
@@ -80,9 +80,7 @@ class SessionScreen(Screen[None]):
 
     def on_mount(self) -> None:
         """Show where the book stands."""
-        writable = self.observation.writable
-        closed = texts.CLOSED_SESSION if self.observation.closed else texts.READING_ONLY
-        self.query_one(TitleBar).state = texts.WRITING if writable else closed
+        self.query_one(TitleBar).state = session_state(self.observation)
         entry = self.query_one(EntryLine)
         warning = opening_warning(self.observation)
         if warning:

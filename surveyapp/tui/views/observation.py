@@ -23,3 +23,10 @@ def opening_warning(observation: Observation) -> str:
         return texts.TORN.format(file=observation.torn)
     back = observation.clock.set_back_s
     return texts.CLOCK_BACK.format(seconds=back) if back else ""
+
+
+def session_state(observation: Observation) -> str:
+    """Whether readings are written, or why not."""
+    if observation.writable:
+        return texts.WRITING
+    return texts.CLOSED_SESSION if observation.closed else texts.READING_ONLY

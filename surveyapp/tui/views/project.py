@@ -1,4 +1,4 @@
-"""What is known of one row of a project's pages."""
+"""The pages of a project: their rows, and what is known of one."""
 
 from __future__ import annotations
 
@@ -7,10 +7,28 @@ from rich.text import Text
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
 from surveyapp.tui import texts
-from surveyapp.tui.views.checks import check_texts
-from surveyapp.tui.views.lines import budget_rows, chain_rows, helps_text
-from surveyapp.tui.views.session import session_details
+from surveyapp.tui.views.checks import CHECK_COLUMNS, check_rows, check_texts
+from surveyapp.tui.views.lines import LINE_COLUMNS, budget_rows, chain_rows, helps_text, line_rows
+from surveyapp.tui.views.session import SESSION_COLUMNS, session_details, session_rows
 from surveyapp.tui.widgets.records import pairs_text, table_text
+
+LISTS: dict[str, tuple[tuple[str, ...], str]] = {
+    "sessions": (SESSION_COLUMNS, texts.NO_SESSIONS),
+    "lines": (LINE_COLUMNS, texts.NO_LINES),
+    "checks": (CHECK_COLUMNS, texts.NO_CHECK_ROWS),
+    "warnings": ((texts.COL_WARNING,), texts.NO_WARNINGS),
+}
+"""Columns of each page that is a list, and what it says without rows."""
+
+
+def page_rows(project: Project, result: OrientationResult) -> dict[str, list[tuple[str, ...]]]:
+    """Rows of each page that is a list."""
+    return {
+        "sessions": session_rows(project, result),
+        "lines": line_rows(result, project.angle_unit),
+        "checks": check_rows(result),
+        "warnings": [(warning.code,) for warning in result.warnings],
+    }
 
 
 def details_of(project: Project, result: OrientationResult, page: str, row: int) -> Text:
