@@ -12,6 +12,7 @@ from surveyapp.api_session import Observation
 from surveyapp.core.plausible import (
     Question,
     doubt_clamp,
+    doubt_passage,
     doubt_round,
     doubt_scale,
     doubt_scale_point,
@@ -57,7 +58,7 @@ def questions_about(
         return doubt_clamp(value, earlier)
     if kind in ROUNDS:
         return doubt_round(value, earlier, card_sigma=_card(observation).sigma.azimuth)
-    return doubt_scale(value, earlier) if kind is ReadingKind.TRANSIT else ()
+    return doubt_passage(value, earlier) if kind is ReadingKind.TRANSIT else ()
 
 
 def _card(observation: Observation) -> InstrumentCard:

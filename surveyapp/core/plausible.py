@@ -43,6 +43,7 @@ class Doubt(StrEnum):
     CLAMP_MOVED = "clamp_moved"
     OUTSIDE_ROUNDS = "outside_rounds"
     OFF_SCALE = "off_scale"
+    OTHER_DIVISION = "other_division"
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,6 +208,16 @@ def doubt_scale(reading: float, earlier: Sequence[float]) -> tuple[Question, ...
         return ()
     beyond = math.copysign(abs(reading) - SCALE_RANGE_DIV, reading)
     return (Question(Doubt.OFF_SCALE, beyond, SCALE_RANGE_DIV, scale=True),)
+
+
+def doubt_passage(division: float, earlier: Sequence[float]) -> tuple[Question, ...]:
+    """Doubt a passage [div] of another division than so far, zero at first.
+
+    A reading of the scale that was typed for a passage would be taken for one.
+    """
+    if division in (0.0, *earlier):
+        return ()
+    return (Question(Doubt.OTHER_DIVISION, division, 0.0, scale=True),)
 
 
 def _opposite(face: Face) -> Face:

@@ -127,3 +127,12 @@ def test_rounds_without_a_sigma_are_judged_by_their_scatter_from_three_on() -> N
     three = [*first, 5.0 * ARCSEC]
     assert doubt_round(62.0 * ARCSEC, three, card_sigma=None) == ()
     assert doubt_round(63.0 * ARCSEC, three, card_sigma=None) != ()
+
+
+def test_a_reading_of_the_scale_typed_for_a_passage_is_asked_about(tmp_path: Path) -> None:
+    seen = observation(tmp_path / "p", "transit")
+    passage = ReadingKind.TRANSIT
+    assert asked(seen, Step.SWING, "0", passage) == []
+    assert asked(seen, Step.SWING, "-7.41", passage) == [Doubt.OTHER_DIVISION]
+    seen.record(NewRow(passage, "5", "div"))
+    assert asked(seen, Step.SWING, "5", passage) == []

@@ -12,6 +12,8 @@ R_BUDGET: Final = "What the sigma is made of"
 R_HELPS: Final = 'Most helps: {advice}. Without this part ±{without}" instead of ±{sigma}".'
 R_AT_CALIBRATION: Final = "at the calibration, {advice}"
 IMPROVE: Final = {
+    "adopted effect": "observe again without the disturbance, or longer with it",
+    "adopted effect outside its range": "measure what the effect needs within its range",
     "centring": "centre more exactly, or take a longer line",
     "clamp reading": "read the clamped circle several times",
     "constant instability": "calibrate near the survey, before and after it",
@@ -20,8 +22,11 @@ IMPROVE: Final = {
     "eccentricity": "measure the eccentric elements again, or set up on the mark",
     "known azimuth": "calibrate on a line whose azimuth is known better",
     "known constant": "calibrate on a known line, before and after",
+    "passages": "time more passages",
     "rounds": "take more rounds",
     "run-to-run scatter": "repeat the session: runs differ by more than their readings tell",
+    "scale readings": "read more turning points on the scale",
+    "scale readings and passages": "time more passages and read more turning points",
     "sights": "sight the target more often in both faces",
     "tape zero": "read more turning points of the tape zero, before and after",
     "torsion ratio": "have the torsion ratio determined from T1 and T2",

@@ -92,6 +92,7 @@ QUESTIONS: Final = {
     "zeniths_contradict": "Faces differ from 360° by {difference}.",
     "clamp_moved": "{difference} from the clamp reading before.",
     "outside_rounds": "{difference} from the rounds so far, ±{limit}.",
+    "other_division": "A passage at {difference}? F2 if it is a scale point.",
     "off_scale": "{difference} beyond the scale's end at {limit}.",
 }
 ALERTS: Final = {

@@ -29,7 +29,7 @@ def ledger_rows(
             str(row.seq),
             "" if row.time is None else f"{row.time:%H:%M:%S}",
             _kind(row),
-            row.text or row.note,
+            _reading(row),
             texts.LEDGER_STRUCK if row.seq in struck else _place(row, sides.get(row.seq)),
             (reasons if row.seq in struck else residuals).get(row.seq, ""),
         )
@@ -45,6 +45,13 @@ def strike_reasons(book: FieldBook) -> dict[int, str]:
 
 def _kind(row: Reading) -> str:
     return texts.KIND_NAMES[row.kind].split(",")[0]
+
+
+def _reading(row: Reading) -> str:
+    """The reading as it was typed, with its unit where the kind has several."""
+    if row.kind is ReadingKind.SUPPLY:
+        return f"{row.text} {row.unit}"
+    return row.text or row.note
 
 
 def _place(row: Reading, side: str | None) -> str:
