@@ -10,6 +10,7 @@ R_CHAIN: Final = "From the readings to the azimuth"
 R_CHECKS: Final = "Checks"
 R_BUDGET: Final = "What the sigma is made of"
 R_HELPS: Final = 'Most helps: {advice}. Without this part ±{without}" instead of ±{sigma}".'
+R_HELPS_ALONE: Final = "Most helps: {advice}. Nothing else is in this sigma."
 R_AT_CALIBRATION: Final = "at the calibration, {advice}"
 IMPROVE: Final = {
     "adopted effect": "observe again without the disturbance, or longer with it",

@@ -95,5 +95,7 @@ def helps_text(line: LineResult) -> str:
     advice = texts.IMPROVE.get(found.source, found.source)
     if found.at_calibration:
         advice = texts.R_AT_CALIBRATION.format(advice=advice)
+    if len(line.budget) == 1:
+        return texts.R_HELPS_ALONE.format(advice=advice)
     sigma, without = arcsec_text(found.sigma), arcsec_text(found.without)
     return texts.R_HELPS.format(advice=advice, sigma=sigma, without=without)
