@@ -12,11 +12,12 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Final
 
+from surveyapp.api_doubts import TURNING, of_this_book, questions_about, sights_of
 from surveyapp.api_session import NewRow, Observation
 from surveyapp.core.entry import EntryError, complete_angle, complete_number
-from surveyapp.core.plausible import Question, doubt_scale_point, doubt_sight, doubt_turning_point
+from surveyapp.core.plausible import Question
 from surveyapp.core.progress import Progress
-from surveyapp.core.steps import Step, kinds_of, next_sight
+from surveyapp.core.steps import Expected, Step, kinds_of, next_sight
 from surveyapp.domain.readings import QUANTITY, Face, Quantity, Reading, ReadingKind, Side
 from surveyapp.io.clock import Stamp
 from surveyapp_models.angles import wrap_two_pi
@@ -30,39 +31,10 @@ LARGEST: Final = {
     Quantity.SUPPLY: ("V", 1e5),
 }
 """Unit and largest possible magnitude of what is no angle."""
-TURNING: Final = (ReadingKind.REVERSAL, ReadingKind.SCALE_REVERSAL)
 _SUPPLY: Final = re.compile(r"(.*?)\s*(mA|Hz|V)?", re.IGNORECASE)
 _SUPPLY_UNITS: Final = {"ma": "mA", "hz": "Hz", "v": "V"}
 _AGO: Final = re.compile(r"-\s*(\d+(?:\.\d*)?)\s*s?")
 _TIME: Final = re.compile(r"(\d{1,2}):(\d{2})(?::(\d{2}(?:\.\d*)?))?")
-
-
-@dataclass(frozen=True, slots=True)
-class Expected:
-    """What is to be read next.
-
-    Parameters
-    ----------
-    step : Step
-    kind : ReadingKind
-    face : Face or None
-    target : str
-        Empty for the session's own.
-    side : Side or None
-        Of a turning point, where it is known.
-    near : float or None
-        A reading [rad] whose leading part the next one shares.
-    number : int
-        The how manieth of its kind in this step, from 1.
-    """
-
-    step: Step
-    kind: ReadingKind
-    face: Face | None = None
-    target: str = ""
-    side: Side | None = None
-    near: float | None = None
-    number: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,33 +130,13 @@ def _expected_point(
     return Expected(step, kind, side=side, near=near, number=number)
 
 
-def of_this_book(progress: Progress | None, points: list[Reading]) -> Progress | None:
-    """The judgement if it is of the turning points that stand in the book now, else None.
-
-    It is computed beside the typing: for a moment after each reading it is one reading old.
-    """
-    if progress is None:
-        return None
-    judged = [(point.seq, point.reading) for point in progress.points]
-    return progress if judged == [(row.seq, row.value) for row in points] else None
-
-
 def _near_sight(observation: Observation, target: str, face: Face) -> float | None:
-    rows = _sights_of(observation, target)
+    rows = sights_of(observation, target)
     for row in reversed(rows):
         if row.value is not None:
             turned = (row.face or Face.LEFT) is not face
             return wrap_two_pi(row.value + (math.pi if turned else 0.0))
     return None
-
-
-def _sights_of(observation: Observation, target: str) -> tuple[Reading, ...]:
-    own = observation.session.target or ""
-    return tuple(
-        row
-        for row in observation.book.of_kind(ReadingKind.BACKSIGHT)
-        if (row.target or own) == (target or own)
-    )
 
 
 def understand(
@@ -238,7 +190,7 @@ def understand(
         face="" if what.face is None else str(what.face),
         target="" if what.target == (observation.session.target or "") else what.target,
     )
-    questions = _questions(observation, entry.value, what, progress)
+    questions = questions_about(observation, entry.value, what, progress)
     return Understood(row, entry.value, entry.completed, questions, stamp)
 
 
@@ -271,37 +223,6 @@ def _corrected(observation: Observation, stamp: Stamp, text: str) -> Stamp:
     if seconds > 0.0:
         raise EntryError(f"@{text} lies in the future", "a moment that has passed")
     return observation.clock.corrected(stamp, seconds)
-
-
-def _questions(
-    observation: Observation, value: float, what: Expected, progress: Progress | None
-) -> tuple[Question, ...]:
-    if what.kind is ReadingKind.BACKSIGHT and what.face is not None:
-        sights = _sights_of(observation, what.target)
-        here = set(observation.rows(what.step))
-        series = [row for row in sights if row in here]
-        earlier = [row for row in sights if row not in here]
-        return doubt_sight(value, what.face, series=series, earlier=earlier)
-    if what.kind not in TURNING or progress is None or progress.next is None:
-        return ()
-    if of_this_book(progress, list(observation.book.of_kind(what.kind))) is None:
-        return ()
-    middle = progress.middle
-    if what.kind is ReadingKind.SCALE_REVERSAL:
-        return doubt_scale_point(
-            value,
-            middle=middle,
-            predicted=progress.next_reading,
-            half_width=progress.next.half_width,
-            side=what.side,
-        )
-    return doubt_turning_point(
-        value,
-        middle=None if middle is None else wrap_two_pi(progress.origin + middle),
-        predicted=progress.next_reading,
-        half_width=progress.next.half_width,
-        side=what.side,
-    )
 
 
 def next_kind(observation: Observation, what: Expected) -> ReadingKind:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import csv
 import io
+from collections import Counter
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
@@ -18,6 +19,10 @@ from surveyapp.io.lock import ProjectLock
 from surveyapp.io.settings import Settings, read_settings, write_settings
 
 OBSERVATIONS: Final = "observations"
+LONGEST_ID: Final = 80
+"""Bytes of a session's id, which names its field book."""
+MOST_GRIDS: Final = 30
+"""More are no choice: a further word of the name is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +112,13 @@ def keep_theme(theme: str) -> None:
     write_settings(replace(read_settings(), theme=theme))
 
 
+def keep_sound(*, sound: bool) -> Settings:
+    """Remember whether the countdown may be heard."""
+    settings = replace(read_settings(), sound=sound)
+    write_settings(settings)
+    return settings
+
+
 def samples() -> tuple[str, ...]:
     """Names of the measured samples."""
     from surveyapp.io.locations import sample_names
@@ -131,12 +143,21 @@ def rule_books() -> tuple[str, ...]:
 
 
 def find_grids(text: str, stations: tuple[NewStation, ...] = ()) -> tuple[GridChoice, ...]:
-    """Grids whose name or EPSG code holds the text, where the stations lie if that is known."""
+    """Grids whose name or EPSG code holds the text, where the stations lie if that is known.
+
+    Without latitude and longitude it is their east and north that must lie where the grid is made
+    for. At most ``MOST_GRIDS`` are returned.
+    """
     from surveyapp.core.geodesy import find_projected
 
-    placed = [s for s in stations if s.lat is not None and s.lon is not None]
-    place = (placed[0].lat or 0.0, placed[0].lon or 0.0) if placed else None
-    return tuple(GridChoice(code, name) for code, name in find_projected(text, place))
+    place = next(
+        ((s.lat, s.lon) for s in stations if s.lat is not None and s.lon is not None), None
+    )
+    metres = next(((s.e, s.n) for s in stations if s.e is not None and s.n is not None), None)
+    found = find_projected(
+        text, place, coordinates=metres if place is None else None, limit=MOST_GRIDS
+    )
+    return tuple(GridChoice(code, name) for code, name in found)
 
 
 def read_stations(text: str) -> tuple[NewStation, ...]:
@@ -182,10 +203,10 @@ def read_stations(text: str) -> tuple[NewStation, ...]:
                     str(error),
                 )
             )
-    names = [station.name for station in stations]
+    counts = Counter(station.name for station in stations)
     problems += [
         Problem("a station stands twice", "stations", name, "each name once")
-        for name in sorted({name for name in names if names.count(name) > 1})
+        for name in sorted(name for name, count in counts.items() if count > 1)
     ]
     if problems:
         raise SurveyError(problems)
@@ -222,13 +243,13 @@ def create_project(form: NewProject) -> str:
     SurveyError
         If the folder holds anything already, if the grid is none, or if a name stands twice.
     """
-    from surveyapp.io.writing import append_table, set_value
+    from surveyapp.io.writing import append_tables, set_value
 
     constant = _constant(form.constant)
     folder = api.new_project(
         Path(form.folder).expanduser(),
         name=form.name,
-        crs=form.crs or None,
+        crs=f"EPSG:{form.crs}" if form.crs.isdecimal() else form.crs or None,
         angle_unit=form.angle_unit,
     )
     path = folder / "project.toml"
@@ -236,13 +257,13 @@ def create_project(form: NewProject) -> str:
         set_value(path, ("angle_typing",), form.angle_typing)
     if form.rule_book:
         set_value(path, ("rule_book",), form.rule_book)
+    tables: list[tuple[str, dict[str, object]]] = []
     for number, (identity, card, serial) in enumerate(form.instruments):
         table = {"id": identity, "card": card, "serial": serial or None}
-        known = constant if number == 0 else None
-        append_table(path, "instrument", {**table, "constant": known})
-    for station in form.stations:
-        values = {key: getattr(station, key) for key in ("name", "e", "n", "lat", "lon", "h")}
-        append_table(path, "station", values)
+        tables.append(("instrument", {**table, "constant": constant if number == 0 else None}))
+    keys = ("name", "e", "n", "lat", "lon", "h")
+    tables += [("station", {key: getattr(item, key) for key in keys}) for item in form.stations]
+    append_tables(path, tables)
     api.open_project(folder)
     return str(folder)
 
@@ -279,7 +300,7 @@ def create_session(folder: api.Folder, form: NewSession) -> None:
     from surveyapp.io.writing import append_table
 
     path = Path(folder) / "project.toml"
-    book = f"{OBSERVATIONS}/{form.id}.csv"
+    book = _book_name(form.id)
     with ProjectLock(Path(folder)) as lock:
         if not lock.writable:
             raise SurveyError(
@@ -307,6 +328,22 @@ def create_session(folder: api.Folder, form: NewSession) -> None:
             atomic_write(path, before.encode("utf-8"))
             (Path(folder) / book).unlink()
             raise
+
+
+def _book_name(identity: str) -> str:
+    """Path of the book of a session; the id names a file, so it must be able to."""
+    usable = identity.isprintable() and not set(identity) & set('/\\:*?"<>|')
+    if not usable or identity.startswith(".") or len(identity.encode("utf-8")) > LONGEST_ID:
+        raise SurveyError(
+            Problem(
+                "this id cannot name a field book",
+                "id",
+                identity,
+                f'at most {LONGEST_ID} letters or digits, without / \\ : * ? " < > |',
+                "the book is observations/<id>.csv",
+            )
+        )
+    return f"{OBSERVATIONS}/{identity}.csv"
 
 
 def _new_book(path: Path) -> None:

@@ -10,32 +10,26 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from surveyapp import api
-from surveyapp.api_entry import Expected
 from surveyapp.api_session import Observation
-from surveyapp.core.practice import (
-    PracticeInstrument,
-    PracticeOutcome,
-    View,
-    judge,
-    simulate_instrument,
-)
-from surveyapp.core.steps import STEP_NOTE
+from surveyapp.core.steps import STEP_NOTE, Expected, Step
+from surveyapp.domain.project import Method
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.clock import local_now, steady_seconds
 from surveyapp.io.fieldbook import COLUMNS
 from surveyapp.io.tomltext import atomic_write
 
+if TYPE_CHECKING:  # the simulator is loaded when somebody practises
+    from surveyapp.core.practice import Instrument, PracticeOutcome, View
+
 SESSION: Final = "practice"
 SLOWEST: Final = 0.1
 FASTEST: Final = 200.0
-USUAL_SPEED: Final = 10.0
-"""A half swing in 20 s: fast enough not to bore, slow enough to read and type."""
 _PROJECT: Final = """\
 # A practice session on a simulated instrument. Its north is invented.
 format = 1
@@ -44,10 +38,7 @@ angle_unit = "dms"
 
 [[instrument]]
 id = "SIM"
-card = "wild-gak1"
-scale_value_arcsec = 600.0
-period = {{ latitude_deg = 47.0, tracking_s = 425.4, clamped_s = 388.3, unspun_s = 146.0 }}
-sigma = {{ reversal_arcsec = 6.0, scale_div = 0.05, azimuth_arcsec = 15.0 }}
+{card}
 
 [[station]]
 name = "P"
@@ -62,10 +53,39 @@ id = "{session}"
 station = "P"
 target = "T"
 instrument = "SIM"
-method = "tracking"
-wanted_interval_arcsec = 10.0
+method = "{method}"
+wanted_interval_arcsec = {wanted}
 book = "observations/{session}.csv"
 """
+
+_SUSPENDED: Final = """\
+card = "wild-gak1"
+scale_value_arcsec = 600.0
+period = { latitude_deg = 47.0, tracking_s = 425.4, clamped_s = 388.3, unspun_s = 146.0 }
+sigma = { reversal_arcsec = 6.0, scale_div = 0.05, azimuth_arcsec = 15.0, time_s = 0.3 }"""
+_AUTOMATIC: Final = """\
+card = "gyromat-2000"
+sigma = { azimuth_arcsec = 8.0 }"""
+_WANTED: Final = {"tracking": 10.0, "amplitude": 40.0, "transit": 40.0, "automatic": 10.0}
+"""95 % interval that a dozen readings reach [arcsec]."""
+
+
+@dataclass(frozen=True, slots=True)
+class PracticeWish:
+    """What a trainee chooses.
+
+    Parameters
+    ----------
+    method : Method
+    speed : float
+        How many times faster than life.
+    disturbed : bool or None
+        Whether something is hidden; None lets the lot decide.
+    """
+
+    method: Method
+    speed: float
+    disturbed: bool | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,41 +97,58 @@ class Practice:
     folder : str
     speed : float
         How many times faster than life.
-    instrument : PracticeInstrument
+    instrument : Instrument
     now, steady : callable
         The clocks of the practice, as fast as it runs.
     """
 
     folder: str
     speed: float
-    instrument: PracticeInstrument
+    instrument: Instrument
     now: Callable[[], datetime]
     steady: Callable[[], float]
 
     def view(self, observation: Observation, what: Expected) -> View:
         """What the eye sees in the step that the book stands at."""
-        rows = observation.book.rows
-        note = f"{STEP_NOTE}{what.step}"
-        begun = next((r.elapsed_s for r in reversed(rows) if r.note == note), None)
-        elapsed = observation.clock.stamp().elapsed_s - (begun or 0.0)
-        return self.instrument.at(what.step, elapsed, face=what.face, number=what.number)
+        from surveyapp.core.practice import Looked
+
+        now = observation.clock.stamp().elapsed_s
+        begun = _begun(observation, what.step)
+        lowered = _begun(observation, Step.SWING)
+        looked = Looked(
+            what.kind, what.face, what.number, None if lowered is None else now - lowered
+        )
+        return self.instrument.at(what.step, now - (begun or 0.0), looked)
 
     def outcome(self, result: OrientationResult) -> PracticeOutcome | None:
-        """Truth against result; None where there is no gyro north with an interval."""
+        """Truth against result; None where there is no result with an interval."""
+        from surveyapp.core.practice import judge
+
         session = result.sessions[0] if result.sessions else None
-        north = session.gyro_north if session is not None else None
-        if session is None or north is None or not math.isfinite(north.interval95):
+        if session is None:
+            return None
+        main = session.main
+        azimuth = main.gyro_azimuth if main is not None else None
+        found = azimuth if session.method == "automatic" else session.gyro_north
+        if found is None or not math.isfinite(found.interval95):
             return None
         passed = max((point.index for point in session.points), default=0) + 1
-        return judge(self.instrument, north=north.value, interval95=north.interval95, points=passed)
+        return judge(self.instrument, value=found.value, interval95=found.interval95, points=passed)
+
+
+def _begun(observation: Observation, step: Step) -> float | None:
+    """When a step was begun last [s], None where it was not."""
+    note = f"{STEP_NOTE}{step}"
+    return next((r.elapsed_s for r in reversed(observation.book.rows) if r.note == note), None)
 
 
 def begin(
     folder: api.Folder,
     *,
+    method: Method = "tracking",
     seed: int | None = None,
     speed: float = 1.0,
-    disturbed: bool = False,
+    disturbed: bool | None = False,
 ) -> Practice:
     """Make a practice project and set up the instrument.
 
@@ -119,18 +156,21 @@ def begin(
     ----------
     folder : path
         A folder that does not exist or is empty.
+    method : Method
     seed : int or None
         The same seed, the same instrument; None for a new one.
     speed : float
         How many times faster than life, 0.1 to 200.
-    disturbed : bool
-        Whether something is hidden.
+    disturbed : bool or None
+        Whether something is hidden; None lets the lot decide.
 
     Raises
     ------
     SurveyError
         If the folder holds anything, or the speed is impossible.
     """
+    from surveyapp.core.practice_setup import simulate_instrument
+
     if not SLOWEST <= speed <= FASTEST:
         raise SurveyError(
             Problem(
@@ -140,10 +180,16 @@ def begin(
     path = Path(folder)
     if path.exists() and (not path.is_dir() or any(path.iterdir())):
         raise SurveyError(Problem("practice needs a folder of its own", str(path)))
-    instrument = simulate_instrument(np.random.default_rng(seed), disturbed=disturbed)
+    rng = np.random.default_rng(seed)
+    instrument = simulate_instrument(rng, method=method, disturbed=disturbed)
     (path / "observations").mkdir(parents=True, exist_ok=True)
-    latitude = math.degrees(instrument.spec.latitude)
-    text = _PROJECT.format(latitude=latitude, session=SESSION)
+    text = _PROJECT.format(
+        latitude=math.degrees(instrument.latitude),
+        session=SESSION,
+        method=method,
+        card=_AUTOMATIC if method == "automatic" else _SUSPENDED,
+        wanted=_WANTED[method],
+    )
     atomic_write(path / "project.toml", text.encode("utf-8"))
     header = ",".join(COLUMNS) + "\n"
     atomic_write(path / "observations" / f"{SESSION}.csv", header.encode("utf-8"))

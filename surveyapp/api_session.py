@@ -28,6 +28,7 @@ from surveyapp.domain.project import OrientationSession, Project
 from surveyapp.domain.readings import FieldBook, Reading, ReadingKind
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.book_problems import edited_problem, read_only_problem
 from surveyapp.io.clock import SessionClock, Stamp, local_now, steady_seconds
 from surveyapp.io.fieldbook import append_row, book_columns, read_field_book
 from surveyapp.io.lock import ProjectLock
@@ -115,12 +116,49 @@ class Observation:
         self.closed = is_closed(self.folder, session)
         try:
             self.project = api.open_project(self.folder)
-            self._columns = book_columns(self.folder / self.session.book_path)
             self._step: Step | None = None
-            self.clock = SessionClock(self.session.book.rows, now=now, steady=steady)
+            self._clocks = now, steady
+            self._begin_behind_the_book()
         except BaseException:
             self._lock.release()
             raise
+
+    def _begin_behind_the_book(self) -> None:
+        """Clock and columns follow the book as it stands."""
+        now, steady = self._clocks
+        self._columns = book_columns(self.path)
+        self._mark = self._file_mark()
+        self.clock = SessionClock(self.session.book.rows, now=now, steady=steady)
+
+    @property
+    def path(self) -> Path:
+        """The field book's file."""
+        return self.folder / self.session.book_path
+
+    def _file_mark(self) -> tuple[int, int, int] | None:
+        """What tells one state of the file from another."""
+        try:
+            state = self.path.stat()
+        except OSError:
+            return None
+        return state.st_ino, state.st_size, state.st_mtime_ns
+
+    def changed_outside(self) -> bool:
+        """Whether another hand has changed the book's file since it was read or written here."""
+        return self._file_mark() != self._mark
+
+    def read_again(self) -> None:
+        """Take the book as another hand has left it.
+
+        Raises
+        ------
+        SurveyError
+            If it cannot be read so; what was known of it stays.
+        """
+        self._read_again(self.path)
+        if self.writable:  # who only reads stays at the step that is looked at
+            self._step = None
+        self._begin_behind_the_book()
 
     @property
     def torn(self) -> str | None:
@@ -186,11 +224,14 @@ class Observation:
         Raises
         ------
         SurveyError
-            If the folder may not be written to, if the row cannot stand in the book, or if the
-            disk refuses; the book is as it was in each case.
+            If the folder may not be written to, if the row cannot stand in the book, if another
+            hand has changed the book, or if the disk refuses; the book is as it was in each case.
         """
         if not self.writable:
-            raise SurveyError(_read_only(self.folder, closed=self.closed))
+            raise SurveyError(read_only_problem(self.folder, closed=self.closed))
+        if self.changed_outside():
+            self.read_again()
+            raise SurveyError(edited_problem(self.path))
         moment = stamp or self.clock.stamp()
         latest = max((r.elapsed_s for r in self.book.rows if r.elapsed_s is not None), default=0.0)
         elapsed = max(moment.elapsed_s, latest)
@@ -205,9 +246,11 @@ class Observation:
             "target": row.target,
             "note": row.note,
         }
-        path = self.folder / self.session.book_path
-        seq = append_row(path, self._fitting(cells), angle_unit=self.project.angle_unit)
-        self._read_again(path)
+        try:
+            seq = append_row(self.path, self._fitting(cells), angle_unit=self.project.angle_unit)
+        finally:
+            self._mark = self._file_mark()
+        self._read_again(self.path)
         if row.kind is not ReadingKind.STRIKE:
             self._step = None
         return seq
@@ -247,7 +290,7 @@ class Observation:
         """Note that the surveyor goes to a step, unless the book stands there already."""
         if step is self.step:
             return
-        if "note" not in self._columns:  # an older book: the step is not remembered
+        if not self.writable or "note" not in self._columns:  # who only reads leaves no trace
             self._step = step
         else:
             self.record(NewRow(ReadingKind.NOTE, note=f"{STEP_NOTE}{step}"))
@@ -348,21 +391,3 @@ def unfinished_session(project: Project) -> str | None:
         if best is None or moment > best[0]:
             best = (moment, session.id)
     return None if best is None else best[1]
-
-
-def _read_only(folder: Path, *, closed: bool) -> Problem:
-    if closed:
-        return Problem(
-            "this session is closed and signed",
-            folder.name,
-            "a closing in the ledger",
-            "an open session",
-            "surveyapp reopen opens it again and keeps the reason.",
-        )
-    return Problem(
-        "this project cannot be written to now",
-        folder.name,
-        "it is open in another program, or the folder is read-only",
-        "the only program that has the project open",
-        "Close the other one and open the session again; it is shown for reading until then.",
-    )

@@ -7,8 +7,16 @@ import argparse
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
+    parser.add_argument(
+        "--method",
+        choices=("tracking", "amplitude", "transit", "automatic"),
+        default="tracking",
+        help="how the gyro is observed (default: tracking)",
+    )
     parser.add_argument("--speed", type=float, default=1.0, help="times faster than life")
-    parser.add_argument("--hidden", action="store_true", help="with a hidden disturbance")
+    hidden = parser.add_mutually_exclusive_group()
+    hidden.add_argument("--hidden", action="store_true", help="with a hidden disturbance")
+    hidden.add_argument("--perhaps", action="store_true", help="the lot decides whether with one")
     parser.add_argument("--seed", type=int, help="the same seed, the same instrument")
 
 
@@ -19,8 +27,9 @@ def run(options: argparse.Namespace) -> int:
 
     practice = api_practice.begin(
         api_practice.practice_folder(),
+        method=options.method,
         speed=options.speed,
-        disturbed=options.hidden,
+        disturbed=None if options.perhaps else options.hidden,
         seed=options.seed,
     )
     return run_practice(practice)

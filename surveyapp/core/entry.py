@@ -126,7 +126,7 @@ def _whole(typed: str) -> Entry:
     try:
         value = parse_angle(typed, AngleUnit.DMS)
     except AngleError as error:
-        raise EntryError(str(error), error.expected) from None
+        raise EntryError(f"{typed} is no angle", error.expected) from None
     if value < 0.0:
         raise EntryError("a circle reading is not negative", "0 to 360 degrees")
     numbers = re.findall(r"\d+(?:\.\d*)?", typed)

@@ -7,6 +7,7 @@ always true east and north in metres, whatever way the axes of the grid point.
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -19,6 +20,7 @@ from surveyapp_models.angles import wrap_pi
 
 if TYPE_CHECKING:
     from pyproj import Geod, Proj
+    from pyproj.database import CRSInfo
 
 MAX_LATITUDE_DEG = 75.0
 WARN_LATITUDE_DEG = 70.0
@@ -117,7 +119,8 @@ def open_grid(text: str) -> Grid:
     Raises
     ------
     SurveyError
-        If pyproj cannot read it, or if it is no projected CRS: then it has no convergence.
+        If pyproj cannot read it or compute with it, or if it is no projected CRS: then it has no
+        convergence.
     """
     import pyproj
     from pyproj import CRS, Proj
@@ -135,11 +138,16 @@ def open_grid(text: str) -> Grid:
         raise _crs_problem(
             f"a {kind} has no meridian convergence", f"{text} ({horizontal.name})", ""
         )
+    try:
+        projection = Proj(horizontal, preserve_units=False)
+    except CRSError as error:  # some old grids stand in the register without usable parameters
+        named = f"{text} ({horizontal.name})"
+        raise _crs_problem("this crs cannot be computed with", named, "") from error
     directions = {axis.direction.lower() for axis in horizontal.axis_info}
     return Grid(
         text=text,
         name=horizontal.name,
-        projection=Proj(horizontal, preserve_units=False),
+        projection=projection,
         geodesic=geod,
         sign_e=-1.0 if "west" in directions else 1.0,
         sign_n=-1.0 if "south" in directions and "north" not in directions else 1.0,
@@ -148,7 +156,11 @@ def open_grid(text: str) -> Grid:
 
 
 def find_projected(
-    text: str, place: tuple[float, float] | None = None, *, limit: int = 30
+    text: str,
+    place: tuple[float, float] | None = None,
+    *,
+    coordinates: tuple[float, float] | None = None,
+    limit: int = 30,
 ) -> tuple[tuple[str, str], ...]:
     """EPSG codes and names of projected grids.
 
@@ -158,8 +170,11 @@ def find_projected(
         Part of a name, or of a code; every word must be found.
     place : tuple of float or None
         Latitude and longitude [degrees] that the grid must be made for.
+    coordinates : tuple of float or None
+        East and north [m] that must lie where the grid is made for.
     limit : int
-        Largest number returned; of more, those with the shortest names.
+        Largest number returned; of more, those for the smallest area where the place is known,
+        else those with the shortest names.
 
     Returns
     -------
@@ -175,14 +190,41 @@ def find_projected(
         latitude, longitude = place
         area = AreaOfInterest(longitude, latitude, longitude, latitude)
     words = text.lower().replace("epsg:", "").split()
-    found = [
-        (f"EPSG:{item.code}", item.name)
+    named = [
+        item
         for item in query_crs_info(
             auth_name="EPSG", pj_types=PJType.PROJECTED_CRS, area_of_interest=area
         )
         if all(word in item.name.lower() or word in item.code for word in words)
     ]
-    return tuple(sorted(found, key=lambda item: (item[0] != f"EPSG:{text}", len(item[1])))[:limit])
+    local = place is not None or coordinates is not None
+    named.sort(
+        key=lambda item: (item.code not in words, _extent(item) if local else 0.0, len(item.name))
+    )
+    found = (
+        (f"EPSG:{item.code}", item.name)
+        for item in named
+        if coordinates is None or _holds(f"EPSG:{item.code}", coordinates)
+    )
+    return tuple(itertools.islice(found, limit))
+
+
+def _extent(item: CRSInfo) -> float:
+    """Size of the area that a grid is made for [square degrees]: the local ones come first."""
+    area = item.area_of_use
+    if area is None:
+        return math.inf
+    return ((area.east - area.west) % 360.0 or 360.0) * (area.north - area.south)
+
+
+def _holds(code: str, coordinates: tuple[float, float]) -> bool:
+    """Whether true east and north [m] lie in the area that a grid is made for."""
+    try:
+        grid = open_grid(code)
+        latitude, longitude = grid.geographic(e=coordinates[0], n=coordinates[1])
+    except SurveyError:
+        return False
+    return not grid.is_beside(latitude=latitude, longitude=longitude)
 
 
 def _crs_problem(what: str, found: str, detail: str) -> SurveyError:

@@ -12,6 +12,9 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final
 
+from surveyapp.core.clamped import SCALE_RANGE_DIV
+from surveyapp.core.forecast import HELD
+from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp.domain.readings import Face, Reading, ReadingKind, Side
 from surveyapp_models.angles import ARCSEC, wrap_pi
 
@@ -23,6 +26,10 @@ SIGHT_LIMIT: Final = 60.0 * ARCSEC
 """A repeated sight of one target in one face, and a jump of the collimation: far above pointing
 and below a wrong minute."""
 
+ROUND_LIMIT: Final = 600.0 * ARCSEC
+"""Rounds of an automatic gyro differ by arc-seconds to a minute; as ``FACES_LIMIT``, this is a slip
+of a digit, whatever the rounds so far seem to say."""
+
 
 class Doubt(StrEnum):
     """Why a reading is asked for once more."""
@@ -32,6 +39,11 @@ class Doubt(StrEnum):
     FACES_CONTRADICT = "faces_contradict"
     SIGHT_MOVED = "sight_moved"
     COLLIMATION_JUMP = "collimation_jump"
+    ZENITHS_CONTRADICT = "zeniths_contradict"
+    CLAMP_MOVED = "clamp_moved"
+    OUTSIDE_ROUNDS = "outside_rounds"
+    OFF_SCALE = "off_scale"
+    OTHER_DIVISION = "other_division"
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,6 +149,75 @@ def doubt_sight(
         if abs(jump) > SIGHT_LIMIT:
             return (Question(Doubt.COLLIMATION_JUMP, jump, SIGHT_LIMIT),)
     return ()
+
+
+def doubt_zenith(reading: float, face: Face, series: Sequence[Reading]) -> tuple[Question, ...]:
+    """Compare a zenith angle [rad] with the latest of the same target in the other face."""
+    other = [r.value for r in series if r.face is _opposite(face) and r.value is not None]
+    if not other:
+        return ()
+    index = wrap_pi(reading + other[-1])
+    if abs(index) <= FACES_LIMIT:
+        return ()
+    return (Question(Doubt.ZENITHS_CONTRADICT, index, FACES_LIMIT),)
+
+
+def doubt_clamp(reading: float, earlier: Sequence[float]) -> tuple[Question, ...]:
+    """Compare a reading of the clamped circle [rad] with the one before."""
+    moved = wrap_pi(reading - earlier[-1]) if earlier else 0.0
+    if abs(moved) <= SIGHT_LIMIT:
+        return ()
+    return (Question(Doubt.CLAMP_MOVED, moved, SIGHT_LIMIT),)
+
+
+def doubt_round(
+    reading: float, earlier: Sequence[float], *, card_sigma: float | None
+) -> tuple[Question, ...]:
+    """Compare a delivered azimuth [rad] with the rounds before it.
+
+    Parameters
+    ----------
+    reading : float
+    earlier : sequence of float
+        Rounds so far [rad].
+    card_sigma : float or None
+        Standard deviation of one round [rad]; without it their own scatter, from three on.
+    """
+    if not earlier:
+        return ()
+    offsets = [wrap_pi(value - earlier[0]) for value in earlier]
+    count = len(offsets)
+    mean = math.fsum(offsets) / count
+    difference = wrap_pi(reading - earlier[0] - mean)
+    limit = ROUND_LIMIT
+    sigma, dof = card_sigma, math.inf
+    if sigma is None and count > 2:
+        dof = float(count - 1)
+        sigma = math.sqrt(math.fsum((x - mean) ** 2 for x in offsets) / dof)
+    if sigma:
+        limit = min(limit, student_quantile(HELD, dof) * sigma * math.sqrt(1.0 + 1.0 / count))
+    if abs(difference) <= limit:
+        return ()
+    return (Question(Doubt.OUTSIDE_ROUNDS, difference, limit),)
+
+
+def doubt_scale(reading: float, earlier: Sequence[float]) -> tuple[Question, ...]:
+    """Doubt a reading [div] beyond the end of the usual scale, unless others stood there too."""
+    reached = max((abs(value) for value in earlier), default=0.0)
+    if abs(reading) <= SCALE_RANGE_DIV or reached > SCALE_RANGE_DIV:
+        return ()
+    beyond = math.copysign(abs(reading) - SCALE_RANGE_DIV, reading)
+    return (Question(Doubt.OFF_SCALE, beyond, SCALE_RANGE_DIV, scale=True),)
+
+
+def doubt_passage(division: float, earlier: Sequence[float]) -> tuple[Question, ...]:
+    """Doubt a passage [div] of another division than so far, zero at first.
+
+    A reading of the scale that was typed for a passage would be taken for one.
+    """
+    if division in (0.0, *earlier):
+        return ()
+    return (Question(Doubt.OTHER_DIVISION, division, 0.0, scale=True),)
 
 
 def _opposite(face: Face) -> Face:

@@ -11,7 +11,7 @@ from enum import StrEnum
 from typing import Final
 
 from surveyapp.domain.project import Method
-from surveyapp.domain.readings import Face, FieldBook, Place, Reading, ReadingKind
+from surveyapp.domain.readings import Face, FieldBook, Place, Reading, ReadingKind, Side
 
 STEP_NOTE: Final = "step "
 """A note row whose text begins so says that the surveyor went to a step."""
@@ -79,11 +79,42 @@ class StepState:
     state : State
     count : int
         Readings that count in it.
+    complete : bool
+        Whether it has all readings that it needs; false for what needs none.
     """
 
     step: Step
     state: State
     count: int
+    complete: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Expected:
+    """What is to be read next.
+
+    Parameters
+    ----------
+    step : Step
+    kind : ReadingKind
+    face : Face or None
+    target : str
+        Empty for the session's own.
+    side : Side or None
+        Of a turning point, where it is known.
+    near : float or None
+        A reading [rad] whose leading part the next one shares.
+    number : int
+        The how manieth of its kind in this step, from 1.
+    """
+
+    step: Step
+    kind: ReadingKind
+    face: Face | None = None
+    target: str = ""
+    side: Side | None = None
+    near: float | None = None
+    number: int = 1
 
 
 def steps_of(method: Method) -> tuple[Step, ...]:
@@ -176,10 +207,11 @@ def step_states(book: FieldBook, method: Method, targets: tuple[str, ...]) -> tu
         rows = rows_of(book, step, method)
         state = State.BEGUN if rows or str(step) in noted else State.OPEN
         passed = order.index(step) < order.index(here) and step in (Step.SETUP, Step.RUN_UP)
-        if state is State.BEGUN and (passed or _complete(step, rows, targets)):
+        complete = _complete(step, rows, targets)
+        if state is State.BEGUN and (passed or complete):
             state = State.DONE
         count = sum(row.kind is not ReadingKind.MISSED for row in rows)
-        states.append(StepState(step, state, count))
+        states.append(StepState(step, state, count, complete))
     return tuple(states)
 
 

@@ -140,7 +140,7 @@ def passage_times(swing: ClampedSwing, parameters: Floats) -> tuple[Floats, Floa
         low = np.where((gap > 0.0) == rising, low, tau)
         with np.errstate(divide="ignore", invalid="ignore"):
             newton = tau - gap / speed
-        inside = (newton > low) & (newton < high)
+        inside = (newton >= low) & (newton <= high)  # at the root itself one of the two is tau
         step = np.where(inside, newton, 0.5 * (low + high)) - tau
         tau = tau + step
         if float(np.max(np.abs(step), initial=0.0)) < 1e-12 * period:

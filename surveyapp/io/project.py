@@ -160,8 +160,11 @@ def _check_format(data: Mapping[str, object]) -> None:
 def _header_lines(text: str) -> dict[str, list[int]]:
     """Line of every [[table]] header, for messages."""
     lines: dict[str, list[int]] = {}
+    number, place = 1, 0
     for match in _HEADER.finditer(text):
-        lines.setdefault(match[1], []).append(text.count("\n", 0, match.start()) + 1)
+        number += text.count("\n", place, match.start())
+        place = match.start()
+        lines.setdefault(match[1], []).append(number)
     return lines
 
 

@@ -7,6 +7,7 @@ reader of the project raises before anybody sees the object.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -107,9 +108,10 @@ def split_line(line: str, stations: Sequence[str]) -> tuple[str, str] | None:
 
 def unique(names: Sequence[str], kind: str, findings: Findings) -> tuple[str, ...]:
     """Note a problem for every name that stands twice; return the names once each."""
-    for name in sorted({n for n in names if n and names.count(n) > 1}):
+    counts = Counter(names)
+    for name in sorted(n for n, count in counts.items() if n and count > 1):
         problem = Problem(
-            f"there are {names.count(name)} tables [[{kind}]] of one name",
+            f"there are {counts[name]} tables [[{kind}]] of one name",
             "project.toml",
             shown(name),
             "each name once",

@@ -24,6 +24,7 @@ __all__ = [
     "append_subtable",
     "append_subtables",
     "append_table",
+    "append_tables",
     "atomic_write",
     "comments",
     "create_project",
@@ -57,15 +58,36 @@ def append_table(project_toml: Path, table_name: str, mapping: Mapping[str, obje
     SurveyError
         If the result would not parse to the intention; the file is untouched then.
     """
+    append_tables(project_toml, [(table_name, mapping)])
+
+
+def append_tables(project_toml: Path, tables: Sequence[tuple[str, Mapping[str, object]]]) -> None:
+    """Append several tables, each as ``append_table`` does, in one writing.
+
+    Parameters
+    ----------
+    project_toml : Path
+    tables : sequence of (str, mapping)
+        Kind and keys of each; none changes nothing.
+
+    Raises
+    ------
+    SurveyError
+        If the result would not parse to the intention; the file is untouched then.
+    """
+    if not tables:
+        return
     text, data = _read(project_toml)
     expected = copy.deepcopy(data)
-    tables = expected.setdefault(table_name, [])
-    if not isinstance(tables, list):
-        raise _refused(project_toml, f"{table_name} is no list of tables")
-    tables.append(plain(mapping))
-    added = _table_text(f"[[{toml_key(table_name)}]]", mapping)
+    added = []
+    for name, mapping in tables:
+        found = expected.setdefault(name, [])
+        if not isinstance(found, list):
+            raise _refused(project_toml, f"{name} is no list of tables")
+        found.append(plain(mapping))
+        added.append(_table_text(f"[[{toml_key(name)}]]", mapping))
     gap = "" if not text else "\n" if text.endswith("\n") else "\n\n"
-    _write_checked(project_toml, text, text + gap + added, expected)
+    _write_checked(project_toml, text, text + gap + "\n".join(added), expected)
 
 
 def append_subtable(

@@ -20,11 +20,16 @@ from surveyapp.io.clock import local_now, steady_seconds
 from surveyapp.io.settings import read_settings
 from surveyapp.tui import texts
 from surveyapp.tui.messages import ResultWanted, SessionLeft
+from surveyapp.tui.screens.help import HelpScreen
 from surveyapp.tui.screens.home import HomeScreen
 from surveyapp.tui.screens.project import ProjectScreen
 from surveyapp.tui.screens.result import ResultScreen
 from surveyapp.tui.screens.session import SessionScreen
+from surveyapp.tui.texts import help_texts
 from surveyapp.tui.themes import THEMES
+
+UNLISTED = ("command_palette", "app.focus_previous", "app.focus_next", "screen.copy_text")
+"""Actions of the keyboard as such, which nobody looks for in the palette."""
 
 
 class SurveyApp(App[int]):
@@ -43,9 +48,11 @@ class SurveyApp(App[int]):
     CSS_PATH = "app.tcss"
     TITLE = texts.APP_TITLE
     ENABLE_COMMAND_PALETTE = True
-    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (110, "-wide")]  # noqa: RUF012
+    HORIZONTAL_BREAKPOINTS = [(0, "-tiny"), (60, "-narrow"), (110, "-wide")]  # noqa: RUF012
     BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("f1", "help", texts.KEY_HELP),
         Binding("f9", "next_theme", texts.KEY_THEME, show=False),
+        Binding("f10", "sound", texts.KEY_SOUND, show=False),
         Binding("ctrl+q", "quit", texts.KEY_QUIT, priority=True, show=False),
     ]
 
@@ -82,15 +89,29 @@ class SurveyApp(App[int]):
         """Every action of the screen that is open, then those of the program."""
         for active in screen.active_bindings.values():
             binding = active.binding
-            if binding.description and active.enabled and active.node in (screen, self):
+            if not binding.description or binding.action in UNLISTED or not active.enabled:
+                continue
+            if active.node in (screen, self):
                 run = partial(self.run_action, binding.action, active.node)
-                yield SystemCommand(binding.description, self.get_key_display(binding), run)
+                name = binding.tooltip or binding.description
+                yield SystemCommand(name, self.get_key_display(binding), run)
+
+    def action_help(self) -> None:
+        """Explain the screen that is open; a session explains its step itself."""
+        page = help_texts.PAGES.get(type(self.screen).__name__)
+        if page is not None:
+            self.push_screen(HelpScreen(*page))
 
     def action_next_theme(self) -> None:
         """Dark, light, high contrast, and round again."""
         names = [theme.name for theme in THEMES]
         self.theme = names[(names.index(self.theme) + 1) % len(names)]
         api_home.keep_theme(self.theme)
+
+    def action_sound(self) -> None:
+        """Let the countdown be heard, or not; remembered."""
+        self.settings = api_home.keep_sound(sound=not self.settings.sound)
+        self.notify(texts.SOUND_ON if self.settings.sound else texts.SOUND_OFF, markup=False)
 
     def open_folder(self, folder: str) -> None:
         """Open a project and remember it."""
@@ -142,11 +163,14 @@ class SurveyApp(App[int]):
         self.open_session(api_practice.SESSION)
 
     def on_home_screen_practice_chosen(self, message: HomeScreen.PracticeChosen) -> None:
-        """Practise at the usual speed."""
-        folder = api_practice.practice_folder()
+        """Practise as wished."""
+        wish = message.wish
         try:
             practice = api_practice.begin(
-                folder, speed=api_practice.USUAL_SPEED, disturbed=message.disturbed
+                api_practice.practice_folder(),
+                method=wish.method,
+                speed=wish.speed,
+                disturbed=wish.disturbed,
             )
         except SurveyError as error:
             self.notify(str(error), severity="error", markup=False)

@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 from surveyapp.api_entry import (
-    Expected,
     Understood,
     expected,
     next_kind,
@@ -20,10 +19,10 @@ from surveyapp.api_session import NewRow, Observation
 from surveyapp.core.entry import EntryError
 from surveyapp.core.plausible import Question
 from surveyapp.core.progress import Progress
-from surveyapp.core.steps import BEFORE, Step, kinds_of, steps_of
+from surveyapp.core.steps import BEFORE, Expected, Step, kinds_of, steps_of
 from surveyapp.domain.readings import QUANTITY, Face, Quantity, Reading, ReadingKind
 from surveyapp.errors import SurveyError
-from surveyapp.io.clock import Stamp
+from surveyapp.io.clock import NOTICED_S, Stamp
 from surveyapp.tui import texts
 from surveyapp.tui.views.form import number_text, small_text
 from surveyapp_models.angles import AngleUnit, format_angle
@@ -49,6 +48,7 @@ class Desk:
         self.target: str | None = None
         self.stamp: Stamp | None = None
         self.asked: str | None = None
+        self.clock_off_s = -observation.clock.set_back_s
 
     @property
     def step(self) -> Step:
@@ -92,8 +92,9 @@ class Desk:
             detail = texts.PROMPT_FACE.format(target=what.target, face=what.face)
         elif what.side is not None:
             detail = texts.PROMPT_SIDE.format(side=what.side)
-        kind = texts.KIND_NAMES[what.kind]
-        return texts.PROMPT.format(kind=kind, number=what.number, detail=detail)
+        kind, _, unit = texts.KIND_NAMES[what.kind].partition(", ")
+        shown = texts.PROMPT_UNIT.format(unit=unit) if unit else ""
+        return texts.PROMPT.format(kind=kind, number=what.number, detail=detail, unit=shown)
 
     def hint(self) -> str:
         """What to do with the line."""
@@ -160,7 +161,22 @@ class Desk:
         seq = self.write(found.row, found.stamp)
         kind = texts.KIND_NAMES[found.row.kind].split(",")[0]
         value = found.row.value or found.row.note
-        return texts.RECORDED.format(seq=seq, kind=kind, value=value)
+        told = texts.RECORDED.format(seq=seq, kind=kind, value=value)
+        return f"{told}{texts.STEP_COMPLETE if self.complete() else ''}"
+
+    def clock_note(self) -> str:
+        """That the computer's clock was set, once each time that it was."""
+        off = self.observation.clock.wall_clock_off_s()
+        if abs(off - self.clock_off_s) <= NOTICED_S:
+            return ""
+        self.clock_off_s = off
+        return texts.CLOCK_SET.format(seconds=off)
+
+    def complete(self) -> bool:
+        """Whether the step has all that it needs, and nothing more is usual."""
+        if self.step is Step.SWING:
+            return False
+        return any(s.step is self.step and s.complete for s in self.observation.steps())
 
     def write(self, row: NewRow, stamp: Stamp | None = None) -> int:
         """Write one row; what was chosen for it is done with."""
@@ -203,6 +219,10 @@ class Desk:
         turning = (ReadingKind.REVERSAL, ReadingKind.SCALE_REVERSAL, ReadingKind.TRANSIT)
         return self.step is Step.SWING and self.what().kind in turning
 
+    def times(self) -> bool:
+        """Whether passages are timed now."""
+        return self.step is Step.SWING and self.what().kind is ReadingKind.TRANSIT
+
     def has_other(self, which: str) -> bool:
         """Whether there is another kind, face or target to read in this step."""
         if which == "kind":
@@ -225,6 +245,7 @@ class Desk:
     def take_other(self, which: str) -> None:
         """Take the other kind of reading, the other face, or the next target."""
         what = self.what()
+        self.asked = None  # a doubt about one target or face is none about another
         if which == "kind":
             self.kind = next_kind(self.observation, what)
         elif which == "face":
@@ -256,4 +277,7 @@ def problem_text(error: SurveyError) -> str:
     """The first problem of an error in one line."""
     problem = error.problems[0]
     what = f"{problem.what}: {problem.found}" if problem.found else problem.what
-    return texts.NOT_WRITTEN.format(what=what, hint=problem.hint)
+    hint = problem.hint
+    if not hint.startswith("surveyapp "):  # a command is written as it is typed
+        hint = hint[:1].upper() + hint[1:]
+    return texts.NOT_WRITTEN.format(what=what, hint=hint).strip()

@@ -54,6 +54,58 @@ wanted_interval_arcsec = 8.0
 book = "observations/{id}.csv"
 """
 
+NETWORK = """\
+format = 1
+name = "T"
+angle_unit = "dms"
+
+[[station]]
+name = "A"
+e = 1000.0
+n = 2000.0
+fixed = true
+
+[[station]]
+name = "B"
+e = 1000.0
+n = 2100.0
+fixed = true
+
+[[station]]
+name = "C"
+
+[[station]]
+name = "D"
+
+[[traverse]]
+name = "main"
+book = "observations/main.csv"
+sigma_angle_arcsec = 7.0
+sigma_distance = { mm = 2.0, ppm = 2.0 }
+"""
+NETWORK_BOOK = """\
+kind,at,from,to,value,unit,sigma,sigma_unit,set,hi,ht,note
+angle,B,A,C,270-00-00,dms,,,,,,
+distance,B,,C,50.000,m,,,,,,
+angle,C,B,D,120-00-00,dms,,,,,,
+distance,C,,D,80.000,m,,,,,,
+distance,D,,C,80.003,m,,,,,,
+distance,D,,A,84.3,m,,,,,,
+"""
+CALIBRATION = """
+[[orientation]]
+id = "k{number}"
+station = "3083"
+target = "{target}"
+instrument = "G1"
+method = "automatic"
+purpose = "calibration"
+azimuth_known = "{known}-00-00"
+book = "observations/k{number}.csv"
+"""
+CALIBRATION_DAYS = ((2, 12.0), (3, 4.0), (5, 9.0), (9, 1.0), (12, 6.0), (16, -8.0), (20, -16.0))
+"""Day of March and gyro azimuth beyond 45 or 75 degrees [arcsec]."""
+
 
 class Clock:
     """A wall clock and steady seconds that stand still until they are turned."""
@@ -97,3 +149,33 @@ def rows_on_disk(folder: Path, name: str = "r1") -> list[dict[str, str]]:
 def readings(rows: Iterable[dict[str, str]]) -> list[tuple[str, str]]:
     """Kind and value of everything but notes."""
     return [(row["kind"], row["value"]) for row in rows if row["kind"] != "note"]
+
+
+def make_network(folder: Path) -> Path:
+    """A project with one small traverse."""
+    (folder / "observations").mkdir(parents=True)
+    (folder / "project.toml").write_text(NETWORK, encoding="utf-8")
+    (folder / "observations" / "main.csv").write_text(NETWORK_BOOK, encoding="utf-8")
+    return folder
+
+
+def make_calibrations(folder: Path) -> Path:
+    """A project whose instrument was calibrated on two lines through three weeks."""
+    (folder / "observations").mkdir(parents=True)
+    text = PROJECT.replace('angle_unit = "dms"', 'angle_unit = "dms"\ncrs = "EPSG:25832"')
+    for number, (day, beyond) in enumerate(CALIBRATION_DAYS):
+        known = 45 + 30 * (number % 2)
+        target = ("3082", "3090")[number % 2]
+        text += CALIBRATION.format(number=number, target=target, known=known)
+        rows = []
+        for seq, wobble in enumerate((-6.0, 2.0, 4.0), start=1):
+            seconds = 3600.0 * known + beyond + wobble + 60.0
+            minutes, rest = divmod(seconds - 3600.0 * known, 60.0)
+            rows.append(
+                f"{seq},2026-03-{day:02d}T08:{10 * seq:02d}:00+00:00,{600 * seq},azimuth,"
+                f"{known}-{int(minutes):02d}-{rest:04.1f},dms,,,,,"
+            )
+        book = HEADER + "\n".join(rows) + "\n"
+        (folder / "observations" / f"k{number}.csv").write_text(book, encoding="utf-8")
+    (folder / "project.toml").write_text(text, encoding="utf-8")
+    return folder

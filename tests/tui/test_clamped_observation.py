@@ -212,4 +212,4 @@ async def test_the_screen_of_an_automatic_gyro_says_enough(tmp_path: Path) -> No
         await settle(pilot)
         facts = str(app.screen.query_one("#facts", Static).render())
         assert 'gyro azimuth 321-53-12.0 ±2.4" (95 %)' in facts
-        assert '±1.9" after two more  wanted ±8.0"  ENOUGH' in facts
+        assert 'ENOUGH  ±1.9" after two more  wanted ±8.0"' in facts

@@ -136,3 +136,50 @@ async def test_a_sample_is_opened_as_the_users_own_copy(
         assert isinstance(app.screen, ProjectScreen)
     copies = [p.name for p in (tmp_path / "documents").iterdir()]
     assert copies == [api_home.samples()[0]]
+
+
+def test_a_long_list_of_stations_is_no_burden(tmp_path: Path) -> None:
+    """Stations are written in one go: as many writings as before the list, not one for each."""
+    from surveyapp.io import writing
+
+    text = "name,e,n\n" + "\n".join(f"P{k},{431000 + k},{3811000 + k}" for k in range(2000))
+    stations = api_home.read_stations(text)
+    assert len(stations) == 2000
+    written: list[int] = []
+    real = writing.atomic_write
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(
+            writing,
+            "atomic_write",
+            lambda path, data: (written.append(len(data)), real(path, data)),
+        )
+        form = api_home.NewProject(folder=str(tmp_path / "p"), name="p", stations=stations)
+        folder = api_home.create_project(form)
+    assert len(written) == 1
+    project = api.open_project(folder)
+    assert [s.name for s in project.stations] == [f"P{k}" for k in range(2000)]
+    twice = text + "\nP7,1,2"
+    with pytest.raises(SurveyError, match="P7"):
+        api_home.read_stations(twice)
+
+
+@pytest.mark.parametrize("identity", ["../x", "a/b", "/x", "..", ".x", "con:", "a\nb", "x" * 300])
+def test_an_id_that_names_no_file_is_refused_and_nothing_is_made(
+    tmp_path: Path, identity: str
+) -> None:
+    folder = tmp_path / "p"
+    stations = (api_home.NewStation("测站"), api_home.NewStation("B"))
+    form = api_home.NewProject(
+        folder=str(folder), name="p", stations=stations, instruments=(("G1", "wild-gak1", ""),)
+    )
+    api_home.create_project(form)
+    before = {path for path in tmp_path.rglob("*") if path.is_file() and path.suffix != ".lock"}
+    with pytest.raises(SurveyError, match="field book"):
+        api_home.create_session(
+            folder, api_home.NewSession(identity, "测站", "B", "G1", "tracking", "survey")
+        )
+    after = {path for path in tmp_path.rglob("*") if path.is_file() and path.suffix != ".lock"}
+    assert after == before
+    good = api_home.NewSession("测站-1", "测站", "B", "G1", "tracking", "survey")
+    api_home.create_session(folder, good)
+    assert api.open_project(folder).sessions[0].book_path == "observations/测站-1.csv"

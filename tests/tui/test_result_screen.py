@@ -4,18 +4,26 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from helpers_tui import SMALL, make_project, simulated
 from textual.pilot import Pilot
 from textual.widgets import Static
 
+from surveyapp import api
 from surveyapp.api_session import NewRow, Observation
-from surveyapp.core.simulate.session import book_text
+from surveyapp.core.simulate.session import book_text, simulate_session
+from surveyapp.core.simulate.specification import SessionSpec
 from surveyapp.core.steps import Step
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.errors import SurveyError
+from surveyapp.tui import texts
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.result import ResultScreen
+from surveyapp.tui.views.result import result_headline, result_sections
+from surveyapp_models.angles import AngleUnit
+
+PROJECTS = Path(__file__).resolve().parents[2] / "projects"
 
 
 async def settle(pilot: Pilot[int]) -> None:
@@ -53,3 +61,22 @@ async def test_the_record_is_written_and_the_session_closed_and_signed(tmp_path:
     with pytest.raises(SurveyError, match="closed and signed"):
         seen.record(NewRow(ReadingKind.REVERSAL, "102-00-14", "dms"))
     seen.close()
+
+
+def test_a_calibration_is_headed_by_its_gyro_azimuth() -> None:
+    result = api.orient(PROJECTS / "tongjin-2015", session="G3024-G3022")
+    head = result_headline(result, "G3024-G3022", AngleUnit.DMS)
+    assert head.startswith("G3024-G3022  gyro azimuth 334-15-52.8")
+
+
+def test_points_on_the_scale_stand_in_divisions(tmp_path: Path) -> None:
+    spec = SessionSpec(method="amplitude", points=8, tape_zero_div=(0.2, 0.25))
+    simulated_book = book_text(simulate_session(spec, np.random.default_rng(2)).rows)
+    folder = make_project(tmp_path / "p", method="amplitude")
+    (folder / "observations" / "r1.csv").write_text(simulated_book, encoding="utf-8")
+    project = api.open_project(folder)
+    result = api.orient(project, session="r1")
+    sections = dict(result_sections(project, result, "r1", 74))
+    lines = sections[texts.R_POINTS].plain.splitlines()
+    assert len(lines) == 8
+    assert all(" div " in line for line in lines)

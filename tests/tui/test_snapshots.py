@@ -10,7 +10,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers_tui import LARGE, SMALL, Clock, make_project, simulated
+from helpers_tui import (
+    LARGE,
+    SMALL,
+    Clock,
+    make_calibrations,
+    make_network,
+    make_project,
+    simulated,
+)
 from textual.pilot import Pilot
 
 from surveyapp import api_practice
@@ -18,8 +26,11 @@ from surveyapp.api_session import NewRow, Observation
 from surveyapp.core.simulate.session import book_text, simulate_session
 from surveyapp.core.simulate.specification import SessionSpec, SwingMethod
 from surveyapp.core.steps import Step
+from surveyapp.domain.project import Method
 from surveyapp.domain.readings import ReadingKind
+from surveyapp.tui import texts
 from surveyapp.tui.app import SurveyApp
+from surveyapp.tui.screens.confirm import ConfirmScreen
 from surveyapp.tui.widgets.instrument import InstrumentPane
 
 PROJECTS = Path(__file__).resolve().parents[2] / "projects"
@@ -67,10 +78,9 @@ def test_home(snap_compare: Snap, size: tuple[int, int]) -> None:
     assert snap_compare(app_on(None), terminal_size=size, run_before=keys())
 
 
+@sizes
 @pytest.mark.parametrize(
-    ("page", "size"),
-    [("1", SMALL), ("2", SMALL), ("2", LARGE), ("3", SMALL), ("4", LARGE), ("5", SMALL)],
-    ids=["sessions", "lines", "lines-large", "constants", "checks-large", "warnings"],
+    "page", list("12345"), ids=["sessions", "lines", "constants", "checks", "warnings"]
 )
 def test_project(snap_compare: Snap, tmp_path: Path, page: str, size: tuple[int, int]) -> None:
     folder = sample(tmp_path, "tongjin-2015")
@@ -86,10 +96,23 @@ def test_broken_project(snap_compare: Snap, tmp_path: Path) -> None:
 
 
 @sizes
-@pytest.mark.parametrize("form", ["new-project", "new-session"])
+@pytest.mark.parametrize("form", ["new-project", "new-session", "practice", "folder"])
 def test_forms(snap_compare: Snap, tmp_path: Path, form: str, size: tuple[int, int]) -> None:
-    folder = None if form == "new-project" else sample(tmp_path, "tongjin-2015")
-    assert snap_compare(app_on(folder), terminal_size=size, run_before=keys("n"))
+    folder = sample(tmp_path, "tongjin-2015") if form == "new-session" else None
+    key = {"practice": "p", "folder": "o"}.get(form, "n")
+    assert snap_compare(app_on(folder), terminal_size=size, run_before=keys(key))
+
+
+@sizes
+def test_constant_through_days(snap_compare: Snap, tmp_path: Path, size: tuple[int, int]) -> None:
+    folder = make_calibrations(tmp_path / "calibrations")
+    assert snap_compare(app_on(folder), terminal_size=size, run_before=keys("3"))
+
+
+@sizes
+def test_traverse(snap_compare: Snap, tmp_path: Path, size: tuple[int, int]) -> None:
+    app = app_on(make_network(tmp_path / "network"))
+    assert snap_compare(app, terminal_size=size, run_before=keys("t"))
 
 
 @sizes
@@ -101,13 +124,14 @@ def test_session(snap_compare: Snap, tmp_path: Path, rows: int, size: tuple[int,
     assert snap_compare(app, terminal_size=size, run_before=keys("enter"))
 
 
-def test_alarm(snap_compare: Snap, tmp_path: Path) -> None:
+@sizes
+def test_alarm(snap_compare: Snap, tmp_path: Path, size: tuple[int, int]) -> None:
     folder = observed(tmp_path, 17)
     book = folder / "observations" / "r1.csv"
     text = book.read_text(encoding="utf-8").replace("101-58-01.5", "101-59-31.5")
     book.write_text(text, encoding="utf-8")
     app = app_on(folder, seconds=2980.0)
-    assert snap_compare(app, terminal_size=SMALL, run_before=keys("enter"))
+    assert snap_compare(app, terminal_size=size, run_before=keys("enter"))
 
 
 def clamped(tmp_path: Path, method: SwingMethod, kind: str, count: int) -> tuple[Path, float]:
@@ -160,22 +184,37 @@ def test_automatic_session(snap_compare: Snap, tmp_path: Path, size: tuple[int, 
     assert snap_compare(app_on(folder, 2000.0), terminal_size=size, run_before=keys("enter"))
 
 
-def test_question(snap_compare: Snap, tmp_path: Path) -> None:
+@sizes
+def test_question(snap_compare: Snap, tmp_path: Path, size: tuple[int, int]) -> None:
     folder = observed(tmp_path, 17)
     app = app_on(folder, seconds=2980.0)
     typed = keys("enter", *"101-48-00", "enter")
-    assert snap_compare(app, terminal_size=SMALL, run_before=typed)
-
-
-@pytest.mark.parametrize("key", ["f1", "f6"])
-def test_help_and_strike(snap_compare: Snap, tmp_path: Path, key: str) -> None:
-    folder = observed(tmp_path, 17)
-    app = app_on(folder, seconds=2980.0)
-    assert snap_compare(app, terminal_size=SMALL, run_before=keys("enter", key))
+    assert snap_compare(app, terminal_size=size, run_before=typed)
 
 
 @sizes
-def test_result(snap_compare: Snap, tmp_path: Path, size: tuple[int, int]) -> None:
+@pytest.mark.parametrize("key", ["f1", "f6"])
+def test_help_and_strike(
+    snap_compare: Snap, tmp_path: Path, key: str, size: tuple[int, int]
+) -> None:
+    folder = observed(tmp_path, 17)
+    app = app_on(folder, seconds=2980.0)
+    assert snap_compare(app, terminal_size=size, run_before=keys("enter", key))
+
+
+def test_a_struck_reading(snap_compare: Snap, tmp_path: Path) -> None:
+    app = app_on(observed(tmp_path, 17), seconds=2980.0)
+    typed = keys("enter", "f6", "down", *"jerk", "enter")
+    assert snap_compare(app, terminal_size=SMALL, run_before=typed)
+
+
+def test_a_narrow_window(snap_compare: Snap, tmp_path: Path) -> None:
+    app = app_on(observed(tmp_path, 17), seconds=2980.0)
+    assert snap_compare(app, terminal_size=(40, 12), run_before=keys("enter"))
+
+
+def at_result(tmp_path: Path) -> SurveyApp:
+    """A session that stands at its result."""
     folder = observed(tmp_path, 26)
     clock = Clock()
     clock.pass_by(4200.0)
@@ -183,8 +222,38 @@ def test_result(snap_compare: Snap, tmp_path: Path, size: tuple[int, int]) -> No
     seen.record(NewRow(ReadingKind.NOTE, note="quiet, dry"))
     seen.go_to(Step.RESULT)
     seen.close()
-    app = app_on(folder, seconds=4210.0)
+    return app_on(folder, seconds=4210.0)
+
+
+@sizes
+def test_result(snap_compare: Snap, tmp_path: Path, size: tuple[int, int]) -> None:
+    app = at_result(tmp_path)
     assert snap_compare(app, terminal_size=size, run_before=keys("enter", "f8"))
+
+
+@sizes
+def test_signing(snap_compare: Snap, tmp_path: Path, size: tuple[int, int]) -> None:
+    app = at_result(tmp_path)
+    press = keys("enter", "f8", "f6", *"A. Mu")
+    assert snap_compare(app, terminal_size=size, run_before=press)
+
+
+@sizes
+def test_diagnosis(snap_compare: Snap, tmp_path: Path, size: tuple[int, int]) -> None:
+    """What is missing in the model of a run of 1966."""
+    folder = sample(tmp_path, "johannesburg-1966")
+    assert snap_compare(app_on(folder), terminal_size=size, run_before=keys("d"))
+
+
+@sizes
+def test_a_question_before_something_is_written(snap_compare: Snap, size: tuple[int, int]) -> None:
+    async def ask(pilot: Pilot[int]) -> None:
+        await keys()(pilot)
+        question = texts.ADOPT_ASK.format(names="Change of damping during the run")
+        pilot.app.push_screen(ConfirmScreen(question))
+        await pilot.pause()
+
+    assert snap_compare(app_on(None), terminal_size=size, run_before=ask)
 
 
 @pytest.mark.parametrize("times", [1, 2], ids=["light", "contrast"])
@@ -201,16 +270,20 @@ def test_no_colour(snap_compare: Snap, tmp_path: Path, monkeypatch: pytest.Monke
     assert snap_compare(app, terminal_size=SMALL, run_before=keys("enter"))
 
 
-def test_practice(snap_compare: Snap, tmp_path: Path) -> None:
+@sizes
+@pytest.mark.parametrize("method", ["tracking", "transit", "automatic"])
+def test_practice(
+    snap_compare: Snap, tmp_path: Path, method: Method, size: tuple[int, int]
+) -> None:
     clock = Clock()
-    begun = api_practice.begin(tmp_path / "p", seed=11, speed=10.0, disturbed=True)
+    begun = api_practice.begin(tmp_path / "p", method=method, seed=11, speed=10.0, disturbed=True)
     practice = replace(begun, now=clock.now, steady=clock.steady)
     app = SurveyApp(None, practice=practice)
 
     async def swing(pilot: Pilot[int]) -> None:
-        await keys(*["f8"] * 4)(pilot)
-        clock.pass_by(100.0)
+        await keys(*["f8"] * (2 if method == "automatic" else 4))(pilot)
+        clock.pass_by(250.0)
         app.screen.query_one(InstrumentPane).look()
         await pilot.pause()
 
-    assert snap_compare(app, terminal_size=SMALL, run_before=swing)
+    assert snap_compare(app, terminal_size=size, run_before=swing)

@@ -12,22 +12,31 @@ from surveyapp.core.run_alert import Trouble
 from surveyapp.core.steps import State, Step, steps_of
 from surveyapp.domain.project import Method
 from surveyapp.domain.readings import ReadingKind
-from surveyapp.tui import help_texts, texts
+from surveyapp.tui import texts
+from surveyapp.tui.texts import help_texts
 
-TUI = Path(texts.__file__).parent
+CATALOGUE = Path(texts.__file__).parent
+TUI = CATALOGUE.parent
+HELP = "help_texts.py"
 METHODS: tuple[Method, ...] = ("tracking", "amplitude", "transit", "automatic")
 
 
 def test_every_text_is_shown_somewhere() -> None:
-    names = re.findall(r"^([A-Z][A-Z0-9_]*): Final", Path(texts.__file__).read_text("utf-8"), re.M)
-    sources = [p.read_text("utf-8") for p in TUI.rglob("*.py") if p.name != "texts.py"]
+    catalogue = "\n".join(
+        path.read_text("utf-8") for path in CATALOGUE.glob("*.py") if path.name != HELP
+    )
+    names = re.findall(r"^([A-Z][A-Z0-9_]*): Final", catalogue, re.M)
+    sources = [p.read_text("utf-8") for p in TUI.rglob("*.py") if p.parent != CATALOGUE]
     source = "\n".join(sources)
     assert len(names) > 100
+    assert len(set(names)) == len(names)  # no module hides a text of another
     assert [name for name in names if not re.search(rf"\btexts\.{name}\b", source)] == []
 
 
 def test_whatever_comes_in_kinds_has_a_text_for_each() -> None:
     assert set(texts.STEP_NAMES) == set(Step)
+    assert set(texts.STEP_HINTS) == set(Step)
+    assert max(len(line) for text in texts.STEP_HINTS.values() for line in text.split("\n")) <= 55
     assert set(texts.STEP_MARKS) == set(State)
     assert set(texts.KIND_NAMES) == set(ReadingKind)
     assert set(texts.QUESTIONS) == set(Doubt)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from helpers_tui import NETWORK, NETWORK_BOOK, make_network
 from textual.widgets import DataTable, TabbedContent
 
 from surveyapp import api
@@ -15,52 +16,11 @@ from surveyapp.tui.screens.traverse import PAGES, TraverseScreen
 from surveyapp.tui.widgets.plan import FIXED, FREE, PlanCanvas, draw_plan, enlargement
 from surveyapp.tui.widgets.problems import Problems
 
-TOML = """format = 1
-name = "T"
-angle_unit = "dms"
-
-[[station]]
-name = "A"
-e = 1000.0
-n = 2000.0
-fixed = true
-
-[[station]]
-name = "B"
-e = 1000.0
-n = 2100.0
-fixed = true
-
-[[station]]
-name = "C"
-
-[[station]]
-name = "D"
-
-[[traverse]]
-name = "main"
-book = "observations/main.csv"
-sigma_angle_arcsec = 7.0
-sigma_distance = { mm = 2.0, ppm = 2.0 }
-"""
-BOOK = """kind,at,from,to,value,unit,sigma,sigma_unit,set,hi,ht,note
-angle,B,A,C,270-00-00,dms,,,,,,
-distance,B,,C,50.000,m,,,,,,
-angle,C,B,D,120-00-00,dms,,,,,,
-distance,C,,D,80.000,m,,,,,,
-distance,D,,C,80.003,m,,,,,,
-distance,D,,A,84.3,m,,,,,,
-"""
-
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
-    made = tmp_path / "gallery"
-    (made / "observations").mkdir(parents=True)
-    (made / "project.toml").write_text(TOML, encoding="utf-8")
-    (made / "observations" / "main.csv").write_text(BOOK, encoding="utf-8")
-    return made
+    return make_network(tmp_path / "gallery")
 
 
 async def opened(app: SurveyApp, pilot) -> None:  # type: ignore[no-untyped-def]
@@ -91,7 +51,7 @@ async def test_the_pages_show_the_adjustment(size: tuple[int, int], folder: Path
             s.index(FREE) - d.index(FREE) for s, d in zip(shown, drawn, strict=True) if FREE in d
         }
         assert len(shifts) == 1, "blanks at the left were cut off"
-        for key, page in enumerate(PAGES[1:], 2):
+        for key, page in enumerate(tuple(PAGES)[1:], 2):
             await pilot.press(str(key))
             await pilot.pause()
             assert screen.query_one(TabbedContent).active == page
@@ -131,7 +91,7 @@ def test_ellipses_are_enlarged_by_round_numbers() -> None:
 
 async def test_what_cannot_be_adjusted_is_told(folder: Path) -> None:
     book = folder / "observations" / "main.csv"
-    kept = [r for r in BOOK.splitlines() if not r.startswith(("angle,C", "distance,D,,A"))]
+    kept = [r for r in NETWORK_BOOK.splitlines() if not r.startswith(("angle,C", "distance,D,,A"))]
     book.write_text("\n".join(kept) + "\n", encoding="utf-8")
     app = SurveyApp(str(folder))
     async with app.run_test(size=(80, 24)) as pilot:
@@ -141,7 +101,7 @@ async def test_what_cannot_be_adjusted_is_told(folder: Path) -> None:
 
 async def test_a_project_without_traverse_says_so(folder: Path) -> None:
     toml = folder / "project.toml"
-    toml.write_text(TOML[: TOML.index("[[traverse]]")], encoding="utf-8")
+    toml.write_text(NETWORK[: NETWORK.index("[[traverse]]")], encoding="utf-8")
     app = SurveyApp(str(folder))
     async with app.run_test(size=(80, 24)) as pilot:
         await app.workers.wait_for_complete()

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import datetime as dt
 import math
 
+from surveyapp.core.constant_axis import EPOCH, calendar_moment
 from surveyapp.domain.results import ConstantResult, Determination, OrientationResult, to_arcsec
 from surveyapp.report.blocks import Block, Figure, Heading, KeyValues, Table
 from surveyapp.report.numbers import NOTHING, plain, seconds
@@ -122,15 +122,13 @@ def _moments(items: tuple[Determination, ...]) -> Axis:
 
 def _days(x: Axis) -> list[str]:
     """Labels of a time axis: dates where the numbers are plausible moments, else the numbers."""
-    day = 86400.0
-    if x.low < 1000.0 * day:
-        return [f"{tick:g}" for tick in x.ticks]
-    ordinal = x.low > 1e10
     labels = []
     for tick in x.ticks:
-        if ordinal:
-            labels.append(dt.date.fromordinal(int(tick // day)).isoformat())
+        moment = calendar_moment(tick)
+        if moment is None:
+            labels.append(f"{tick:g}")
+        elif x.low > EPOCH:
+            labels.append(moment.strftime("%Y-%m-%d"))
         else:
-            moment = dt.datetime.fromtimestamp(tick, tz=dt.UTC)
             labels.append(moment.strftime("%Y-%m-%d %H:%M"))
     return labels

@@ -30,8 +30,8 @@ class DiagnosisScreen(Screen[None]):
     """Diagnoses runs and campaigns of one project."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("a", "adopt", texts.KEY_ADOPT),
-        Binding("f5", "diagnose", texts.KEY_RELOAD),
+        Binding("a", "adopt", texts.KEY_ADOPT, tooltip=texts.LONG_ADOPT),
+        Binding("f5", "diagnose", texts.KEY_RELOAD, tooltip=texts.LONG_RELOAD),
         Binding("escape", "leave", texts.KEY_BACK),
     ]
 

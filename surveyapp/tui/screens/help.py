@@ -1,4 +1,4 @@
-"""What to do in a step, in the trade's words, with a picture."""
+"""What to do here, in the trade's words, with a picture."""
 
 from __future__ import annotations
 
@@ -10,32 +10,27 @@ from textual.containers import VerticalScroll
 from textual.screen import ModalScreen
 from textual.widgets import Static
 
-from surveyapp.core.steps import Step
-from surveyapp.tui import help_texts, texts
+from surveyapp.tui import texts
+from surveyapp.tui.texts import help_texts
 
 
 class HelpScreen(ModalScreen[None]):
-    """Explains one step of one method."""
+    """Explains one thing: a heading, words and a picture."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape,f1,enter", "leave", texts.KEY_CLOSE),
     ]
 
-    def __init__(self, step: Step, method: str) -> None:
+    def __init__(self, heading: str, words: str) -> None:
         super().__init__()
-        self.step = step
-        self.method = method
+        self.heading = heading
+        self.words = words
 
     def compose(self) -> ComposeResult:
         """The words and the picture."""
-        name = texts.STEP_NAMES[self.step]
-        if self.step is Step.SWING:
-            name = texts.SWING_NAMES[self.method]
         with VerticalScroll(id="dialog"):
-            yield Static(name, classes="heading", markup=False)
-            yield Static(
-                help_texts.help_of(self.step, self.method), classes="picture", markup=False
-            )
+            yield Static(self.heading, classes="heading", markup=False)
+            yield Static(self.words, classes="picture", markup=False)
             yield Static(help_texts.CLOSE_HINT, classes="hint", markup=False)
 
     def action_leave(self) -> None:

@@ -13,10 +13,13 @@ from textual.widgets import Footer, OptionList, Static
 from textual.widgets.option_list import Option
 
 from surveyapp import api_home
+from surveyapp.api_practice import PracticeWish
 from surveyapp.errors import SurveyError
 from surveyapp.tui import texts
+from surveyapp.tui.drafts import Draft
 from surveyapp.tui.screens.folder import FolderScreen
 from surveyapp.tui.screens.new_project import NewProjectScreen
+from surveyapp.tui.screens.practise import PractiseScreen
 from surveyapp.tui.widgets.problems import problems_text
 from surveyapp.tui.widgets.titlebar import TitleBar
 
@@ -25,10 +28,11 @@ class HomeScreen(Screen[None]):
     """The first screen without a project."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("enter", "choose", texts.KEY_OPEN),
+        Binding("enter", "choose", texts.KEY_OPEN, priority=True),
         Binding("n", "new", texts.KEY_NEW_PROJECT),
         Binding("o", "folder", texts.KEY_FOLDER),
-        Binding("ctrl+q", "app.quit", texts.KEY_QUIT),
+        Binding("p", "practise", texts.KEY_PRACTISE),
+        Binding("q", "app.quit", texts.KEY_QUIT),
     ]
 
     class FolderChosen(Message):
@@ -41,14 +45,15 @@ class HomeScreen(Screen[None]):
     class PracticeChosen(Message):
         """A practice session is to begin."""
 
-        def __init__(self, *, disturbed: bool) -> None:
+        def __init__(self, wish: PracticeWish) -> None:
             super().__init__()
-            self.disturbed = disturbed
+            self.wish = wish
 
     def __init__(self) -> None:
         super().__init__()
         self.recent = api_home.recent_projects()
         self.samples = api_home.samples()
+        self.drafts: dict[str, Draft] = {"project": {}, "folder": {}, "practice": {}}
 
     def compose(self) -> ComposeResult:
         """Title and what can be opened."""
@@ -82,7 +87,6 @@ class HomeScreen(Screen[None]):
         options.append(Option(f"  {texts.HOME_NEW}", id="new:"))
         options.append(Option(f"  {texts.HOME_OPEN}", id="folder:"))
         options.append(Option(f"  {texts.HOME_PRACTISE}", id="practise:"))
-        options.append(Option(f"  {texts.HOME_PRACTISE_HIDDEN}", id="practise:hidden"))
         places.add_options(options)
         places.focus()
         places.action_first()
@@ -95,7 +99,7 @@ class HomeScreen(Screen[None]):
         elif kind == "folder":
             self.action_folder()
         elif kind == "practise":
-            self.post_message(self.PracticeChosen(disturbed=value == "hidden"))
+            self.action_practise()
         elif kind == "sample":
             try:
                 self.post_message(self.FolderChosen(api_home.sample_copy(value)))
@@ -110,11 +114,19 @@ class HomeScreen(Screen[None]):
 
     def action_new(self) -> None:
         """Make a new project."""
-        self.app.push_screen(NewProjectScreen(), self._opened)
+        self.app.push_screen(NewProjectScreen(self.drafts["project"]), self._opened)
 
     def action_folder(self) -> None:
         """Type a folder."""
-        self.app.push_screen(FolderScreen(), self._opened)
+        self.app.push_screen(FolderScreen(self.drafts["folder"]), self._opened)
+
+    def action_practise(self) -> None:
+        """Choose what to practise."""
+        self.app.push_screen(PractiseScreen(self.drafts["practice"]), self._practise)
+
+    def _practise(self, wish: PracticeWish | None) -> None:
+        if wish is not None:
+            self.post_message(self.PracticeChosen(wish))
 
     def _opened(self, folder: str | None) -> None:
         if folder:

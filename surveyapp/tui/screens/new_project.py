@@ -18,8 +18,9 @@ from surveyapp import api, api_home
 from surveyapp.api_home import GridChoice, NewProject, NewStation
 from surveyapp.errors import SurveyError
 from surveyapp.tui import texts
+from surveyapp.tui.drafts import Draft, keep, put_back
 from surveyapp.tui.views.card import card_known
-from surveyapp.tui.widgets.field import ChoiceField, TextField, chosen, typed
+from surveyapp.tui.widgets.field import AreaField, ChoiceField, TextField, chosen, typed
 from surveyapp.tui.widgets.problems import problems_text
 from surveyapp.tui.widgets.titlebar import TitleBar
 
@@ -36,10 +37,14 @@ class NewProjectScreen(Screen[str | None]):
     class GridsFound(Message):
         """The search for a grid has ended."""
 
-        def __init__(self, grids: tuple[GridChoice, ...], *, here: bool) -> None:
+        def __init__(self, grids: tuple[GridChoice, ...] | None, *, here: bool) -> None:
             super().__init__()
             self.grids = grids
             self.here = here
+
+    def __init__(self, draft: Draft) -> None:
+        super().__init__()
+        self.draft = draft
 
     def compose(self) -> ComposeResult:
         """All fields below each other."""
@@ -47,14 +52,13 @@ class NewProjectScreen(Screen[str | None]):
         with VerticalScroll(can_focus=False, classes="form"):
             yield TextField(texts.F_NAME, "name")
             yield TextField(texts.F_FOLDER, "folder", hint=texts.F_FOLDER_HINT)
+            yield Static(id="folder-told", classes="told", markup=False)
             yield ChoiceField(texts.F_UNIT, "unit", texts.UNITS)
             yield ChoiceField(texts.F_TYPING, "typing", texts.TYPINGS)
+            yield AreaField(texts.F_STATIONS, "stations", hint=texts.F_STATIONS_HINT)
             yield TextField(texts.F_GRID, "grid", hint=texts.F_GRID_HINT)
             yield Static(id="grids-told", classes="told", markup=False)
             yield OptionList(id="grids", compact=True)
-            yield Static(texts.F_STATIONS, classes="label", markup=False)
-            yield TextArea(id="stations", compact=True, tab_behavior="focus")
-            yield Static(texts.F_STATIONS_HINT, classes="told", markup=False)
             cards = {"": texts.NOT_DETERMINED, **{c.id: c.title for c in api.models()}}
             yield ChoiceField(texts.F_INSTRUMENT, "card", cards)
             yield Static(id="card-told", classes="told", markup=False)
@@ -63,50 +67,63 @@ class NewProjectScreen(Screen[str | None]):
             yield TextField(texts.F_CONSTANT, "constant", hint=texts.F_CONSTANT_HINT)
             books = {"": texts.NOT_DETERMINED, **{name: name for name in api_home.rule_books()}}
             yield ChoiceField(texts.F_RULES, "rules", books)
-            yield Static(id="trouble", classes="told", markup=False)
+        yield Static(id="trouble", markup=False)
         yield Footer(show_command_palette=False)
 
     def on_mount(self) -> None:
         """Begin at the name."""
         self.query_one("#grids").display = False
         self.query_one(TitleBar).state = texts.NEW_STATE
+        put_back(self, self.draft)
         self.query_one("#name").focus()
 
     def on_input_changed(self, event: Input.Changed) -> None:
-        """Search the grid while it is typed."""
+        """Search the grid while it is typed, and say where the folder will be."""
         if event.input.id == "grid":
-            text = event.value.strip()
-            self.query_one("#grids").display = False
-            if len(text) >= 3:
-                self.search(text, self.placed())
+            self.search_grids()
+        elif event.input.id in ("name", "folder"):
+            folder = typed(self, "folder") or typed(self, "name")
+            path = texts.F_FOLDER_MADE.format(path=Path(folder).expanduser().absolute())
+            self.query_one("#folder-told", Static).update(path if folder else "")
 
-    def placed(self) -> tuple[NewStation, ...]:
-        """Stations typed so far, as far as they make sense."""
-        try:
-            return self.stations()
-        except SurveyError:
-            return ()
+    def on_text_area_changed(self) -> None:
+        """Where the stations lie tells which grids are meant."""
+        self.search_grids()
+
+    def search_grids(self) -> None:
+        """Search for what is typed, or without it for all grids where the stations lie."""
+        self.search(typed(self, "grid"), self.query_one("#stations", TextArea).text)
 
     def stations(self) -> tuple[NewStation, ...]:
         """Stations typed, pasted, or in the file that is named."""
         return api_home.read_stations(self.query_one("#stations", TextArea).text)
 
     @work(thread=True, exclusive=True)
-    def search(self, text: str, stations: tuple[NewStation, ...]) -> None:
-        """Look for grids in a thread."""
-        here = any(station.lat is not None for station in stations)
-        grids = api_home.find_grids(text, stations)
-        self.post_message(self.GridsFound(grids, here=here))
+    def search(self, text: str, stations: str) -> None:
+        """Look for grids in a thread; the stations may be a long file."""
+        try:
+            placed = api_home.read_stations(stations)
+        except SurveyError:
+            placed = ()  # not typed to their end yet
+        local = any(s.lat is not None for s in placed)
+        found = None
+        if len(text) >= 3 or (not text and local):
+            found = api_home.find_grids(text, placed)
+        here = local or any(s.e is not None for s in placed)
+        self.post_message(self.GridsFound(found, here=here))
 
     def on_new_project_screen_grids_found(self, message: GridsFound) -> None:
-        """Show the grids."""
+        """Show the grids, if any were asked for."""
         options = self.query_one("#grids", OptionList)
+        if message.grids is None:
+            options.display = False
+            self.query_one("#grids-told", Static).update("")
+            return
         options.clear_options()
         options.add_options([Option(f"{g.code}  {g.name}", id=g.code) for g in message.grids])
         exact = any(g.code == typed(self, "grid") for g in message.grids)
         options.display = bool(message.grids) and not exact
-        pattern = texts.F_GRIDS_HERE if message.here else texts.F_GRIDS
-        told = message.grids[0].name if exact else pattern.format(count=len(message.grids))
+        told = message.grids[0].name if exact else grids_told(message.grids, here=message.here)
         self.query_one("#grids-told", Static).update(told)
 
     def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
@@ -140,16 +157,29 @@ class NewProjectScreen(Screen[str | None]):
     def action_make(self) -> None:
         """Make the folder, or say what is wrong."""
         trouble = self.query_one("#trouble", Static)
+        keep(self, self.draft)
         if not typed(self, "name") and not typed(self, "folder"):
             trouble.update(texts.MISSING_FIELD.format(field=texts.F_NAME))
             self.query_one("#name").focus()
             return
         try:
-            self.dismiss(api_home.create_project(self.form()))
+            folder = api_home.create_project(self.form())
         except SurveyError as error:
             trouble.update(problems_text(error))
-            trouble.scroll_visible(animate=False)
+        else:
+            self.draft.clear()
+            self.dismiss(folder)
 
     def action_leave(self) -> None:
-        """Make nothing."""
+        """Make nothing; what was filled in waits for the next opening."""
+        keep(self, self.draft)
         self.dismiss(None)
+
+
+def grids_told(grids: tuple[GridChoice, ...], *, here: bool) -> str:
+    """How many grids were found."""
+    if not grids:
+        return texts.F_GRIDS_NONE_HERE if here else texts.F_GRIDS_NONE
+    if len(grids) == api_home.MOST_GRIDS:
+        return texts.F_GRIDS_MANY.format(count=len(grids))
+    return (texts.F_GRIDS_HERE if here else texts.F_GRIDS).format(count=len(grids))

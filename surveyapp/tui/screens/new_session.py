@@ -15,6 +15,7 @@ from surveyapp.api_home import NewSession
 from surveyapp.domain.project import Method, Project, Purpose
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.tui import texts
+from surveyapp.tui.drafts import Draft, keep, put_back
 from surveyapp.tui.widgets.field import ChoiceField, TextField, chosen, typed
 from surveyapp.tui.widgets.problems import problems_text
 from surveyapp.tui.widgets.titlebar import TitleBar
@@ -29,8 +30,9 @@ class NewSessionScreen(Screen[str | None]):
         Binding("escape", "leave", texts.KEY_LEAVE),
     ]
 
-    def __init__(self, folder: str, project: Project) -> None:
+    def __init__(self, folder: str, project: Project, draft: Draft) -> None:
         super().__init__()
+        self.draft = draft
         self.folder = folder
         self.project = project
 
@@ -50,12 +52,13 @@ class NewSessionScreen(Screen[str | None]):
             yield ChoiceField(texts.F_PURPOSE, "purpose", texts.PURPOSES)
             yield TextField(texts.F_KNOWN, "known", hint=texts.F_KNOWN_HINT)
             yield TextField(texts.F_WANTED, "wanted", hint=texts.F_WANTED_HINT)
-            yield Static(id="trouble", classes="told", markup=False)
+        yield Static(id="trouble", markup=False)
         yield Footer(show_command_palette=False)
 
     def on_mount(self) -> None:
         """Begin at the id."""
         self.query_one(TitleBar).state = texts.NEW_STATE
+        put_back(self, self.draft)
         self.query_one("#id").focus()
 
     def form(self) -> NewSession:
@@ -92,8 +95,10 @@ class NewSessionScreen(Screen[str | None]):
         except SurveyError as error:
             self.query_one("#trouble", Static).update(problems_text(error))
             return
+        self.draft.clear()
         self.dismiss(form.id)
 
     def action_leave(self) -> None:
-        """Make nothing."""
+        """Make nothing; what was filled in waits for the next opening."""
+        keep(self, self.draft)
         self.dismiss(None)

@@ -6,6 +6,7 @@ result comes back as a message.
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import ClassVar
 
@@ -22,32 +23,36 @@ from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import SurveyError
 from surveyapp.tui import texts
-from surveyapp.tui.screens.diagnosis import DiagnosisScreen
+from surveyapp.tui.drafts import Draft
+from surveyapp.tui.page_keys import page_bindings
 from surveyapp.tui.screens.new_session import NewSessionScreen
-from surveyapp.tui.screens.traverse import TraverseScreen
-from surveyapp.tui.views.checks import CHECK_COLUMNS, check_rows, check_texts, summary
-from surveyapp.tui.views.constants import CONSTANT_COLUMNS, constant_rows
-from surveyapp.tui.views.lines import LINE_COLUMNS, budget_rows, chain_rows, line_rows
-from surveyapp.tui.views.session import SESSION_COLUMNS, session_details, session_rows
+from surveyapp.tui.views.checks import summary
+from surveyapp.tui.views.project import LISTS, details_of, page_rows
+from surveyapp.tui.widgets.constants import ConstantsPage
 from surveyapp.tui.widgets.problems import Problems
-from surveyapp.tui.widgets.records import Records, pairs_text, table_text
+from surveyapp.tui.widgets.records import Records
 from surveyapp.tui.widgets.titlebar import TitleBar
 
-PAGES = ("sessions", "lines", "constants", "checks", "warnings")
+PAGES = {
+    "sessions": texts.TAB_SESSIONS,
+    "lines": texts.TAB_LINES,
+    "constants": texts.TAB_CONSTANTS,
+    "checks": texts.TAB_CHECKS,
+    "warnings": texts.TAB_WARNINGS,
+}
 
 
 class ProjectScreen(Screen[None]):
     """Shows one project folder."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("1", f"page('{PAGES[0]}')", texts.KEY_TABS, key_display="1-5"),
-        *[Binding(str(i), f"page('{name}')", show=False) for i, name in enumerate(PAGES[1:], 2)],
-        Binding("o", "observe", texts.KEY_OBSERVE),
-        Binding("n", "new", texts.KEY_NEW),
-        Binding("d", "diagnose", texts.KEY_DIAGNOSE),
-        Binding("t", "traverses", texts.KEY_TRAVERSE, show=False),
-        Binding("f5", "reload", texts.KEY_RELOAD),
-        Binding("escape", "back", texts.KEY_BACK),
+        *page_bindings(PAGES),
+        Binding("o", "observe", texts.KEY_OBSERVE, tooltip=texts.LONG_OBSERVE),
+        Binding("n", "new", texts.KEY_NEW, tooltip=texts.LONG_NEW),
+        Binding("d", "diagnose", texts.KEY_DIAGNOSE, tooltip=texts.LONG_DIAGNOSE),
+        Binding("t", "traverses", texts.KEY_TRAVERSE, tooltip=texts.LONG_TRAVERSES, show=False),
+        Binding("f5", "reload", texts.KEY_RELOAD, tooltip=texts.LONG_RELOAD),
+        Binding("escape", "back", texts.KEY_BACK, tooltip=texts.LONG_BACK),
     ]
 
     class SessionChosen(Message):
@@ -79,22 +84,21 @@ class ProjectScreen(Screen[None]):
         self.project: Project | None = None
         self.result: OrientationResult | None = None
         self.resumed = False
+        self.draft: Draft = {}
 
     def compose(self) -> ComposeResult:
         """Title, pages, keys."""
         yield TitleBar(self.title_text)
         with TabbedContent():
-            with TabPane(texts.TAB_SESSIONS, id="sessions"):
-                yield Records(SESSION_COLUMNS, empty=texts.NO_SESSIONS, details=self._session)
-            with TabPane(texts.TAB_LINES, id="lines"):
-                yield Records(LINE_COLUMNS, empty=texts.NO_LINES, details=self._line)
-            with TabPane(texts.TAB_CONSTANTS, id="constants"):
-                yield Records(CONSTANT_COLUMNS, empty=texts.NO_CONSTANTS)
-            with TabPane(texts.TAB_CHECKS, id="checks"):
-                yield Records(CHECK_COLUMNS, empty=texts.NO_CHECK_ROWS, details=self._check)
-            with TabPane(texts.TAB_WARNINGS, id="warnings"):
-                yield Records((texts.COL_WARNING,), empty=texts.NO_WARNINGS, details=self._warning)
-        yield Footer()
+            for page, title in PAGES.items():
+                with TabPane(title, id=page):
+                    if page == "constants":
+                        yield ConstantsPage()
+                    else:
+                        columns, empty = LISTS[page]
+                        details = partial(self.details, page)
+                        yield Records(columns, empty=empty, details=details)
+        yield Footer(show_command_palette=False)
 
     def on_mount(self) -> None:
         """Begin to compute."""
@@ -120,18 +124,11 @@ class ProjectScreen(Screen[None]):
         self.query(Problems).remove()
         self.query_one(TabbedContent).display = True
         self.project, self.result = message.project, message.result
-        unit = message.project.angle_unit
         result = message.result
         self.query_one(TitleBar).state = summary(result)
-        rows: dict[str, list[tuple[str, ...]]] = {
-            "sessions": session_rows(message.project, result),
-            "lines": line_rows(result, unit),
-            "constants": constant_rows(result),
-            "checks": check_rows(result),
-            "warnings": [(warning.code,) for warning in result.warnings],
-        }
-        for name, values in rows.items():
-            self.query_one(f"#{name} Records", Records).show(values)
+        for page, rows in page_rows(message.project, result).items():
+            self.query_one(f"#{page} Records", Records).show(rows)
+        self.query_one(ConstantsPage).show(result)
         self.action_page(self.query_one(TabbedContent).active)
         if not self.resumed:
             self.resumed = True
@@ -167,10 +164,14 @@ class ProjectScreen(Screen[None]):
     def action_new(self) -> None:
         """Begin another session."""
         if self.project is not None:
-            self.app.push_screen(NewSessionScreen(self.folder, self.project), self._made)
+            self.app.push_screen(
+                NewSessionScreen(self.folder, self.project, self.draft), self._made
+            )
 
     def action_diagnose(self) -> None:
         """Ask what the model lacks; the project is read anew on return."""
+        from surveyapp.tui.screens.diagnosis import DiagnosisScreen  # half of all there is to load
+
         name = Path(self.folder).resolve().name
         self.app.push_screen(DiagnosisScreen(self.folder, name), self._diagnosed)
 
@@ -178,6 +179,8 @@ class ProjectScreen(Screen[None]):
         """Show the adjusted traverses, if there are any."""
         if self.project is None:
             return
+        from surveyapp.tui.screens.traverse import TraverseScreen
+
         names = tuple(name for option, name in api.subjects(self.project) if option == "traverse")
         if names:
             self.app.push_screen(TraverseScreen(self.folder, names, self.project.angle_unit))
@@ -195,26 +198,8 @@ class ProjectScreen(Screen[None]):
         """Leave the project; nothing is unsaved here."""
         await self.app.run_action("leave")
 
-    def _session(self, row: int) -> Text:
+    def details(self, page: str, row: int) -> Text:
+        """What is known of a row of a page."""
         if self.result is None or self.project is None:
             return Text()
-        wanted = self.project.sessions[row].id
-        for session in self.result.sessions:
-            if session.id == wanted:
-                return pairs_text(session_details(session, self.project.angle_unit))
-        return Text(texts.BEING_OBSERVED)
-
-    def _line(self, row: int) -> Text:
-        if self.result is None or self.project is None:
-            return Text()
-        line = self.result.lines[row]
-        text = table_text(chain_rows(line, self.project.angle_unit))
-        text.append("\n")
-        head = (texts.D_BUDGET, texts.COL_SIGMA, texts.D_SHARE)
-        return text.append_text(table_text([head, *budget_rows(line)]))
-
-    def _check(self, row: int) -> Text:
-        return Text() if self.result is None else Text(check_texts(self.result)[row])
-
-    def _warning(self, row: int) -> Text:
-        return Text() if self.result is None else Text(self.result.warnings[row].text)
+        return details_of(self.project, self.result, page, row)

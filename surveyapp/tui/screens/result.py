@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import ClassVar
 
 from rich.text import Text
@@ -20,21 +21,24 @@ from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import SurveyError
 from surveyapp.tui import texts
 from surveyapp.tui.desk import problem_text
+from surveyapp.tui.drafts import Draft
 from surveyapp.tui.screens.signature import SignatureScreen
 from surveyapp.tui.views.checks import summary
 from surveyapp.tui.views.result import result_headline, result_sections, truth_text
 from surveyapp.tui.widgets.problems import problems_text
-from surveyapp.tui.widgets.records import table_text
 from surveyapp.tui.widgets.titlebar import TitleBar
+
+SIDES = 6
+"""Columns beside the sections: padding and scroll bar."""
 
 
 class ResultScreen(Screen[None]):
     """Shows what one session says; it changes nothing."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("f4", "record", texts.KEY_PDF),
+        Binding("f4", "record", texts.KEY_PDF, tooltip=texts.LONG_PDF),
         Binding("f6", "sign", texts.KEY_SIGN),
-        Binding("f5", "reload", texts.KEY_RELOAD),
+        Binding("f5", "reload", texts.KEY_RELOAD, tooltip=texts.LONG_RELOAD),
         Binding("escape", "leave", texts.KEY_BACK),
     ]
 
@@ -63,18 +67,26 @@ class ResultScreen(Screen[None]):
     def __init__(self, folder: str, session: str, practice: Practice | None = None) -> None:
         super().__init__()
         self.practice = practice
+        self.draft: Draft = {}
         self.folder = folder
         self.session = session
+        self.project: Project | None = None
         self.result: OrientationResult | None = None
 
     def compose(self) -> ComposeResult:
         """Title, headline, sections, keys."""
-        yield TitleBar(texts.RESULT_TITLE.format(project="", session=self.session).strip())
+        truth, told = Static(id="truth", markup=False), Static(id="told", markup=False)
+        truth.display = told.display = False
+        yield TitleBar(
+            texts.RESULT_TITLE.format(
+                project=Path(self.folder).resolve().name, session=self.session
+            )
+        )
         yield Static(id="headline", markup=False)
-        yield Static(id="truth", markup=False)
+        yield truth
         with VerticalScroll():
             yield Static(id="sections", markup=False)
-        yield Static(id="told", markup=False)
+        yield told
         yield Footer(show_command_palette=False)
 
     def on_mount(self) -> None:
@@ -99,7 +111,7 @@ class ResultScreen(Screen[None]):
 
     def on_result_screen_computed(self, message: Computed) -> None:
         """Show it."""
-        self.result = message.result
+        self.project, self.result = message.project, message.result
         unit = message.project.angle_unit
         self.query_one(TitleBar).state = summary(message.result)
         self.query_one("#headline", Static).update(
@@ -108,11 +120,23 @@ class ResultScreen(Screen[None]):
         if self.practice is not None:
             truth = truth_text(self.practice.outcome(message.result), unit)
             self.query_one("#truth", Static).update(truth)
+            self.query_one("#truth").display = bool(truth)
+        self.show_sections()
+
+    def on_resize(self) -> None:
+        """The drawing takes the width that there is."""
+        self.show_sections()
+
+    def show_sections(self) -> None:
+        """Show every section below the other."""
+        if self.project is None or self.result is None:
+            return
+        width = max(self.size.width - SIDES, 40)
         text = Text()
-        for heading, rows in result_sections(message.result, self.session, unit):
-            text.append(f"{heading}\n", style="bold")
-            text.append_text(table_text(rows))
-            text.append("\n")
+        for heading, body in result_sections(self.project, self.result, self.session, width):
+            text.append(f"{heading}\n", style="bold underline")
+            text.append_text(body).rstrip()
+            text.append("\n\n")
         self.query_one("#sections", Static).update(text)
 
     def on_result_screen_failed(self, message: Failed) -> None:
@@ -132,7 +156,7 @@ class ResultScreen(Screen[None]):
 
     def action_sign(self) -> None:
         """Close the session."""
-        self.app.push_screen(SignatureScreen(), self._signed)
+        self.app.push_screen(SignatureScreen(self.draft), self._signed)
 
     def _signed(self, name: str | None) -> None:
         if name is None:
@@ -146,7 +170,9 @@ class ResultScreen(Screen[None]):
 
     def on_result_screen_told(self, message: Told) -> None:
         """Say what became of it."""
-        self.query_one("#told", Static).update(message.text)
+        told = self.query_one("#told", Static)
+        told.update(message.text)
+        told.display = True
 
     def action_leave(self) -> None:
         """Back to the session."""

@@ -18,13 +18,16 @@ from textual.widgets import Footer, Input
 from surveyapp.api_practice import Practice
 from surveyapp.api_session import Observation
 from surveyapp.core.steps import Step
-from surveyapp.domain.readings import ReadingKind
+from surveyapp.errors import SurveyError
 from surveyapp.tui import texts
-from surveyapp.tui.desk import Desk, NotWrittenError
+from surveyapp.tui.desk import Desk, NotWrittenError, problem_text
+from surveyapp.tui.drafts import Draft
 from surveyapp.tui.messages import ResultWanted, SessionLeft
 from surveyapp.tui.screens.help import HelpScreen
 from surveyapp.tui.screens.strike import StrikeScreen
 from surveyapp.tui.session_keys import HIDDEN, KEYS, ORDERED
+from surveyapp.tui.texts import help_texts
+from surveyapp.tui.views.observation import opening_warning, session_state, session_title
 from surveyapp.tui.widgets.entry import EntryLine, ReadingInput
 from surveyapp.tui.widgets.instrument import InstrumentPane
 from surveyapp.tui.widgets.run import RunPane
@@ -46,8 +49,8 @@ class SessionScreen(Screen[None]):
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding(key, action, name, show=action not in HIDDEN)
-        for key, (action, name) in KEYS.items()
+        Binding(key, action, name, show=action not in HIDDEN, tooltip=long)
+        for key, (action, name, long) in KEYS.items()
     ]
 
     def __init__(
@@ -58,21 +61,16 @@ class SessionScreen(Screen[None]):
         self.observation = observation
         self.desk = Desk(observation)
         self.draft = draft
+        self.reason: Draft = {}
         self.warned = False
+        self.shown = observation.book
 
     def compose(self) -> ComposeResult:
         """Title, steps, the run, the entry line, keys."""
         session = self.observation.session
-        line = f"{session.station}-{session.target}" if session.target else session.station
-        title = texts.SESSION_TITLE.format(
-            project=self.observation.project.name,
-            session=session.id,
-            method=session.method,
-            line=line,
-        )
-        yield TitleBar(title)
+        yield TitleBar(session_title(self.observation))
         with Horizontal(id="work"):
-            with Vertical(id="side"):
+            with Vertical(id="side", classes="steps-only" if self.practice is None else ""):
                 yield StepList(session.method)
                 if self.practice is not None:
                     yield InstrumentPane(self.practice, self.desk)
@@ -82,22 +80,32 @@ class SessionScreen(Screen[None]):
 
     def on_mount(self) -> None:
         """Show where the book stands."""
-        writable = self.observation.writable
-        closed = texts.CLOSED_SESSION if self.observation.closed else texts.READING_ONLY
-        self.query_one(TitleBar).state = texts.WRITING if writable else closed
+        self.query_one(TitleBar).state = session_state(self.observation)
         entry = self.query_one(EntryLine)
-        back = self.observation.clock.set_back_s
-        if back:
-            entry.tell(texts.CLOCK_BACK.format(seconds=back), serious=True)
-        torn = self.observation.torn
-        if torn is not None:
-            entry.tell(texts.TORN.format(file=torn), serious=True)
+        warning = opening_warning(self.observation)
+        if warning:
+            entry.tell(warning, serious=True)
         entry.text = self.draft
         self.query_one(ReadingInput).focus()
+        self.show_book()
+        self.set_interval(1.0, self.watch_book)
+
+    def watch_book(self) -> None:
+        """Take over what another hand has changed in the book, and say so."""
+        if not self.observation.changed_outside():
+            return
+        try:
+            self.observation.read_again()
+        except SurveyError as error:
+            told = texts.BOOK_BROKEN.format(what=problem_text(error))
+            self.query_one(EntryLine).tell(told, serious=True)
+            return
+        self.query_one(EntryLine).tell(texts.BOOK_CHANGED, serious=True)
         self.show_book()
 
     def show_book(self) -> None:
         """Show steps, readings and prompt as the book stands."""
+        self.shown = self.observation.book
         self.query_one(StepList).show(self.observation.steps(), self.desk.step)
         self.query_one(RunPane).show_book()
         self.show_prompt()
@@ -132,21 +140,23 @@ class SessionScreen(Screen[None]):
             told = act()
         except NotWrittenError as refusal:
             entry.tell(str(refusal), serious=True)
+            if self.observation.book is not self.shown:
+                self.show_book()
             return False
-        off = self.observation.clock.wall_clock_off_s()
-        entry.tell(texts.CLOCK_SET.format(seconds=off) if off else told)
+        entry.tell(told + self.desk.clock_note())
         self.show_book()
         return True
 
     def action_passage(self) -> None:
         """Space in the empty line: a timed passage."""
-        if self.desk.what().kind is ReadingKind.TRANSIT:
-            self.attempt(self.desk.passage)
+        self.attempt(self.desk.passage)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Show the keys that mean something in this step."""
         if action == "other":
             return self.desk.has_other(str(parameters[0]))
+        if action == "passage":
+            return self.desk.times()
         return action != "missed" or self.desk.swings()
 
     def action_other(self, which: str) -> None:
@@ -173,7 +183,7 @@ class SessionScreen(Screen[None]):
             if choice is not None:
                 self.attempt(lambda: self.desk.strike(*choice))
 
-        self.app.push_screen(StrikeScreen(rows), struck)
+        self.app.push_screen(StrikeScreen(rows, self.reason), struck)
 
     def action_step(self, places: int) -> None:
         """Go on, or back, by one step."""
@@ -184,7 +194,8 @@ class SessionScreen(Screen[None]):
 
     def action_help(self) -> None:
         """Explain this step."""
-        self.app.push_screen(HelpScreen(self.desk.step, self.observation.session.method))
+        words = help_texts.help_of(self.desk.step, self.observation.session.method)
+        self.app.push_screen(HelpScreen(self.desk.step_name(), words))
 
     def action_leave(self) -> None:
         """Leave; what is half typed is kept."""

@@ -11,6 +11,7 @@ from textual.screen import ModalScreen
 from textual.widgets import Input, Static
 
 from surveyapp.tui import texts
+from surveyapp.tui.drafts import Draft, keep, put_back
 
 
 class SignatureScreen(ModalScreen[str | None]):
@@ -18,20 +19,31 @@ class SignatureScreen(ModalScreen[str | None]):
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", texts.KEY_LEAVE)]
 
+    def __init__(self, draft: Draft) -> None:
+        super().__init__()
+        self.draft = draft
+
     def compose(self) -> ComposeResult:
         """What closing means, and one line."""
         with Vertical(id="dialog"):
             yield Static(texts.SIGN_TITLE, classes="heading", markup=False)
             yield Static(texts.SIGN_MEANING, markup=False)
-            line = Input(placeholder=texts.SIGN_NAME, compact=True)
+            line = Input(placeholder=texts.SIGN_NAME, compact=True, select_on_focus=False)
             line.cursor_blink = False
             yield line
+            yield Static(texts.SIGN_KEYS, classes="hint", markup=False)
+
+    def on_mount(self) -> None:
+        """What was half typed stands there again."""
+        put_back(self, self.draft)
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
         """Sign."""
         if event.value.strip():
+            self.draft.clear()
             self.dismiss(event.value.strip())
 
     def action_leave(self) -> None:
         """Sign nothing."""
+        keep(self, self.draft)
         self.dismiss(None)

@@ -14,6 +14,7 @@ from textual.widgets.option_list import Option
 
 from surveyapp.domain.readings import Reading
 from surveyapp.tui import texts
+from surveyapp.tui.drafts import Draft, keep, put_back
 
 
 class StrikeScreen(ModalScreen[tuple[int, str] | None]):
@@ -25,8 +26,9 @@ class StrikeScreen(ModalScreen[tuple[int, str] | None]):
         Binding("down", "move(1)", show=False, priority=True),
     ]
 
-    def __init__(self, rows: Sequence[Reading]) -> None:
+    def __init__(self, rows: Sequence[Reading], draft: Draft) -> None:
         super().__init__()
+        self.draft = draft
         self.rows = tuple(rows)
 
     def compose(self) -> ComposeResult:
@@ -34,7 +36,9 @@ class StrikeScreen(ModalScreen[tuple[int, str] | None]):
         with Vertical(id="dialog"):
             yield Static(texts.STRIKE_TITLE, classes="heading", markup=False)
             yield OptionList(*[Option(_line(row), id=str(row.seq)) for row in self.rows])
-            reason = Input(placeholder=texts.STRIKE_REASON, id="reason", compact=True)
+            reason = Input(
+                placeholder=texts.STRIKE_REASON, id="reason", compact=True, select_on_focus=False
+            )
             reason.cursor_blink = False
             yield reason
             yield Static(texts.STRIKE_KEYS, classes="hint", markup=False)
@@ -42,6 +46,7 @@ class StrikeScreen(ModalScreen[tuple[int, str] | None]):
     def on_mount(self) -> None:
         """The latest row is chosen, the reason is typed at once."""
         self.query_one(OptionList).highlighted = 0
+        put_back(self, self.draft)
         self.query_one(Input).focus()
 
     def action_move(self, places: int) -> None:
@@ -55,10 +60,12 @@ class StrikeScreen(ModalScreen[tuple[int, str] | None]):
         chosen = self.query_one(OptionList).highlighted
         reason = event.value.strip()
         if chosen is not None and reason:
+            self.draft.clear()
             self.dismiss((self.rows[chosen].seq, reason))
 
     def action_leave(self) -> None:
         """Strike nothing."""
+        keep(self, self.draft)
         self.dismiss(None)
 
 

@@ -21,6 +21,7 @@ from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.results import Check
 from surveyapp.errors import SurveyError
 from surveyapp.tui import texts
+from surveyapp.tui.page_keys import page_bindings
 from surveyapp.tui.views import traverse as view
 from surveyapp.tui.widgets.plan import PlanCanvas
 from surveyapp.tui.widgets.problems import Problems
@@ -28,17 +29,22 @@ from surveyapp.tui.widgets.records import Records, pairs_text
 from surveyapp.tui.widgets.titlebar import TitleBar
 from surveyapp_models.angles import AngleUnit
 
-PAGES = ("plan", "points", "observations", "closures", "checks")
+PAGES = {
+    "plan": texts.TAB_PLAN,
+    "points": texts.TAB_POINTS,
+    "observations": texts.TAB_OBSERVATIONS,
+    "closures": texts.TAB_CLOSURES,
+    "checks": texts.TAB_ALL_CHECKS,
+}
 
 
 class TraverseScreen(Screen[None]):
     """Shows the traverses of a project, one after the other."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("1", f"page('{PAGES[0]}')", texts.KEY_TABS, key_display="1-5"),
-        *[Binding(str(i), f"page('{name}')", show=False) for i, name in enumerate(PAGES[1:], 2)],
+        *page_bindings(PAGES),
         Binding("t", "next", texts.KEY_NEXT_TRAVERSE),
-        Binding("f5", "reload", texts.KEY_RELOAD),
+        Binding("f5", "reload", texts.KEY_RELOAD, tooltip=texts.LONG_RELOAD),
         Binding("escape", "leave", texts.KEY_BACK),
     ]
     DEFAULT_CSS = "PlanCanvas { width: 1fr; height: 1fr; padding: 0 1; text-wrap: nowrap; }"

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from surveyapp.domain.results import OrientationResult
+from surveyapp.domain.results import Check, ConstantResult, OrientationResult
 from surveyapp.tui import texts
+from surveyapp.tui.views.checks import quantity_text, verdict_word
 from surveyapp.tui.views.form import arcsec_text, number_text
 
 CONSTANT_COLUMNS = (
@@ -14,6 +15,8 @@ CONSTANT_COLUMNS = (
     texts.COL_COUNT,
     texts.COL_LENGTH,
 )
+
+CONSTANT_RULES = "constant."
 
 
 def constant_rows(result: OrientationResult) -> list[tuple[str, ...]]:
@@ -44,3 +47,43 @@ def constant_rows(result: OrientationResult) -> list[tuple[str, ...]]:
                 )
             )
     return rows
+
+
+def constant_of(result: OrientationResult, row: int) -> ConstantResult | None:
+    """The constant that a row of ``constant_rows`` belongs to."""
+    owners = [
+        constant
+        for constant in result.constants
+        for _ in range(len(constant.by_line) + (constant.value is not None))
+    ]
+    return owners[row] if 0 <= row < len(owners) else None
+
+
+def tests_of(result: OrientationResult, constant: ConstantResult) -> tuple[Check, ...]:
+    """The tests whether the constant of an instrument stands still."""
+    return tuple(
+        check
+        for check in result.checks
+        if check.rule.startswith(CONSTANT_RULES) and check.where == constant.instrument
+    )
+
+
+def constant_told(result: OrientationResult, constant: ConstantResult) -> list[str]:
+    """The value in force with its interval, then each test with its verdict."""
+    value = texts.CONSTANT_VALUE.format(
+        choice=constant.choice,
+        value=arcsec_text(constant.value, 2, sign=True),
+        sigma=arcsec_text(constant.sigma, 2),
+        interval=arcsec_text(constant.interval95),
+    )
+    tests = [_test(check) for check in tests_of(result, constant)]
+    return [value, *(tests or [texts.CONSTANT_UNTESTED])]
+
+
+def _test(check: Check) -> str:
+    """A test in words, with its numbers where the words do not tell them."""
+    text = check.text or check.rule
+    value, limit = quantity_text(check.value, check.unit), quantity_text(check.limit, check.unit)
+    if '"' not in text:
+        text = texts.CONSTANT_NUMBERS.format(text=text, value=value, limit=limit)
+    return texts.CONSTANT_TEST.format(verdict=verdict_word(check), text=text)

@@ -47,7 +47,7 @@ def diagnosis_view(found: Diagnosed) -> Text:
         return Text(texts.NO_SUBJECTS)
     text = Text()
     for sentence in found.words:
-        text.append(f"{sentence}\n")
+        text.append(texts.D_SENTENCE.format(sentence=sentence))
     text.append("\n")
     text.append_text(_models(found))
     for name, before, after in found.channels:
@@ -55,7 +55,7 @@ def diagnosis_view(found: Diagnosed) -> Text:
         for state, series in ((texts.D_BEFORE, before), (texts.D_AFTER, after)):
             largest = max((abs(value) for value in series), default=0.0) / diagnosis.scale
             bars = sparkline(series)
-            text.append(f"{state:<8}{bars}  +-{largest:.1f} {diagnosis.unit}\n")
+            text.append(f"{state:<8}{bars}  ±{largest:.1f} {diagnosis.unit}\n")
     text.append("\n")
     head = (texts.COL_CANDIDATE, texts.COL_VERDICT, "p", texts.COL_FAMILY, texts.COL_BIC)
     rows = [

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from surveyapp.domain.results import LineResult, OrientationResult
+from surveyapp.core.improvement import most_helpful
+from surveyapp.domain.project import Project
+from surveyapp.domain.results import AngleResult, LineResult, OrientationResult
 from surveyapp.tui import texts
 from surveyapp.tui.views.form import (
     angle_text,
@@ -12,6 +14,8 @@ from surveyapp.tui.views.form import (
     small_text,
 )
 from surveyapp_models.angles import AngleUnit, format_angle
+
+Row = tuple[str, str, str, str]
 
 LINE_COLUMNS = (
     texts.COL_LINE,
@@ -36,30 +40,62 @@ def line_rows(result: OrientationResult, unit: AngleUnit) -> list[tuple[str, ...
     ]
 
 
-def chain_rows(line: LineResult, unit: AngleUnit) -> list[tuple[str, str, str]]:
-    """The chain, one correction a row: label, value, sigma."""
-    rows = [(texts.D_GYRO, angle_text(line.gyro_azimuth, unit), sigma_text(line.gyro_azimuth))]
+def chain_rows(project: Project, line: LineResult) -> list[Row]:
+    """The chain, one correction a row: label, value, sigma, where it comes from."""
+    unit = project.angle_unit
+    rounds = texts.S_ROUNDS.format(count=line.rounds)
+    rows = [_angle(texts.D_GYRO, line.gyro_azimuth, unit, rounds)]
     if line.constant is not None:
-        label = texts.D_PLUS_CONSTANT.format(choice=line.constant_choice)
-        rows.append((label, small_text(line.constant), arcsec_text(line.constant_sigma)))
+        value, sigma = small_text(line.constant), arcsec_text(line.constant_sigma)
+        rows.append((texts.D_PLUS_CONSTANT, value, sigma, line.constant_choice or ""))
     if line.true_azimuth is not None:
         reference = (line.true_azimuth.reference or "").lower()
-        label = texts.D_TRUE.format(reference=reference)
-        rows.append((label, angle_text(line.true_azimuth, unit), sigma_text(line.true_azimuth)))
+        rows.append(_angle(texts.D_TRUE.format(reference=reference), line.true_azimuth, unit, ""))
     if line.grid_azimuth is not None:
-        rows.append((texts.D_DEFLECTION, small_text(line.deflection), ""))
-        rows.append((texts.D_CONVERGENCE, small_text(line.convergence), ""))
-        rows.append((texts.D_ARC_TO_CHORD, small_text(line.arc_to_chord), ""))
+        known = project.station(line.station).deflection.known
         rows.append(
-            (texts.D_GRID, angle_text(line.grid_azimuth, unit), sigma_text(line.grid_azimuth))
+            _small(
+                texts.D_DEFLECTION,
+                line.deflection,
+                texts.S_DEFLECTION if known else texts.S_NO_DEFLECTION,
+            )
         )
+        grid = texts.S_GRID.format(station=line.station)
+        rows.append(_small(texts.D_CONVERGENCE, line.convergence, grid))
+        ends = texts.S_NO_ENDS if line.arc_to_chord is None else texts.S_ENDS
+        rows.append(_small(texts.D_ARC_TO_CHORD, line.arc_to_chord, ends))
+        rows.append(_angle(texts.D_GRID, line.grid_azimuth, unit, texts.S_CLOCKWISE))
     if line.direction_from_south is not None:
-        rows.append((texts.D_SOUTH, format_angle(line.direction_from_south, unit), ""))
+        south = format_angle(line.direction_from_south, unit)
+        rows.append((texts.D_SOUTH, south, "", texts.S_AXES))
     if line.existing_azimuth is not None:
-        rows.append((texts.D_EXISTING, format_angle(line.existing_azimuth, unit), ""))
+        existing = format_angle(line.existing_azimuth, unit)
+        rows.append((texts.D_EXISTING, existing, "", texts.S_COMPARE))
     return rows
+
+
+def _angle(label: str, item: AngleResult, unit: AngleUnit, source: str) -> Row:
+    return label, angle_text(item, unit), sigma_text(item), source
+
+
+def _small(label: str, value: float | None, source: str) -> Row:
+    return label, small_text(value), "", source
 
 
 def budget_rows(line: LineResult) -> list[tuple[str, str, str]]:
     """The budget: source, sigma, share."""
     return [(item.source, arcsec_text(item.sigma, 2), f"{item.share:.0%}") for item in line.budget]
+
+
+def helps_text(line: LineResult) -> str:
+    """What would improve an azimuth most, and by how much."""
+    found = most_helpful(line.budget)
+    if found is None:
+        return ""
+    advice = texts.IMPROVE.get(found.source, found.source)
+    if found.at_calibration:
+        advice = texts.R_AT_CALIBRATION.format(advice=advice)
+    if len(line.budget) == 1:
+        return texts.R_HELPS_ALONE.format(advice=advice)
+    sigma, without = arcsec_text(found.sigma), arcsec_text(found.without)
+    return texts.R_HELPS.format(advice=advice, sigma=sigma, without=without)

@@ -113,7 +113,7 @@ def outlook_text(progress: Progress, aim: Aim) -> str:
     pattern = texts.WANTED if target.origin == "session" else texts.RULE_TARGET
     parts.append(pattern.format(interval=arcsec_text(target.interval95)))
     if progress.enough(target.interval95):
-        parts.append(texts.ENOUGH)
+        parts.insert(0, texts.ENOUGH)  # in sight in the narrowest window
     return "  ".join(parts)
 
 

@@ -2,23 +2,40 @@
 
 from __future__ import annotations
 
-from surveyapp.core.practice import PracticeOutcome
+from typing import TYPE_CHECKING
+
+from rich.text import Text
+
+from surveyapp.domain.project import Project
 from surveyapp.domain.results import (
     AngleResult,
-    Check,
+    ConstantResult,
     LineResult,
     OrientationResult,
     SessionResult,
 )
 from surveyapp.tui import texts
 from surveyapp.tui.views.checks import ordered_checks, quantity_text, verdict_word
-from surveyapp.tui.views.constants import constant_rows
-from surveyapp.tui.views.form import angle_text, arcsec_text, interval_text, sigma_text
-from surveyapp.tui.views.lines import budget_rows, chain_rows
+from surveyapp.tui.views.constants import constant_told
+from surveyapp.tui.views.form import (
+    angle_text,
+    arcsec_text,
+    interval_text,
+    number_text,
+    sigma_text,
+)
+from surveyapp.tui.views.lines import Row, budget_rows, chain_rows, helps_text
 from surveyapp.tui.views.session import session_details
+from surveyapp.tui.widgets.constants import draw_constant
+from surveyapp.tui.widgets.records import pairs_text, table_text
 from surveyapp_models.angles import AngleUnit, format_angle
 
-Section = tuple[str, list[tuple[str, ...]]]
+if TYPE_CHECKING:
+    from surveyapp.core.practice import PracticeOutcome
+
+Section = tuple[str, Text]
+CONSTANT_HEIGHT = 11
+"""Rows of the drawing of the constant among the other sections."""
 
 
 def result_headline(result: OrientationResult, session: str, unit: AngleUnit) -> str:
@@ -34,6 +51,9 @@ def result_headline(result: OrientationResult, session: str, unit: AngleUnit) ->
     own = next(item for item in result.sessions if item.id == session)
     if own.gyro_north is not None:
         return _headline(own.station, texts.COL_NORTH, own.gyro_north, unit)
+    if own.main is not None and own.main.gyro_azimuth is not None:
+        name = f"{own.station}-{own.main.target}"
+        return _headline(name, texts.COL_AZIMUTH, own.main.gyro_azimuth, unit)
     return texts.R_NO_LINE
 
 
@@ -42,53 +62,84 @@ def _headline(name: str, label: str, angle: AngleResult, unit: AngleUnit) -> str
     return f'{name}  {label} {angle_text(angle, unit)}  ±{sigma}"  (95 % ±{interval}")'
 
 
-def result_sections(result: OrientationResult, session: str, unit: AngleUnit) -> list[Section]:
-    """Headings with their rows, in the order in which they are read."""
+def result_sections(
+    project: Project, result: OrientationResult, session: str, width: int
+) -> list[Section]:
+    """Headings with what stands below them, in the order in which they are read."""
+    unit = project.angle_unit
     own = next(item for item in result.sessions if item.id == session)
     sections: list[Section] = []
-    sections += [(texts.R_CHAIN, _chain(own, line, unit)) for line in result.lines]
+    for line in result.lines:
+        sections.append((texts.R_CHAIN, table_text(_chain(project, own, line), left=(0, 3))))
+        budget = table_text(budget_rows(line))
+        sections.append((texts.R_BUDGET, budget.append(helps_text(line))))
     if not result.lines:
-        sections.append((texts.R_CHAIN, [(a, b, "") for a, b in session_details(own, unit)]))
+        sections.append((texts.R_CHAIN, pairs_text(session_details(own, unit))))
+    sections.append((texts.R_CHECKS, _checks(result)))
     sections += [
-        (texts.R_BUDGET, [tuple(row) for row in budget_rows(line)]) for line in result.lines
+        (texts.R_CONSTANTS, _constant(result, constant, width))
+        for constant in result.constants
+        if constant.value is not None
     ]
-    sections.append((texts.R_CHECKS, [_check(check) for check in ordered_checks(result)]))
-    failed = [check for check in ordered_checks(result) if check.passed is False]
-    sections.append((texts.R_NOT_MET, [(f"{c.text} ({c.clause})",) for c in failed]))
-    constants = [(row[1], row[2], f"±{row[3]}") for row in constant_rows(result)]
-    sections.append((texts.R_CONSTANTS, list(constants)))
-    sections.append((texts.R_WARNINGS, [(warning.text,) for warning in result.warnings]))
-    sections.append((texts.R_POINTS, _points(own, unit)))
+    warnings = "\n".join(warning.text for warning in result.warnings)
+    sections.append((texts.R_WARNINGS, Text(warnings)))
+    sections.append((texts.R_POINTS, table_text(_points(own, unit))))
     return [section for section in sections if section[1]]
 
 
-def _check(check: Check) -> tuple[str, ...]:
-    limit = quantity_text(check.limit, check.unit)
-    value = quantity_text(check.value, check.unit)
-    return (f"{verdict_word(check):<8}{check.rule}", value, texts.R_LIMIT.format(limit=limit))
+def _constant(result: OrientationResult, constant: ConstantResult, width: int) -> Text:
+    """The drawing where there is one, and in words what is in force and how it was tested."""
+    drawing = draw_constant(constant, width, CONSTANT_HEIGHT)
+    if drawing:
+        drawing.append("\n")
+    return drawing.append("\n".join(constant_told(result, constant)))
 
 
-def _chain(own: SessionResult, line: LineResult, unit: AngleUnit) -> list[tuple[str, ...]]:
-    rows: list[tuple[str, ...]] = []
+def _checks(result: OrientationResult) -> Text:
+    """Each check with its verdict, value and limit, and below it what it says and its clause."""
+    checks = ordered_checks(result)
+    rows = [
+        (
+            f"{verdict_word(check):<8}{check.rule}",
+            quantity_text(check.value, check.unit),
+            texts.R_LIMIT.format(limit=quantity_text(check.limit, check.unit)),
+        )
+        for check in checks
+    ]
+    text = Text()
+    for check, line in zip(checks, table_text(rows).plain.splitlines(), strict=True):
+        text.append(f"{line}\n", style="bold" if check.passed is False else "")
+        said = f"{check.text}\n" if check.passed is False and check.text else ""
+        text.append(f"{said}[{check.clause}]\n" if check.clause else said)
+    return text
+
+
+def _chain(project: Project, own: SessionResult, line: LineResult) -> list[Row]:
+    unit = project.angle_unit
+    rows: list[Row] = []
     for target in own.targets:
         if target.target == line.target and target.line_reading is not None:
             label = texts.D_READING.format(target=target.target)
-            sigma = sigma_text(target.line_reading)
-            rows.append((label, angle_text(target.line_reading, unit), sigma))
+            value, sigma = angle_text(target.line_reading, unit), sigma_text(target.line_reading)
+            rows.append((label, value, sigma, texts.S_POINTINGS.format(count=target.pointings)))
     if own.gyro_north is not None:
-        rows.append((texts.COL_NORTH, angle_text(own.gyro_north, unit), sigma_text(own.gyro_north)))
-    rows += chain_rows(line, unit)
-    return rows
+        value, sigma = angle_text(own.gyro_north, unit), sigma_text(own.gyro_north)
+        rows.append((texts.COL_NORTH, value, sigma, texts.S_POINTS.format(count=own.points_used)))
+    return rows + chain_rows(project, line)
 
 
 def _points(own: SessionResult, unit: AngleUnit) -> list[tuple[str, ...]]:
+    """Readings with their residuals, on the circle or on the scale."""
     rows: list[tuple[str, ...]] = []
     for point in own.points:
+        name = f"{point.index + 1} {point.side}"
         if own.method in ("tracking", "automatic"):
-            reading = format_angle(point.observed, unit)
-            rows.append(
-                (f"{point.index + 1} {point.side}", reading, arcsec_text(point.residual, sign=True))
-            )
+            residual = arcsec_text(point.residual, sign=True)
+            rows.append((name, format_angle(point.observed, unit), residual))
+        else:
+            observed = number_text(point.observed, 2, sign=True)
+            residual = number_text(point.residual, 3, sign=True)
+            rows.append((name, texts.R_DIVISIONS.format(value=observed), residual))
     return rows
 
 
@@ -98,7 +149,7 @@ def truth_text(outcome: PracticeOutcome | None, unit: AngleUnit) -> str:
         return ""
     verdict = texts.PRACTICE_HOLDS if outcome.inside else texts.PRACTICE_MISSES
     truth = texts.PRACTICE_TRUTH.format(
-        north=format_angle(outcome.north, unit),
+        truth=format_angle(outcome.truth, unit),
         error=arcsec_text(outcome.error, sign=True),
         interval=arcsec_text(outcome.interval95),
         verdict=verdict,

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from textual.actions import parse
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
-from textual.events import Key
+from textual.events import Key, Paste
 from textual.widgets import Input, Static
 
 
@@ -52,6 +52,13 @@ class ReadingInput(Input):
                 await self.app.run_action(action, default_namespace=self.screen)
         else:
             await super()._on_key(event)
+
+    def _on_paste(self, event: Paste) -> None:
+        """Take the first line that holds anything, without control characters."""
+        lines = ("".join(filter(str.isprintable, line)).strip() for line in event.text.splitlines())
+        super()._on_paste(Paste(next((line for line in lines if line), "")))
+        event.stop()
+        event.prevent_default()
 
 
 class EntryLine(Vertical):

@@ -1,13 +1,13 @@
-"""A labelled field of a form: one line, or one of some choices."""
+"""A labelled field of a form: one line, some lines, or one of some choices."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
 from textual.app import ComposeResult
-from textual.containers import Horizontal
+from textual.containers import Horizontal, Vertical
 from textual.widget import Widget
-from textual.widgets import Input, Select, Static
+from textual.widgets import Input, Select, Static, TextArea
 
 
 class TextField(Horizontal):
@@ -22,9 +22,27 @@ class TextField(Horizontal):
     def compose(self) -> ComposeResult:
         """Label and line."""
         yield Static(self.label, classes="label", markup=False)
-        line = Input(self.start, placeholder=self.hint, compact=True, id=self.name)
+        line = Input(
+            self.start, placeholder=self.hint, compact=True, id=self.name, select_on_focus=False
+        )
         line.cursor_blink = False
         yield line
+
+
+class AreaField(Vertical):
+    """A label, some lines to type or paste in, and what may stand there."""
+
+    def __init__(self, label: str, name: str, *, hint: str) -> None:
+        super().__init__(name=name)
+        self.label = label
+        self.hint = hint
+
+    def compose(self) -> ComposeResult:
+        """Label beside the lines, the hint below."""
+        with Horizontal():
+            yield Static(self.label, classes="label", markup=False)
+            yield TextArea(id=self.name, compact=True, tab_behavior="focus")
+        yield Static(self.hint, classes="told", markup=False)
 
 
 class ChoiceField(Horizontal):

@@ -48,7 +48,7 @@ class Forecast(Vertical):
         text = Text(f"{north}  ", no_wrap=True)
         outlook = outlook_text(progress, self.aim)
         if progress.north is not None:
-            style = "bold" if outlook.endswith(texts.ENOUGH) else ""
+            style = "bold" if outlook.startswith(texts.ENOUGH) else ""
             text.append(f"\n{outlook}", style=style)
             if source := target_source_text(self.aim.target):
                 text.append(f"\n{source}")

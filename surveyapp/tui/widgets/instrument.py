@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from rich.text import Text
 from textual.widgets import Static
 
 from surveyapp.api_practice import Practice
-from surveyapp.core.practice import View
+from surveyapp.domain.readings import ReadingKind
 from surveyapp.tui import texts
 from surveyapp.tui.desk import Desk
 from surveyapp.tui.views.form import number_text
 from surveyapp_models.angles import AngleUnit, format_angle
+
+if TYPE_CHECKING:
+    from surveyapp.core.practice import View
 
 WIDTH = 19
 FRAMES_PER_SECOND = 10
@@ -31,26 +36,45 @@ class InstrumentPane(Static):
 
     def look(self) -> None:
         """Draw what is seen now."""
-        view = self.practice.view(self.desk.observation, self.desk.what())
-        self.update(picture(view, self.desk.unit, self.practice.speed))
+        what = self.desk.what()
+        view = self.practice.view(self.desk.observation, what)
+        delivers = what.kind in (ReadingKind.AZIMUTH, ReadingKind.NORTH)
+        self.update(picture(view, self.desk.unit, self.practice.speed, delivers=delivers))
 
 
-def picture(view: View, unit: AngleUnit, speed: float) -> Text:
-    """The scale with the mark, and the readings."""
+def picture(view: View, unit: AngleUnit, speed: float, *, delivers: bool = False) -> Text:
+    """The scale with the mark, and the readings.
+
+    Parameters
+    ----------
+    view : View
+    unit : AngleUnit
+    speed : float
+        How many times faster than life.
+    delivers : bool
+        Whether the instrument delivers values, so that the mark tells how far the round is.
+    """
     text = Text(f"{texts.PRACTICE_INSTRUMENT.format(speed=speed)}\n", style="bold")
     middle = WIDTH // 2
     scale = ["─"] * WIDTH
-    scale[0], scale[middle], scale[-1] = "├", "┼", "┤"
+    scale[0], scale[middle], scale[-1] = "├", "─" if delivers else "┼", "┤"
     if view.swing is not None:
-        place = round(middle + view.swing * (middle - 1))
+        place = round(middle + min(max(view.swing, -1.0), 1.0) * (middle - 1))
         text.append(" " * place + "▼\n")
     else:
         text.append("\n")
     text.append("".join(scale) + "\n")
+    return text.append("\n".join(_readings(view, unit, delivers=delivers)))
+
+
+def _readings(view: View, unit: AngleUnit, *, delivers: bool) -> list[str]:
+    lines = []
     if view.circle is not None:
-        text.append(texts.PRACTICE_CIRCLE.format(reading=format_angle(view.circle, unit)))
-    elif view.scale_div is not None:
-        text.append(texts.PRACTICE_SCALE.format(div=number_text(view.scale_div, 2, sign=True)))
-    else:
-        text.append(texts.PRACTICE_NOTHING)
-    return text
+        pattern = texts.PRACTICE_AZIMUTH if delivers else texts.PRACTICE_CIRCLE
+        lines.append(pattern.format(reading=format_angle(view.circle, unit)))
+    if view.scale_div is not None:
+        div = number_text(view.scale_div, 2, sign=True)
+        lines.append(texts.PRACTICE_SCALE.format(div=div))
+    if delivers and view.swing is not None:
+        lines.append(texts.PRACTICE_MEASURING)
+    return lines or [texts.PRACTICE_NOTHING]

@@ -11,8 +11,8 @@ from textual.widgets import Static
 
 from surveyapp.tui import texts
 
-STATE = 4
-RIGHT = (0, 5)
+STATE, RESIDUAL = 4, 5
+RIGHT = (0, RESIDUAL)
 
 
 class Ledger(Vertical):
@@ -32,15 +32,20 @@ class Ledger(Vertical):
         """Scroll to the latest reading, once everything has its place."""
         self.call_after_refresh(self.query_one(VerticalScroll).scroll_end, animate=False)
 
-    def show(self, rows: Sequence[Sequence[str]], *, scale: bool = False) -> None:
-        """Replace all rows; ``scale``: residuals are divisions."""
+    def show(self, rows: Sequence[Sequence[str]], *, hint: str = "", scale: bool = False) -> None:
+        """Replace all rows; without any, say what is to be done. ``scale``: v in divisions."""
+        if not rows:
+            self.query_one("#ledger-head", Static).update("")
+            self.query_one("#ledger-rows", Static).update(hint)
+            return
         head = texts.LEDGER_COLUMNS_DIV if scale else texts.LEDGER_COLUMNS
         table = [head, *rows]
-        widths = [max(len(row[i]) for row in table) for i in range(len(texts.LEDGER_COLUMNS))]
+        shown = [i for i in range(len(head)) if any(row[i] for row in rows)]
+        widths = {i: max(len(row[i]) for row in table if not _reason(row, i)) for i in shown}
         lines = [
             " ".join(
-                cell.rjust(width) if i in RIGHT else cell.ljust(width)
-                for i, (cell, width) in enumerate(zip(row, widths, strict=True))
+                row[i].rjust(width) if i in RIGHT else row[i].ljust(width)
+                for i, width in widths.items()
             )
             for row in table
         ]
@@ -51,3 +56,8 @@ class Ledger(Vertical):
         text.rstrip()
         self.query_one("#ledger-rows", Static).update(text)
         self.to_end()
+
+
+def _reason(row: Sequence[str], column: int) -> bool:
+    """Whether a cell holds the reason of a strike, which may hang over."""
+    return column == RESIDUAL and row[STATE] == texts.LEDGER_STRUCK

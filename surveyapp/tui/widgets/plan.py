@@ -14,7 +14,7 @@ from textual.widget import Widget
 from surveyapp.domain.adjustment import AdjustedPoint, AdjustmentResult
 from surveyapp.domain.observations import ObservationKind
 from surveyapp.tui import texts
-from surveyapp.tui.widgets.swing import BRAILLE, DOTS
+from surveyapp.tui.widgets.canvas import Canvas
 
 FIXED, FREE, GYRO = "■", "●", "G"
 ELLIPSE_DOTS = 7.0
@@ -53,53 +53,12 @@ def enlargement(largest_m: float, scale: float) -> float:
     return max(m * power for m in (1.0, 2.0, 5.0) if m * power <= wanted * (1.0 + 1e-9))
 
 
-class _Canvas:
-    """Cells of braille dots under characters."""
-
-    def __init__(self, width: int, height: int) -> None:
-        self.width, self.height = width, height
-        self.cells = [[0] * width for _ in range(height)]
-        self.signs: dict[tuple[int, int], str] = {}
-
-    def dot(self, x: float, y: float) -> None:
-        """Set the dot at x to the right, y down."""
-        column, row = round(x), round(y)
-        if 0 <= column < 2 * self.width and 0 <= row < 4 * self.height:
-            self.cells[row // 4][column // 2] |= DOTS[row % 4][column % 2]
-
-    def line(self, start: tuple[float, float], end: tuple[float, float]) -> None:
-        """A straight line of dots."""
-        count = max(1, math.ceil(max(abs(end[0] - start[0]), abs(end[1] - start[1]))))
-        for k in range(count + 1):
-            share = k / count
-            x, y = (a + (b - a) * share for a, b in zip(start, end, strict=True))
-            self.dot(x, y)
-
-    def sign(self, x: float, y: float, text: str) -> None:
-        """A word whose first character stands at a dot, where nothing else is written."""
-        column, row = round(x) // 2, round(y) // 4
-        places = [(row, column + i) for i in range(len(text))]
-        inside = all(0 <= r < self.height and 0 <= c < self.width for r, c in places)
-        if inside and not any(place in self.signs for place in places):
-            self.signs.update(zip(places, text, strict=True))
-
-    def text(self) -> Text:
-        """Characters over dots."""
-        lines = []
-        for r, row in enumerate(self.cells):
-            cells = [chr(BRAILLE + cell) for cell in row]  # leading blanks would be cut off
-            for c in range(self.width):
-                cells[c] = self.signs.get((r, c), cells[c])
-            lines.append("".join(cells))
-        return Text("\n".join(lines), no_wrap=True)
-
-
 def draw_plan(result: AdjustmentResult, width: int, height: int) -> Text:
     """The plan in a field of ``width`` times ``height`` characters, its legend in the last row."""
     points = [p for p in result.points if p.e is not None and p.n is not None]
     if len(points) < 2:
         return Text(texts.PLAN_EMPTY, style="dim")
-    canvas = _Canvas(width, height - 1)
+    canvas = Canvas(width, height - 1)
     at, scale = _places(points, canvas)
     for a, b in _sides(result):
         if a in at and b in at:
@@ -124,7 +83,7 @@ def draw_plan(result: AdjustmentResult, width: int, height: int) -> Text:
 
 
 def _places(
-    points: Iterable[AdjustedPoint], canvas: _Canvas
+    points: Iterable[AdjustedPoint], canvas: Canvas
 ) -> tuple[dict[str, tuple[float, float]], float]:
     """Place of each point in dots, and dots per metre."""
     known = {p.name: (p.e or 0.0, p.n or 0.0) for p in points}
@@ -153,7 +112,7 @@ def _sides(result: AdjustmentResult) -> list[tuple[str, str]]:
     return list(found)
 
 
-def _ellipse(canvas: _Canvas, point: AdjustedPoint, at: tuple[float, float], factor: float) -> None:
+def _ellipse(canvas: Canvas, point: AdjustedPoint, at: tuple[float, float], factor: float) -> None:
     if point.ellipse is None:
         return
     a, b, t = point.ellipse.a_m * factor, point.ellipse.b_m * factor, point.ellipse.azimuth

@@ -20,13 +20,13 @@ class Problems(VerticalScroll):
 
     def compose(self) -> ComposeResult:
         """The problems as text."""
-        yield Static(problems_text(self.error), markup=False)
+        text = Text().append(f"{texts.CANNOT_USE}\n\n", style="bold")
+        yield Static(text.append_text(problems_text(self.error)), markup=False)
 
 
 def problems_text(error: SurveyError) -> Text:
     """Every problem as a paragraph."""
     text = Text()
-    text.append(f"{texts.CANNOT_USE}\n\n", style="bold")
     for problem in error.problems:
         head = f"{problem.where}: {problem.what}" if problem.where else problem.what
         text.append(f"{head}\n")
@@ -37,4 +37,5 @@ def problems_text(error: SurveyError) -> Text:
         if problem.hint:
             text.append(f"  {problem.hint}\n")
         text.append("\n")
+    text.rstrip()
     return text

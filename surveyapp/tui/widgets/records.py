@@ -81,19 +81,21 @@ def pairs_text(pairs: Sequence[tuple[str, str]]) -> Text:
     width = max((len(label) for label, _ in pairs), default=0)
     text = Text()
     for label, value in pairs:
-        text.append(f"{label:<{width}}  ", style="dim")
-        text.append(f"{value}\n")
+        text.append(f"{label:<{width}}  ")
+        text.append(f"{value}\n", style="bold")
     return text
 
 
-def table_text(rows: Sequence[Sequence[str]]) -> Text:
-    """A small table: the first column to the left, the others to the right."""
+def table_text(rows: Sequence[Sequence[str]], *, left: tuple[int, ...] = (0,)) -> Text:
+    """A small table: some columns to the left, the others to the right."""
     if not rows:
         return Text()
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     text = Text()
     for row in rows:
-        cells = [row[0].ljust(widths[0])]
-        cells += [cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)]
+        cells = [
+            cell.ljust(width) if i in left else cell.rjust(width)
+            for i, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ]
         text.append(("  ".join(cells)).rstrip() + "\n")
     return text

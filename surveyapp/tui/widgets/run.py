@@ -15,8 +15,9 @@ from surveyapp.core.progress import Progress
 from surveyapp.core.steps import Step, kinds_of
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.errors import SurveyError
+from surveyapp.tui import texts
 from surveyapp.tui.desk import Desk
-from surveyapp.tui.views.ledger import book_rows, ledger_rows
+from surveyapp.tui.views.ledger import QUIET, book_rows, ledger_rows
 from surveyapp.tui.widgets.forecast import Forecast
 from surveyapp.tui.widgets.ledger import Ledger
 from surveyapp.tui.widgets.swing import SwingPlot
@@ -77,10 +78,15 @@ class RunPane(Vertical):
         kinds = kinds_of(self.desk.step, observation.session.method)
         if self.desk.step is Step.SWING:
             kinds = (*kinds, ReadingKind.MISSED)
+        elif self.desk.step is Step.RESULT:  # once more all that was read
+            kinds = tuple(kind for kind in ReadingKind if kind not in QUIET)
         rows = book_rows(observation.book, kinds)
-        cells = ledger_rows(observation.book, self.desk.progress, rows)
-        scale = self.desk.progress is not None and self.desk.progress.scale
-        self.query_one(Ledger).show(cells, scale=scale)
+        progress = self.desk.progress
+        self.query_one(Ledger).show(
+            ledger_rows(observation.book, progress, rows),
+            hint=texts.STEP_HINTS[self.desk.step],
+            scale=progress is not None and progress.scale,
+        )
 
     @work(thread=True, exclusive=True)
     def judge(self) -> None:

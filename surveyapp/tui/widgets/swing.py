@@ -55,11 +55,11 @@ def draw(progress: Progress, width: int, height: int) -> Text:
     for position, offset in progress.curve:
         x, y = column(position, 2 * width), row(offset, 4 * height)
         cells[y // 4][x // 2] |= DOTS[y % 4][x % 2]
-    lines = [[chr(BRAILLE + cell) if cell else " " for cell in line] for line in cells]
+    lines = [[chr(BRAILLE + cell) for cell in line] for line in cells]  # all of one width
     if progress.middle is not None:
         middle = lines[row(progress.middle, height)]
         for x in range(0, width, 2):
-            if middle[x] == " ":
+            if middle[x] == chr(BRAILLE):
                 middle[x] = "·"
     for point in progress.points:
         lines[row(point.offset, height)][column(point.index, width)] = POINT

@@ -9,7 +9,7 @@ from typing import Final
 
 from surveyapp.core.steps import Step
 
-CLOSE_HINT: Final = "Escape or F1 closes this page."
+CLOSE_HINT: Final = "Escape closes   Ctrl+P every action   F9 colours   Ctrl+Q quit"
 
 _SETUP: Final = """\
 Set up over the mark and level. Let the tripod settle. Read the level
@@ -128,6 +128,113 @@ _BY_METHOD: Final = {
     "transit": _TRANSIT,
     "automatic": _AUTOMATIC,
 }
+
+
+_HOME: Final = """\
+Up and Down choose, Enter opens. A project is a folder of plain text
+that you may edit with any editor; a sample is opened as your own copy.
+
+    project.toml       stations, instruments, sessions, rule book
+    observations/      one field book a session: a line is a reading
+    results/           the record as PDF; may always be made anew
+
+   new project --> new session --> observe --> result --> PDF, sign
+
+Practice does the same on a simulated instrument, and tells the truth
+afterwards.
+"""
+_NEW_PROJECT: Final = """\
+Tab goes to the next field, F8 makes the folder. Only a name is needed;
+everything else may be added later, here or in project.toml.
+
+Stations, one a line, typed, pasted, or the path of a CSV file:
+
+   3083, 431630.663, 3811452.311, 812.4     name, east, north, height
+   or  name, lat, lon, h  as the first line, then degrees
+
+Grid: part of its name or the EPSG code. Where the stations lie decides
+which grids are offered; Down and Enter take one.
+Instrument: its card brings the known values. Constant: true minus
+gyro in arc-seconds and its sigma, where it is known beforehand.
+"""
+_NEW_SESSION: Final = """\
+One set-up on one station makes one session. Tab goes to the next
+field, F8 begins. The id names the field book: observations/<id>.csv.
+
+            target
+              *           more targets may be sighted later with F4
+             /
+   station  o -- the gyro stands here
+
+Purpose calibration: the azimuth of the line is known, and the session
+gives the instrument constant. Wanted 95 %: the screen says ENOUGH when
+gyro north is known that well.
+"""
+_PROJECT: Final = """\
+1 to 5 show the pages, Up and Down a row, and what is known of it
+stands below or beside. O or Enter goes on with a session exactly where
+its field book stands.
+
+   readings --> gyro north --> gyro azimuth + constant = true azimuth
+   true azimuth - deflection - convergence - (T-t) = grid azimuth
+
+Verdicts are words: met, NOT MET, warning (a limit that nobody has
+confirmed), open (nothing to compare with). D asks what the model
+lacks, T shows the adjusted traverses, F5 reads the folder again after
+an edit by hand.
+"""
+_RESULT_PAGE: Final = """\
+From the reading to the azimuth, one correction a line with its value,
+its sigma and where it comes from; then what the sigma is made of, with
+what would improve it most; the constant through time; every check with
+value, limit, clause and verdict.
+
+   line reading - gyro north = gyro azimuth
+   + constant   = true azimuth
+   - deflection - convergence - (T-t) = grid azimuth
+
+F4 writes the record as PDF and shows its path. F6 closes and signs:
+book and table are sealed, nothing is locked away. Escape goes back.
+"""
+_DIAGNOSIS: Final = """\
+Choose a run, an instrument or a traverse: the engine looks for what
+the model lacks, names it or says why it cannot, and proves it on
+readings that did not choose it. A writes what it named into the
+project, after a question; F5 asks again.
+
+   residuals   + - + - + -      amplitude channel: side times residual
+               + + + - - -      midpoint channel: Schuler means
+"""
+_TRAVERSE: Final = """\
+The traverse after the adjustment: plan with ellipses, points with
+their sigmas, observations with residual and test, closures, checks.
+1 to 5 show the pages, T the next traverse, F5 adjusts again after an
+edit by hand. Nothing is changed here.
+
+   # fixed     o adjusted, ellipse enlarged     G side with a gyro
+"""
+_PRACTICE: Final = """\
+A simulated instrument with a hidden north. You observe it with the
+same session screens; what you see beside the steps is its scale.
+
+          v                 the mark moves as on a real scale
+   |------+---|             circle or scale reading below it
+
+Read where it turns, or press Space where it passes the zero. At 10 x a
+half swing takes 20 seconds. The result shows truth against yours, and
+what was hidden in the run.
+"""
+PAGES: Final = {
+    "HomeScreen": ("Where to begin", _HOME),
+    "NewProjectScreen": ("New project", _NEW_PROJECT),
+    "NewSessionScreen": ("New session", _NEW_SESSION),
+    "ProjectScreen": ("A project", _PROJECT),
+    "ResultScreen": ("The result", _RESULT_PAGE),
+    "DiagnosisScreen": ("What the model lacks", _DIAGNOSIS),
+    "TraverseScreen": ("Traverses", _TRAVERSE),
+    "PractiseScreen": ("Practice", _PRACTICE),
+}
+"""Heading and words of each screen that is no step of an observation, by the name of its class."""
 
 
 def help_of(step: Step, method: str) -> str:

@@ -1,0 +1,70 @@
+"""Words that several screens share: verdicts, columns, keys."""
+
+from __future__ import annotations
+
+from typing import Final
+
+APP_TITLE: Final = "surveyapp"
+NOT_DETERMINED: Final = "-"
+
+# verdicts: words, never colour alone
+MET: Final = "met"
+NOT_MET: Final = "NOT MET"
+WARNS: Final = "warning"
+OPEN: Final = "open"
+
+# problems
+FOUND: Final = "found: {text}"
+EXPECTED: Final = "expected: {text}"
+
+# columns
+COL_SESSION: Final = "session"
+COL_METHOD: Final = "method"
+COL_POINTS: Final = "n"
+COL_NORTH: Final = "gyro north"
+COL_SIGMA: Final = '±"'
+COL_AZIMUTH: Final = "gyro azimuth"
+COL_LINE: Final = "line"
+COL_GRID: Final = "grid azimuth"
+COL_INTERVAL: Final = '95 % ±"'
+COL_CONSTANT: Final = 'constant "'
+COL_COUNT: Final = "n"
+COL_INSTRUMENT: Final = "instrument"
+COL_LENGTH: Final = "length m"
+COL_VERDICT: Final = "verdict"
+COL_CHECK: Final = "check"
+COL_WHERE: Final = "where"
+COL_VALUE: Final = "value"
+COL_LIMIT: Final = "limit"
+COL_WARNING: Final = "warning"
+
+# keys; what is too short for the palette has a longer name below
+KEY_QUIT: Final = "Quit"
+KEY_SOUND: Final = "Sound of the countdown: on, off"
+SOUND_ON: Final = "the countdown is heard"
+SOUND_OFF: Final = "the countdown is silent"
+KEY_THEME: Final = "Next theme: dark, light, high contrast"
+KEY_BACK: Final = "Back"
+KEY_TABS: Final = "Page"
+KEY_RELOAD: Final = "Reload"
+KEY_OPEN: Final = "Open"
+LONG_PAGE: Final = "Page {tab}"
+LONG_OBSERVE: Final = "Observe this session"
+LONG_NEW: Final = "New session"
+LONG_DIAGNOSE: Final = "Diagnose: what the model lacks"
+LONG_RELOAD: Final = "Read the folder again"
+LONG_BACK: Final = "Back to where one came from"
+LONG_HELP: Final = "Help: explain this step"
+LONG_KIND: Final = "Another kind of reading"
+LONG_FACE: Final = "The other face"
+LONG_TARGET: Final = "Another target"
+LONG_MISSED: Final = "Missed: this turning point was not read"
+LONG_STRIKE: Final = "Strike a reading, with a reason"
+LONG_UNDO: Final = "Undo: strike the latest reading"
+LONG_PREVIOUS: Final = "Back to the step before"
+LONG_NEXT: Final = "Next step"
+LONG_LEAVE: Final = "Leave; everything is on the disk"
+LONG_PASSAGE: Final = "A passage now (Space in the empty line)"
+LONG_PDF: Final = "PDF: write the record"
+LONG_TRAVERSES: Final = "Traverses: adjusted, with plan and ellipses"
+LONG_ADOPT: Final = "Adopt what was named"
