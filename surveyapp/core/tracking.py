@@ -59,14 +59,35 @@ MIN_POINTS = 3
 
 @dataclass(frozen=True, slots=True)
 class ModelledNorth:
-    """North averaged over a run by a model with adopted effects: value and sigma [rad], dof."""
+    """A run estimated by a model with adopted effects.
+
+    Parameters
+    ----------
+    value, sigma : float
+        North averaged over the run [rad].
+    dof : float
+    residuals : ndarray, shape (n,)
+        Observed minus modelled [rad].
+    design : ndarray, shape (n, p)
+        Derivatives of the turning points by the parameters of the model.
+    amplitude : float
+        At the first turning point [rad].
+    damping_ratio : float
+        Amplitude ratio of one half swing.
+    """
 
     value: float
     sigma: float
     dof: float
+    residuals: Floats
+    design: Floats
+    amplitude: float
+    damping_ratio: float
 
 
-RunModel = Callable[[OrientationSession, InstrumentCard, float | None], ModelledNorth]
+RunModel = Callable[
+    [OrientationSession, InstrumentCard, float | None, TripodTwist | None], ModelledNorth
+]
 """Estimates a run with its adopted effects; handed in from above, where the effects are known."""
 
 
@@ -198,35 +219,39 @@ def reduce_tracking(
     zero, coefficient, correction, warnings = tape_zero_of(session, card, points.rows, latitude)
     points = without_twist(without_tape_drift(points, zero, coefficient), twist)
     fit = _fit(session, points)
+    modelled = None
+    if session.effects and run_model is not None:
+        modelled = run_model(session, card, latitude, twist)
+    shown = _shown(points, fit, modelled)
     means, _ = schuler_means(points.values, points.index)
     chosen, middle = _middle(session, points, fit, estimator)
     sigma = reading_sigma(
         count=points.values.size,
-        variance=fit.variance,
-        dof=fit.dof,
+        variance=shown.variance,
+        dof=shown.dof,
         card_sigma=card.sigma.reversal,
         resolution=points.resolution,
     )
     north = _north(session, points, middle, sigma)
-    if session.effects and run_model is not None:
+    if modelled is not None:
         chosen = f"least-squares with {', '.join(effect.id for effect in session.effects)}"
-        north = _modelled_north(session, points, middle, run_model(session, card, latitude))
+        north = _modelled_north(session, points, middle, modelled)
     return Reduction(
         estimator=chosen,
         north=north if correction is None else north + correction,
         points_used=points.values.size,
-        dof=fit.dof,
+        dof=shown.dof,
         sigma_source=sigma.origin,
         reading_sigma=sigma.value if math.isfinite(sigma.value) else None,
-        residual_rms=fit.residual_rms,
-        amplitude=fit.amplitude,
-        damping_ratio=fit.damping_ratio,
+        residual_rms=shown.residual_rms,
+        amplitude=shown.amplitude,
+        damping_ratio=shown.damping_ratio,
         period_s=period_from_times(points.rows, points.index),
         tape_zero=zero,
         coefficient=coefficient,
         tape_zero_correction=_correction_value(zero, correction),
-        tests=_tests(points, fit, judge, card),
-        points=_point_results(points, fit),
+        tests=_tests(points, shown, judge, card),
+        points=_point_results(points, shown.residuals),
         schuler_means=tuple(wrap_two_pi(points.origin + mean) for mean in means.tolist()),
         warnings=(*warnings, *_sigma_warnings(session, sigma)),
         unit=None if session.effects else unit_scatter("turning points", sigma),
@@ -345,21 +370,55 @@ def _correction_value(zero: TapeZero | None, correction: Uncertain | None) -> fl
     return 0.0 if zero is None else None
 
 
+@dataclass(frozen=True, slots=True)
+class _Shown:
+    """The model that the session shows and is judged by: the damped swing, or that with effects."""
+
+    residuals: Floats
+    design: Floats
+    dof: int
+    amplitude: float
+    damping_ratio: float
+
+    @property
+    def variance(self) -> float | None:
+        """Variance of one reading, None without redundancy."""
+        return float(self.residuals @ self.residuals) / self.dof if self.dof > 0 else None
+
+    @property
+    def residual_rms(self) -> float:
+        """sqrt(v'v / n)."""
+        return math.sqrt(float(self.residuals @ self.residuals) / self.residuals.size)
+
+
+def _shown(points: TurningPoints, fit: SwingFit, modelled: ModelledNorth | None) -> _Shown:
+    if modelled is None:
+        jacobian = fit.jacobian(points.index, points.sides)
+        return _Shown(fit.residuals, jacobian, fit.dof, fit.amplitude, fit.damping_ratio)
+    return _Shown(
+        modelled.residuals,
+        modelled.design,
+        math.floor(modelled.dof),
+        modelled.amplitude,
+        modelled.damping_ratio,
+    )
+
+
 def _tests(
-    points: TurningPoints, fit: SwingFit, judge: Judge, card: InstrumentCard
+    points: TurningPoints, shown: _Shown, judge: Judge, card: InstrumentCard
 ) -> tuple[FitTest, ...]:
     return goodness_of_fit(
-        fit.residuals,
-        fit.jacobian(points.index, points.sides),
+        shown.residuals,
+        shown.design,
         judge,
         sigma=card.sigma.reversal,
         resolution=points.resolution,
     )
 
 
-def _point_results(points: TurningPoints, fit: SwingFit) -> tuple[PointResult, ...]:
+def _point_results(points: TurningPoints, found: Floats) -> tuple[PointResult, ...]:
     observed = [row.value or 0.0 for row in points.rows]
-    residuals = fit.residuals.tolist()
+    residuals = found.tolist()
     return point_results(
         points.rows,
         index=points.index,

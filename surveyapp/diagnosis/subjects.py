@@ -17,20 +17,21 @@ from surveyapp.core.adopted_checks import occurrences
 from surveyapp.core.campaign_columns import Circumstances, circumstances, in_blocks
 from surveyapp.core.orientation import Orientation
 from surveyapp.core.scatter import SHARED
-from surveyapp.core.sights import moments
+from surveyapp.core.sights import TripodTwist, moments
 from surveyapp.core.tracking import (
     ModelledNorth,
     tape_zero_of,
     turning_points,
     without_tape_drift,
+    without_twist,
 )
 from surveyapp.core.uncertain import Uncertain
 from surveyapp.diagnosis.campaign import Determination, campaign
 from surveyapp.diagnosis.candidates import Candidate, all_candidates
-from surveyapp.diagnosis.fits import Member, fit_members
+from surveyapp.diagnosis.fits import Fit, Member, fit_members
 from surveyapp.diagnosis.problem import Problem
 from surveyapp.diagnosis.reversal_run import TurningPoints, reversal_run
-from surveyapp.diagnosis.value import Value, value_of
+from surveyapp.diagnosis.value import value_of
 from surveyapp.domain.instrument import AdoptedEffect, InstrumentCard
 from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import ReadingKind
@@ -53,6 +54,7 @@ def run_problem(
     card: InstrumentCard,
     *,
     latitude: float | None,
+    twist: TripodTwist | None = None,
     extra: tuple[Effect, ...] = (),
 ) -> Problem:
     """The turning points of one session as a problem.
@@ -63,6 +65,8 @@ def run_problem(
     card : InstrumentCard
     latitude : float or None
         [rad], for the drift of the tape zero, which is known and taken out first.
+    twist : TripodTwist or None
+        Turning of the tripod that the sights tell: known and taken out as well.
     extra : tuple of Effect
         The user's own.
 
@@ -83,7 +87,7 @@ def run_problem(
         )
     points = turning_points(session)
     zero, coefficient, _, _ = tape_zero_of(session, card, points.rows, latitude)
-    points = without_tape_drift(points, zero, coefficient)
+    points = without_twist(without_tape_drift(points, zero, coefficient), twist)
     times = moments(points.rows)
     temperature = [
         math.nan if row.temperature_c is None else row.temperature_c for row in points.rows
@@ -106,8 +110,8 @@ def run_problem(
     )
 
 
-def adopted_run(problem: Problem, effects: Sequence[AdoptedEffect]) -> Value:
-    """North averaged over a run with its adopted effects in the model, all estimated anew.
+def adopted_fit(problem: Problem, effects: Sequence[AdoptedEffect]) -> Fit:
+    """Fit of a run with its adopted effects in the model, all estimated anew.
 
     Raises
     ------
@@ -133,8 +137,7 @@ def adopted_run(problem: Problem, effects: Sequence[AdoptedEffect]) -> Value:
                 )
             )
         members += [Member(candidate, place) for place in _places(candidate, adopted)]
-    value = value_of(problem, fit_members(problem, members, base.theta))
-    return Value(value.value + problem.offset, value.sigma, value.dof)
+    return fit_members(problem, members, base.theta)
 
 
 def _places(candidate: Candidate, adopted: AdoptedEffect) -> list[int]:
@@ -152,11 +155,25 @@ def _places(candidate: Candidate, adopted: AdoptedEffect) -> list[int]:
 
 
 def modelled_run(
-    session: OrientationSession, card: InstrumentCard, latitude: float | None
+    session: OrientationSession,
+    card: InstrumentCard,
+    latitude: float | None,
+    twist: TripodTwist | None = None,
 ) -> ModelledNorth:
     """Observed north of a session with its adopted effects, before the tape-zero correction."""
-    value = adopted_run(run_problem(session, card, latitude=latitude), session.effects)
-    return ModelledNorth(value.value, value.sigma, value.dof)
+    problem = run_problem(session, card, latitude=latitude, twist=twist)
+    fit = adopted_fit(problem, session.effects)
+    value = value_of(problem, fit)
+    first, decay = (0.0, 0.0) if fit.theta is None else (float(fit.theta[0]), float(fit.theta[1]))
+    return ModelledNorth(
+        value=value.value + problem.offset,
+        sigma=value.sigma,
+        dof=value.dof,
+        residuals=fit.residual,
+        design=fit.design,
+        amplitude=abs(first),
+        damping_ratio=math.exp(-decay),
+    )
 
 
 def determinations(orientation: Orientation, instrument: str) -> tuple[Determination, ...]:

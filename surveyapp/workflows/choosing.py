@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from surveyapp.core.orientation import Orientation
+from surveyapp.core.sights import tripod_twist
 from surveyapp.diagnosis.problem import Problem
 from surveyapp.diagnosis.subjects import LEAST_CAMPAIGN, campaign_problem, is_run, run_problem
 from surveyapp.diagnosis.traverse import traverse as traverse_problem
@@ -170,10 +171,18 @@ def _run(
     project = orientation.project
     _require(identity, [session.id for session in project.sessions], option, "session")
     session = project.session(identity)
+    sights = [
+        target.sights
+        for item in orientation.sessions
+        if item.session.id == identity
+        for target in item.targets
+        if target.sights is not None
+    ]
     return run_problem(
         session,
         project.instrument(session.instrument).card,
         latitude=orientation.positions[session.station].latitude,
+        twist=tripod_twist(sights),
         extra=effects,
     )
 
