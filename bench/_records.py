@@ -25,7 +25,8 @@ STEPS = 160
 class Truth:
     """What nature does in one line of the table; sizes in arc-seconds and half swings.
 
-    ``amplitude`` is the first one [deg], within a tenth.
+    ``amplitude`` is the first one [deg], within a tenth; ``damping_growth`` per half swing; a pulse
+    lasts three to five half swings. Two effects at once are written ``one+other``.
     """
 
     name: str
@@ -39,6 +40,8 @@ class Truth:
     friction: float = 0.0
     drag: float = 0.0
     damping_change: float = 0.0
+    damping_growth: float = 0.0
+    pulse: float = 0.0
     gross: tuple[float, ...] = ()
     walk: float = 0.0
     ar1: float = 0.0
@@ -81,7 +84,7 @@ def simulate(truth: Truth, runs: int, seed: int) -> Runs:
         return value * ARCSEC
 
     def slope(t: float, a: Array, v: Array) -> tuple[Array, Array]:
-        k = decay + truth.damping_change * (t > change)
+        k = decay + truth.damping_change * (t > change) + truth.damping_growth * t
         moment = np.pi**2 * np.sin(a - field_at(t))
         return v, -2.0 * k * v - drag * v * np.abs(v) - friction * np.tanh(v / 1e-6) - moment
 
@@ -137,12 +140,15 @@ def midpoint(truth: Truth, runs: int, g: np.random.Generator) -> Callable[[float
     period = g.uniform(0.3, 0.55, runs) * n
     phase = g.uniform(0.0, 2.0 * np.pi, runs)
     tau = g.uniform(2.0, 6.0, runs)
+    begin = g.uniform(2.0, n - 7.0, runs) if truth.pulse else np.zeros(runs)
+    end = begin + g.uniform(3.0, 5.0, runs) if truth.pulse else begin
     walk = np.cumsum(truth.walk * g.standard_normal((runs, n + 3)), axis=1)
 
     def north(t: float) -> Array:
         value = truth.drift * t + truth.step * (t > when)
         value = value + truth.oscillation * np.cos(2.0 * np.pi * t / period + phase)
         value = value + truth.warm_up * np.exp(-t / tau)
+        value = value + truth.pulse * ((t > begin) & (t < end))
         return np.asarray(sign * value + walk[:, min(int(t), n + 2)])
 
     return north

@@ -18,6 +18,8 @@ from itertools import islice
 from pathlib import Path
 from typing import Final
 
+from surveyapp.api_orientation import orient
+from surveyapp.api_project import Folder
 from surveyapp.domain.filing import BATCH_COLUMNS, BatchResult, BatchRow
 from surveyapp.domain.results import LineResult, to_arcsec, to_degrees
 from surveyapp.errors import Problem, SurveyError
@@ -27,17 +29,13 @@ CHUNK: Final = 16
 _AHEAD: Final = 3
 """Tasks under way for every worker."""
 
-Folder = str | os.PathLike[str]
 Progress = Callable[[int, int, int], None]
 
 
 def batch_row(path: str) -> BatchRow:
     """Row of one project; never raises for a project that cannot be used."""
-    from surveyapp import api
-
     try:
-        project = api.open_project(path)
-        result = api.orient(project)
+        result = orient(path)
     except SurveyError as error:
         more = f" (and {len(error.problems) - 1} more)" if len(error.problems) > 1 else ""
         return BatchRow(path, "failed", problem=f"{error.problems[0]}{more}")

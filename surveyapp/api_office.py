@@ -7,13 +7,15 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 from collections.abc import Callable
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from surveyapp import __version__
+from surveyapp.api_judgement import diagnose, subjects
+from surveyapp.api_network import adjust, network
+from surveyapp.api_orientation import orient
+from surveyapp.api_project import SOFTWARE, Folder, opened
 from surveyapp.domain.project import Project
 
 if TYPE_CHECKING:
@@ -22,10 +24,6 @@ if TYPE_CHECKING:
     from surveyapp.report.blocks import Document
     from surveyapp.report.record import Extra
     from surveyapp.report.written import ReportResult
-
-Folder = str | os.PathLike[str]
-
-SOFTWARE = f"surveyapp {__version__}"
 
 
 def _local_now() -> datetime:
@@ -68,7 +66,6 @@ def report(
 
 def _traverses(project: Project) -> tuple[Extra, ...]:
     """A section for every traverse; one that cannot be adjusted says why."""
-    from surveyapp import api
     from surveyapp.errors import SurveyError
     from surveyapp.report.blocks import Heading, Paragraph
     from surveyapp.report.record import Extra
@@ -82,7 +79,7 @@ def _traverses(project: Project) -> tuple[Extra, ...]:
     for header in traverse_headers(project):
         identity = f"traverse {header.name}"
         try:
-            result = api.adjust(project, traverse=header.name)
+            result = adjust(project, traverse=header.name)
         except SurveyError as error:
             reasons = [Paragraph(str(problem), "warning") for problem in error.problems]
             found.append(Extra(identity, (Heading(f"Traverse {header.name}"), *reasons)))
@@ -94,22 +91,20 @@ def _traverses(project: Project) -> tuple[Extra, ...]:
 
 def _diagnoses(project: Project | Folder) -> tuple[Extra, ...]:
     """A section for every subject that can be diagnosed; too few observations are passed over."""
-    from surveyapp import api
     from surveyapp.errors import SurveyError
     from surveyapp.report.record import Extra
     from surveyapp.report.sections import diagnosis as section
 
-    if not isinstance(project, Project):
-        project = api.open_project(project)
+    project = opened(project)
     found = []
-    for option, identity in api.subjects(project):
+    for option, identity in subjects(project):
         try:
             if option == "session":
-                made = api.diagnose(project, session=identity, log=False)
+                made = diagnose(project, session=identity, log=False)
             elif option == "traverse":
-                made = api.diagnose(project, traverse=identity, log=False)
+                made = diagnose(project, traverse=identity, log=False)
             else:
-                made = api.diagnose(project, campaign=identity, log=False)
+                made = diagnose(project, campaign=identity, log=False)
         except SurveyError:
             continue
         if made.diagnosis is None:
@@ -143,15 +138,13 @@ def blank_form(method: str, output: Folder, *, font: Folder | None = None) -> Re
 def _record(
     project: Project | Folder, extras: tuple[Extra, ...]
 ) -> tuple[Document, tuple[str, ...]]:
-    from surveyapp import api
     from surveyapp.io.ledger import read_ledger
     from surveyapp.io.project_checks import project_rule_book
     from surveyapp.io.seals import closings_in_force
     from surveyapp.report.record import Record, SealShown, record_document
 
-    if not isinstance(project, Project):
-        project = api.open_project(project)
-    result = api.orient(project)
+    project = opened(project)
+    result = orient(project)
     extras = (*_traverses(project), *extras)
     closing = closings_in_force(read_ledger(Path(project.path))).get("")
     seal = None
@@ -228,10 +221,9 @@ def export_zip(folder: Folder, output: Folder) -> ExportResult:
 
 def export_csv(project: Project | Folder, output: Folder, *, table: str = "lines") -> ExportResult:
     """Write a table of the results as CSV (lines, sessions, constants, checks, all)."""
-    from surveyapp import api
     from surveyapp.io.exporters.results_csv import results_csv
 
-    text, count = results_csv(api.orient(project), table)
+    text, count = results_csv(orient(project), table)
     return _write_export("csv", text.encode("utf-8"), Path(output), count)
 
 
@@ -243,12 +235,11 @@ def export_gkf(project: Project | Folder, output: Folder) -> ExportResult:
     SurveyError
         If there is no traverse, or the format has no words for something in it.
     """
-    from surveyapp import api
     from surveyapp.io.exporters.gkf import gkf_text
 
-    network = api.network(project)
-    data = gkf_text(network).encode("utf-8")
-    return _write_export("gkf", data, Path(output), len(network.observations))
+    found = network(project)
+    data = gkf_text(found).encode("utf-8")
+    return _write_export("gkf", data, Path(output), len(found.observations))
 
 
 def export_json(project: Project | Folder, output: Folder) -> ExportResult:
@@ -291,10 +282,8 @@ def _side(path: Path) -> Snapshot:
 
 
 def _snapshot(project: Project | Folder) -> Snapshot:
-    from surveyapp import api
     from surveyapp.io.project_checks import project_rule_book
     from surveyapp.io.snapshots import folder_snapshot
 
-    if not isinstance(project, Project):
-        project = api.open_project(project)
-    return folder_snapshot(project, api.orient(project), project_rule_book(project))
+    project = opened(project)
+    return folder_snapshot(project, orient(project), project_rule_book(project))

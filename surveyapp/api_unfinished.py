@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable
 from pathlib import Path
 
+from surveyapp.api_project import Folder, opened
 from surveyapp.domain.project import Project, ResultWarning
-
-Folder = str | os.PathLike[str]
 
 
 def without_unfinished(project: Project, *, keep: Iterable[str] = ()) -> Project:
@@ -33,9 +31,6 @@ def without_unfinished(project: Project, *, keep: Iterable[str] = ()) -> Project
 
 def unfinished(project: Project | Folder) -> tuple[ResultWarning, ...]:
     """What is left out of a project's results because it is still being observed."""
-    from surveyapp import api
-
-    if not isinstance(project, Project):
-        project = api.open_project(project)
+    project = opened(project)
     told = len(project.warnings)
     return without_unfinished(project).warnings[told:]

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from surveyapp.core.campaign_columns import Circumstances, circumstances, columns_of, in_blocks
 from surveyapp.core.geodesy import Position
 from surveyapp.core.session import ReducedSession, TargetReduction
-from surveyapp.core.uncertain import Source, Uncertain, combine
+from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import AdoptedEffect, Instrument
 from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
@@ -144,11 +144,9 @@ def effect_shifts(
     )
     grid = {name: 0.0 if isinstance(value, str) else value for name, value in adopted.grid}
     held, outside, missing = _held(effect, columns, ranges)
-    scale = np.array([c.scale for c in effect.coefficients])
-    values = np.array([value for _, value, _, _ in adopted.coefficients]) * scale
+    values, root = _coefficients(effect, adopted)
     inside = effect.basis(held, **grid)
     free = effect.basis(_filled(columns, held), **grid)
-    root = _root(adopted) * scale[:, None]
     shifts, warnings = [], []
     for i, session in enumerate(sessions):
         parts = {
@@ -156,34 +154,31 @@ def effect_shifts(
             for k, part in enumerate(inside[i] @ root)
         }
         shift = Uncertain(float(inside[i] @ values), parts)
-        excess = abs(float((free[i] - inside[i]) @ values))
-        if missing[i]:
-            excess = float(np.max(np.abs(inside @ values), initial=0.0))
         if outside[i] or missing[i]:
-            why = f"{', '.join(missing[i])} missing" if missing[i] else "outside its range"
-            text = (
-                f"session {session}: the adopted effect {adopted.id} is used "
-                f"{why}: its correction is held at the edge and its sigma enlarged"
-            )
-            warnings.append(ResultWarning("effect_outside_range", text))
-            shift = combine(
-                [
-                    (1.0, shift),
-                    (
-                        1.0,
-                        Uncertain(
-                            0.0,
-                            {
-                                Source(
-                                    f"{SOURCE} outside its range", session, detail=adopted.id
-                                ): excess
-                            },
-                        ),
-                    ),
-                ]
-            )
+            excess = abs(float((free[i] - inside[i]) @ values))
+            if missing[i]:
+                excess = float(np.max(np.abs(inside @ values), initial=0.0))
+            source = Source(f"{SOURCE} outside its range", session, detail=adopted.id)
+            shift = shift.with_part(source, excess)
+            warnings.append(_outside_warning(session, adopted, missing[i]))
         shifts.append(shift)
     return shifts, warnings
+
+
+def _coefficients(effect: Effect, adopted: AdoptedEffect) -> tuple[Floats, Floats]:
+    """Values of the coefficients and square root of their covariance, in internal units."""
+    scale = np.array([c.scale for c in effect.coefficients])
+    values = np.array([value for _, value, _, _ in adopted.coefficients]) * scale
+    return values, _root(adopted) * scale[:, None]
+
+
+def _outside_warning(session: str, adopted: AdoptedEffect, missing: Sequence[str]) -> ResultWarning:
+    why = f"{', '.join(missing)} missing" if missing else "outside its range"
+    text = (
+        f"session {session}: the adopted effect {adopted.id} is used "
+        f"{why}: its correction is held at the edge and its sigma enlarged"
+    )
+    return ResultWarning("effect_outside_range", text)
 
 
 def _held(

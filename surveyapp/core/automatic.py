@@ -7,6 +7,7 @@ A book that holds only the printed mean of several rounds says so with ``rounds`
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from surveyapp.core.resolution import reading_resolution
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession, ResultWarning
-from surveyapp.domain.readings import ReadingKind
+from surveyapp.domain.readings import Reading, ReadingKind
 from surveyapp.domain.results import PointResult
 from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.angles import ARCSEC, wrap_two_pi
@@ -61,6 +62,54 @@ def reduce_automatic(
     SurveyError
         If there is no round, or if the book mixes delivered azimuths and circle readings of north.
     """
+    kind, rows = _rounds(session, target)
+    readings = np.array([row.value for row in rows], dtype=np.float64)
+    offsets = unwrap(readings)
+    mean = float(offsets.mean())
+    residuals = offsets - mean
+    dof = readings.size - 1
+    rounds = stated_rounds(session) or readings.size
+    sigma = reading_sigma(
+        count=readings.size,
+        variance=float(residuals @ residuals) / dof if dof else None,
+        dof=dof,
+        card_sigma=card.sigma.azimuth,
+        resolution=session.resolution or reading_resolution(rows),
+    )
+    stated = stated_sigma(session)
+    source = Source(
+        "rounds",
+        session.id,
+        sigma.dof if stated is None else math.inf,
+        _target_of(session, target),
+    )
+    contribution = sigma.value / math.sqrt(rounds) if stated is None else stated
+    value = Uncertain(float(readings[0]) + mean, {source: contribution})
+    origin = sigma.origin if stated is None else "card"
+    return Reduction(
+        estimator="mean",
+        north=value if kind is ReadingKind.NORTH else None,
+        azimuth=value if kind is ReadingKind.AZIMUTH else None,
+        points_used=rounds,
+        dof=dof,
+        sigma_source=origin,
+        reading_sigma=sigma.value if math.isfinite(sigma.value) else None,
+        residual_rms=math.sqrt(float(residuals @ residuals) / readings.size) if dof else None,
+        points=_points(rows, wrap_two_pi(value.value), residuals.tolist()),
+        warnings=_warnings(session, origin),
+        unit=unit_scatter("rounds", sigma) if stated is None else None,
+    )
+
+
+def _target_of(session: OrientationSession, target: str | None) -> str:
+    """Whose delivered azimuths are meant."""
+    return target or next(iter(azimuth_targets(session)), session.target or "")
+
+
+def _rounds(
+    session: OrientationSession, target: str | None
+) -> tuple[ReadingKind, tuple[Reading, ...]]:
+    """The rounds of the session and what they deliver: azimuths of one target, or north."""
     kinds = [
         kind for kind in (ReadingKind.AZIMUTH, ReadingKind.NORTH) if session.book.of_kind(kind)
     ]
@@ -75,57 +124,35 @@ def reduce_automatic(
                 hint="Make two sessions of it.",
             )
         )
-    wanted = target or next(iter(azimuth_targets(session)), session.target or "")
+    kind, wanted = kinds[0], _target_of(session, target)
     rows = tuple(
         row
-        for row in session.book.of_kind(kinds[0])
-        if kinds[0] is ReadingKind.NORTH or (row.target or session.target or "") == wanted
+        for row in session.book.of_kind(kind)
+        if kind is ReadingKind.NORTH or (row.target or session.target or "") == wanted
     )
-    need_points(session, found=len(rows), needed=1, kind=f"{kinds[0].value} (target {wanted})")
-    readings = np.array([row.value for row in rows], dtype=np.float64)
-    offsets = unwrap(readings)
-    mean = float(offsets.mean())
-    residuals = offsets - mean
-    dof = readings.size - 1
-    rounds = stated_rounds(session) or readings.size
-    resolution = session.resolution or reading_resolution(rows)
-    sigma = reading_sigma(
-        count=readings.size,
-        variance=float(residuals @ residuals) / dof if dof else None,
-        dof=dof,
-        card_sigma=card.sigma.azimuth,
-        resolution=resolution,
+    need_points(session, found=len(rows), needed=1, kind=f"{kind.value} (target {wanted})")
+    return kind, rows
+
+
+def _points(
+    rows: Sequence[Reading], mean: float, residuals: Sequence[float]
+) -> tuple[PointResult, ...]:
+    return tuple(
+        PointResult(
+            seq=row.seq,
+            index=i,
+            side="",
+            observed=float(row.value if row.value is not None else math.nan),
+            fitted=mean,
+            residual=residual,
+            elapsed_s=row.elapsed_s,
+        )
+        for i, (row, residual) in enumerate(zip(rows, residuals, strict=True))
     )
-    stated = stated_sigma(session)
-    source = Source("rounds", session.id, math.inf if stated is not None else sigma.dof, wanted)
-    contribution = stated if stated is not None else sigma.value / math.sqrt(rounds)
-    value = Uncertain(float(readings[0]) + mean, {source: contribution})
-    origin = "card" if stated is not None else sigma.origin
-    warnings = []
-    if origin is None:
-        text = f"session {session.id}: neither the scatter of the rounds nor the card tells a sigma"
-        warnings.append(ResultWarning("sigma_unknown", text))
-    return Reduction(
-        estimator="mean",
-        north=value if kinds[0] is ReadingKind.NORTH else None,
-        azimuth=value if kinds[0] is ReadingKind.AZIMUTH else None,
-        points_used=rounds,
-        dof=dof,
-        sigma_source=origin,
-        reading_sigma=sigma.value if math.isfinite(sigma.value) else None,
-        residual_rms=math.sqrt(float(residuals @ residuals) / readings.size) if dof else None,
-        points=tuple(
-            PointResult(
-                seq=row.seq,
-                index=i,
-                side="",
-                observed=float(row.value if row.value is not None else math.nan),
-                fitted=wrap_two_pi(value.value),
-                residual=residual,
-                elapsed_s=row.elapsed_s,
-            )
-            for i, (row, residual) in enumerate(zip(rows, residuals.tolist(), strict=True))
-        ),
-        warnings=tuple(warnings),
-        unit=unit_scatter("rounds", sigma) if stated is None else None,
-    )
+
+
+def _warnings(session: OrientationSession, origin: str | None) -> tuple[ResultWarning, ...]:
+    if origin is not None:
+        return ()
+    text = f"session {session.id}: neither the scatter of the rounds nor the card tells a sigma"
+    return (ResultWarning("sigma_unknown", text),)

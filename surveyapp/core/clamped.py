@@ -13,13 +13,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from surveyapp.core.gyrofit import side_signs
 from surveyapp.core.reduction import need_points
 from surveyapp.core.resolution import reading_resolution, rounding_sigma
 from surveyapp.core.sights import moments
 from surveyapp.core.swingfit import ClampedSwing, estimate_period
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession
-from surveyapp.domain.readings import Reading, ReadingKind, Side
+from surveyapp.domain.readings import Reading, ReadingKind
 from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.angles import ARCSEC, circular_mean
 
@@ -194,7 +195,7 @@ def observe(session: OrientationSession, card: InstrumentCard) -> Observed:
     swing = ClampedSwing(
         readings=np.array([row.value for _, row in readings], dtype=np.float64),
         index=np.array([turn - first for turn, _ in readings], dtype=np.float64),
-        sides=np.array([1.0 if row.side is Side.RIGHT else -1.0 for _, row in readings]),
+        sides=side_signs(row for _, row in readings),
         passages_s=times,
         divisions=np.array([row.value for row in passage_rows], dtype=np.float64),
         after=after,

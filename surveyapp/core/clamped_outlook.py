@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.core.cardphysics import card_at
+from surveyapp.core.clamped_middle import MIN_FULL_FIT
 from surveyapp.core.goodness import Judge
-from surveyapp.core.gyrofit import SwingFit, design, schuler_means
-from surveyapp.core.nontracking import LEAST_SQUARES_FROM, MIN_FULL_FIT, reduce_nontracking
+from surveyapp.core.gyrofit import SwingFit, expected_weight_norm
+from surveyapp.core.nontracking import reduce_nontracking
 from surveyapp.core.passages import PassageFit, first_side
 from surveyapp.core.swingfit import PARAMETERS, ClampedSwing, modelled, whitened_jacobian
 from surveyapp.core.uncertain import Source, Uncertain
@@ -95,12 +96,7 @@ def _after_readings(
     more = [float(coming), coming + 1.0]
     index = np.concatenate([swing.index, more])
     sides = np.concatenate([swing.sides, [_side(start, k) for k in more]])
-    if index.size < LEAST_SQUARES_FROM:
-        _, weights = schuler_means(np.zeros(index.size), index)
-        norm = float(np.sqrt(weights @ weights))
-    else:
-        basis = design(index, sides, amplitude=fit.amplitude, log_decrement=fit.log_decrement)
-        norm = float(np.linalg.norm(np.linalg.pinv(basis)[0]))
+    norm = expected_weight_norm(fit, index=index, sides=sides)
     if norm == 0.0:
         return None
     return norm * sigma, float(index.size - 3) if judged else math.inf

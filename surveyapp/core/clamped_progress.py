@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +30,7 @@ from surveyapp.core.forecast import (
     forecast_reading,
     period_share,
 )
-from surveyapp.core.gyrofit import SwingFit, fit_swing, schuler_means
+from surveyapp.core.gyrofit import SwingFit, fit_swing, schuler_means, side_signs
 from surveyapp.core.passages import (
     Known,
     PassageFit,
@@ -41,16 +40,16 @@ from surveyapp.core.passages import (
     forecast_passage,
     judge_last,
 )
-from surveyapp.core.progress import Point, Progress
+from surveyapp.core.progress import Progress
 from surveyapp.core.reduction import ReadingSigma, reading_sigma
 from surveyapp.core.resolution import reading_resolution, rounding_sigma
 from surveyapp.core.run_alert import Alert
 from surveyapp.core.sights import moments
-from surveyapp.core.swing_shown import residual_channel, shown_curve
+from surveyapp.core.swing_shown import residual_channel, shown_curve, shown_points
 from surveyapp.core.swingfit import ClampedSwing
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession
-from surveyapp.domain.readings import Reading, Side
+from surveyapp.domain.readings import Reading
 from surveyapp_models.angles import wrap_two_pi
 
 Floats = NDArray[np.float64]
@@ -148,7 +147,14 @@ def _seen(standing: Standing, fit: SwingFit | None) -> Progress:
     swing = standing.swing
     means, _ = schuler_means(swing.readings, swing.index)
     return Progress(
-        points=_points([row for _, row in standing.rows.readings], swing, fit),
+        points=shown_points(
+            [row for _, row in standing.rows.readings],
+            fit,
+            index=swing.index,
+            sides=swing.sides,
+            readings=swing.readings.tolist(),
+            offsets=swing.readings,
+        ),
         scale=True,
         schuler_means=tuple(means.tolist()),
         time_differences=time_differences(swing),
@@ -201,7 +207,7 @@ def _timed(numbered: NumberedRows) -> tuple[tuple[tuple[int, Reading], ...], Flo
 
 def _sides(rows: list[Reading], values: Floats) -> Floats:
     """+1 for the larger readings; where one side was read only, its sign on the scale tells."""
-    written = np.array([1.0 if row.side is Side.RIGHT else -1.0 for row in rows])
+    written = side_signs(rows)
     if np.unique(written).size > 1:
         return written * polarity(values, written)
     right = values.size == 0 or float(values.mean()) >= 0.0
@@ -281,24 +287,6 @@ def time_differences(swing: ClampedSwing) -> tuple[float, ...]:
             first, second, third = swing.passages_s[i : i + 3].tolist()
             found.append(side * (2.0 * second - first - third))
     return tuple(found)
-
-
-def _points(rows: list[Reading], swing: ClampedSwing, fit: SwingFit | None) -> tuple[Point, ...]:
-    residuals: list[float | None] = [None] * len(rows)
-    if fit is not None and fit.dof > 0:
-        residuals = list(fit.residuals.tolist())
-    side: dict[bool, Literal["L", "R", ""]] = {True: "R", False: "L"}
-    return tuple(
-        Point(row.seq, int(k), side[right], value, value, residual)
-        for row, k, right, value, residual in zip(
-            rows,
-            swing.index.tolist(),
-            (swing.sides > 0.0).tolist(),
-            swing.readings.tolist(),
-            residuals,
-            strict=True,
-        )
-    )
 
 
 def _alert(

@@ -14,7 +14,7 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from surveyapp.core.gyrofit import SwingFit, design, fit_swing
+from surveyapp.core.gyrofit import SwingFit, fit_swing
 from surveyapp.core.statistics.distributions import student_quantile
 
 Floats = NDArray[np.float64]
@@ -174,9 +174,7 @@ def forecast_reading(
     fit = fit_swing(values, index, sides)
     start = index - index[0]
     target = np.array([next_index - index[0]])
-    row = design(
-        target, np.array([side]), amplitude=fit.amplitude, log_decrement=fit.log_decrement
-    )[0]
+    row = fit.jacobian(target, np.array([side]))[0]
     decay = side * math.exp(-fit.log_decrement * float(target[0]))
     reading = fit.north + fit.amplitude * decay
     if known is None:
@@ -188,7 +186,7 @@ def forecast_reading(
 
 def _with_prior(fit: SwingFit, index: Floats, sides: Floats, sigma: float) -> Floats:
     """Cofactor of (N, A, log decrement) with what is known of damping beforehand."""
-    jacobian = design(index, sides, amplitude=fit.amplitude, log_decrement=fit.log_decrement)
+    jacobian = fit.jacobian(index, sides)
     prior = np.array([[0.0, 0.0, sigma / LOG_DECREMENT_SIGMA]]) if sigma > 0.0 else np.zeros((1, 3))
     inverse = np.linalg.pinv(np.vstack([jacobian, prior]))
     return inverse @ inverse.T

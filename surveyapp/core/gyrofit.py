@@ -11,15 +11,19 @@ suspended gyroscope, Survey Review 26 (203).
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from surveyapp.domain.readings import Reading, Side
 from surveyapp_models.angles import wrap_pi_array
 
 Floats = NDArray[np.float64]
 
+LEAST_SQUARES_FROM = 6
+"""Turning points from which least squares is the default, for tracked and scale swings alike."""
 MAX_ITERATIONS = 50
 LOG_DECREMENT_BOUND = 3.0
 """A swing that loses 95 % of its amplitude in half a period is no swing."""
@@ -54,6 +58,10 @@ class SwingFit:
     cofactor: Floats
     dof: int
     converged: bool
+
+    def jacobian(self, index: Floats, sides: Floats) -> Floats:
+        """Derivatives by (N, A, log decrement) at turning points with these numbers and sides."""
+        return design(index, sides, amplitude=self.amplitude, log_decrement=self.log_decrement)
 
     @property
     def damping_ratio(self) -> float:
@@ -101,6 +109,11 @@ def design(index: Floats, sides: Floats, *, amplitude: float, log_decrement: flo
     columns[:, 1] = decay
     columns[:, 2] = -amplitude * index * decay
     return columns
+
+
+def side_signs(rows: Iterable[Reading]) -> Floats:
+    """+1 for each turning point on the right, -1 for each other."""
+    return np.array([1.0 if row.side is Side.RIGHT else -1.0 for row in rows])
 
 
 def fit_swing(values: Floats, index: Floats, sides: Floats) -> SwingFit:
@@ -210,6 +223,49 @@ def _cofactor(gram: Floats, amplitude: float) -> Floats:
         return np.asarray(np.linalg.pinv(scaled), dtype=np.float64)
     outer = scale[:, None] * scale
     return np.asarray(np.linalg.inv(scaled / outer) / outer, dtype=np.float64)
+
+
+@dataclass(frozen=True, slots=True)
+class SwingMiddle:
+    """Middle of a swing by one estimator.
+
+    Parameters
+    ----------
+    value : float
+        [unit of the readings].
+    weight_norm : float
+        Its standard error divided by the standard deviation of one reading.
+    damping_left : float
+        What the damping leaves in it.
+    """
+
+    value: float
+    weight_norm: float
+    damping_left: float = 0.0
+
+
+def fitted_middle(fit: SwingFit) -> SwingMiddle:
+    """The midpoint of the damped fit."""
+    return SwingMiddle(fit.north, math.sqrt(fit.cofactor[0, 0]))
+
+
+def schuler_middle(
+    fit: SwingFit, values: Floats, *, index: Floats, sides: Floats
+) -> SwingMiddle | None:
+    """The mean of all Schuler means, None where no three turning points are consecutive."""
+    means, weights = schuler_means(values, index)
+    if means.size == 0:
+        return None
+    left = damping_left(fit, weights, index=index, sides=sides)
+    return SwingMiddle(float(means.mean()), float(np.sqrt(weights @ weights)), left)
+
+
+def expected_weight_norm(fit: SwingFit, *, index: Floats, sides: Floats) -> float:
+    """``weight_norm`` of the default estimator if a swing like this had these turning points."""
+    if index.size < LEAST_SQUARES_FROM:
+        _, weights = schuler_means(np.zeros(index.size), index)
+        return float(np.sqrt(weights @ weights))
+    return float(np.linalg.norm(np.linalg.pinv(fit.jacobian(index, sides))[0]))
 
 
 def schuler_means(values: Floats, index: Floats) -> tuple[Floats, Floats]:

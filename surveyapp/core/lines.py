@@ -19,10 +19,10 @@ from surveyapp.core.geodesy import (
 )
 from surveyapp.core.instrument_constant import Chosen
 from surveyapp.core.scatter import Consistency, consistency, weights_of
-from surveyapp.core.uncertain import Source, Uncertain, combine
+from surveyapp.core.uncertain import Source, Uncertain, aligned, combine
 from surveyapp.domain.project import Centring, Station, grid_bearing, grid_distance_m
 from surveyapp.domain.results import AngleResult, BudgetLine, LineResult, Reference
-from surveyapp_models.angles import wrap_pi, wrap_two_pi
+from surveyapp_models.angles import wrap_two_pi
 
 NOTHING = 1e-18
 """Share of a variance that is rounding of the arithmetic and no source of error."""
@@ -156,11 +156,6 @@ class OrientedLine:
     agreement: Consistency | None
 
 
-def _unwrapped(values: Sequence[Uncertain]) -> list[Uncertain]:
-    first = values[0].value
-    return [item.shifted(first + wrap_pi(item.value - first) - item.value) for item in values]
-
-
 def angle_result(item: Uncertain, reference: Reference | None = None) -> AngleResult:
     """A direction as it is reported."""
     return AngleResult(wrap_two_pi(item.value), item.sigma, item.interval95, item.dof, reference)
@@ -189,29 +184,13 @@ def orient_line(
     agreement_of : sequence of Uncertain
         The rounds before any run-to-run scatter was added: for the test of their agreement.
     """
-    azimuths = _unwrapped([item.azimuth for item in rounds])
+    azimuths = aligned([item.azimuth for item in rounds])
     weights = weights_of(azimuths)
     gyro = combine(zip(weights, azimuths, strict=True)) + geometry.centring(centring)
-    constants = [item.chosen.value for item in rounds]
-    constant = true = grid = None
-    if all(value is not None for value in constants):
-        constant = combine(
-            (weight, value)
-            for weight, value in zip(weights, constants, strict=True)
-            if value is not None
-        )
-        true = gyro + constant
-    reference_azimuth = (true or gyro).value
-    deflection = geometry.deflection_parts(reference_azimuth)
-    if true is not None and geometry.convergence is not None:
-        moved = (
-            Azimuth(gyro.value, "GYRO")
-            .with_constant(true.value - gyro.value)
-            .without_deflection(deflection.value)
-            .to_grid(convergence=geometry.convergence, arc_to_chord=geometry.arc_to_chord or 0.0)
-        )
-        grid = Uncertain(moved.value, (true - deflection).parts)
-    final = grid or true or gyro
+    constant = _constant(rounds, weights)
+    true = None if constant is None else gyro + constant
+    deflection = geometry.deflection_parts((true or gyro).value)
+    grid = None if true is None else _on_grid(geometry, gyro, true, deflection)
     existing = grid_bearing(geometry.start, geometry.end)
     result = LineResult(
         station=geometry.start.name,
@@ -222,10 +201,7 @@ def orient_line(
         gyro_azimuth=angle_result(gyro, "GYRO"),
         constant=None if constant is None else constant.value,
         constant_sigma=None if constant is None else constant.sigma,
-        constant_choice=" + ".join(
-            dict.fromkeys(item.chosen.choice for item in rounds if item.chosen.choice)
-        )
-        or None,
+        constant_choice=_choices(rounds),
         true_azimuth=None if true is None else angle_result(true, "ASTRONOMIC"),
         deflection=deflection.value,
         convergence=geometry.convergence,
@@ -234,11 +210,39 @@ def orient_line(
         direction_from_south=(
             wrap_two_pi(grid.value + math.pi) if grid is not None and geometry.from_south else None
         ),
-        budget=budget(final, calibration_sessions),
+        budget=budget(grid or true or gyro, calibration_sessions),
         existing_azimuth=None if existing is None else wrap_two_pi(existing),
         distance_m=geometry.distance_m,
     )
-    return OrientedLine(result, gyro, true, grid, consistency([_unwrapped(agreement_of)]))
+    return OrientedLine(result, gyro, true, grid, consistency([aligned(agreement_of)]))
+
+
+def _constant(rounds: Sequence[Round], weights: Sequence[float]) -> Uncertain | None:
+    """Constant of all rounds together, None where one of them has none."""
+    constants = [item.chosen.value for item in rounds if item.chosen.value is not None]
+    if len(constants) < len(rounds):
+        return None
+    return combine(zip(weights, constants, strict=True))
+
+
+def _choices(rounds: Sequence[Round]) -> str | None:
+    names = dict.fromkeys(item.chosen.choice for item in rounds if item.chosen.choice)
+    return " + ".join(names) or None
+
+
+def _on_grid(
+    geometry: LineGeometry, gyro: Uncertain, true: Uncertain, deflection: Uncertain
+) -> Uncertain | None:
+    """Carry the gyro azimuth of a line to the grid, None without one."""
+    if geometry.convergence is None:
+        return None
+    moved = (
+        Azimuth(gyro.value, "GYRO")
+        .with_constant(true.value - gyro.value)
+        .without_deflection(deflection.value)
+        .to_grid(convergence=geometry.convergence, arc_to_chord=geometry.arc_to_chord or 0.0)
+    )
+    return Uncertain(moved.value, (true - deflection).parts)
 
 
 def budget(item: Uncertain, calibration_sessions: frozenset[str]) -> tuple[BudgetLine, ...]:

@@ -49,7 +49,7 @@ from surveyapp.core.session import (
 from surveyapp.core.sights import SightSet, tripod_twist, zenith_angle
 from surveyapp.core.survey_lines import oriented_lines
 from surveyapp.core.tracking import RunModel
-from surveyapp.core.uncertain import Uncertain
+from surveyapp.core.uncertain import Uncertain, aligned
 from surveyapp.domain.project import (
     OrientationSession,
     Project,
@@ -57,7 +57,6 @@ from surveyapp.domain.project import (
     Station,
 )
 from surveyapp.errors import Problem, SurveyError
-from surveyapp_models.angles import wrap_pi
 
 
 @dataclass(frozen=True, slots=True)
@@ -287,13 +286,7 @@ def _scatter_of(project: Project, reduced: Sequence[ReducedSession], instrument:
                     phase = f"block {surveys_before(keys[item.session.id], surveys)}"
                 key = (item.session.station, target.target, phase)
                 groups.setdefault(key, []).append(target.gyro_azimuth)
-    aligned = []
-    for group in groups.values():
-        first = group[0].value
-        aligned.append(
-            [item.shifted(first + wrap_pi(item.value - first) - item.value) for item in group]
-        )
-    return run_scatter(aligned)
+    return run_scatter([aligned(group) for group in groups.values()])
 
 
 def _geometries(

@@ -16,10 +16,9 @@ import numpy as np
 
 from surveyapp.core.cardphysics import CardAt, card_at
 from surveyapp.core.geodesy import open_grid, position_of
-from surveyapp.core.gyrofit import fit_swing
+from surveyapp.core.gyrofit import LEAST_SQUARES_FROM, fit_swing
 from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp.core.swingfit import ClampedSwing, fit_clamped, passage_times
-from surveyapp.core.tracking import LEAST_SQUARES_FROM
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import Project
 from surveyapp_models.angles import RHO_ARCSEC
@@ -148,17 +147,7 @@ def _combined(own: float, dof: float, zero: float) -> tuple[float, float]:
 def _tracking(card: InstrumentCard, here: CardAt, most: int) -> list[_Candidate]:
     if card.sigma.reversal is None or here.tracking_s is None:
         return []
-    period = here.tracking_s.value
-    zero, found = _tape_zero_sigma(card, here), []
-    for points in range(LEAST_SQUARES_FROM, most + 1):
-        index = np.arange(float(points))
-        sides = np.where(index % 2 == 0, 1.0, -1.0)
-        fit = fit_swing(sides * np.exp(-DAMPING * index), index, sides)
-        own = math.sqrt(fit.cofactor[0, 0]) * card.sigma.reversal
-        sigma, dof = _combined(own, points - 3, zero)
-        minutes = _overhead(here, period) + 0.5 * (points - 1) * period / 60.0
-        found.append(_Candidate(points, sigma, dof, minutes))
-    return found
+    return _turning_points(card, here, most, here.tracking_s.value, (card.sigma.reversal, 1.0))
 
 
 def _clamped_scale(card: InstrumentCard, here: CardAt) -> float | None:
@@ -171,13 +160,20 @@ def _amplitude(card: InstrumentCard, here: CardAt, most: int) -> list[_Candidate
     scale = _clamped_scale(card, here)
     if scale is None or card.sigma.scale_div is None or here.clamped_s is None:
         return []
-    period = here.clamped_s.value
+    return _turning_points(card, here, most, here.clamped_s.value, (card.sigma.scale_div, scale))
+
+
+def _turning_points(
+    card: InstrumentCard, here: CardAt, most: int, period: float, reading: tuple[float, float]
+) -> list[_Candidate]:
+    """Turning points alone; ``reading``: sigma of one, and what one unit of it is in north."""
+    spread, scale = reading
     zero, found = _tape_zero_sigma(card, here), []
     for points in range(LEAST_SQUARES_FROM, most + 1):
         index = np.arange(float(points))
         sides = np.where(index % 2 == 0, 1.0, -1.0)
         fit = fit_swing(sides * np.exp(-DAMPING * index), index, sides)
-        own = math.sqrt(fit.cofactor[0, 0]) * card.sigma.scale_div * scale
+        own = math.sqrt(fit.cofactor[0, 0]) * spread * scale
         sigma, dof = _combined(own, points - 3, zero)
         minutes = _overhead(here, period) + 0.5 * (points - 1) * period / 60.0
         found.append(_Candidate(points, sigma, dof, minutes))

@@ -12,7 +12,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from surveyapp.core.reduction import Reduction
 from surveyapp.core.uncertain import Source, Uncertain
+from surveyapp.domain.instrument import InstrumentCard
+from surveyapp.domain.project import OrientationSession, ResultWarning
+from surveyapp.domain.readings import ReadingKind
+from surveyapp_models.angles import wrap_pi
 
 TYPICAL_LOSS = 0.02
 """Share of the amplitude lost in one half swing that is reckoned with (physics.md 2.3: q = .98)."""
@@ -41,6 +46,27 @@ def two_turning_points(
             Source("unknown damping", session): 0.5 * TYPICAL_LOSS * amplitude,
             Source("turning points", session): reading_sigma / math.sqrt(2.0),
         },
+    )
+
+
+def pre_orientation(session: OrientationSession, card: InstrumentCard) -> Reduction:
+    """Reduce a session of two turning points: good for setting the alidade, and labelled so."""
+    rows = session.book.of_kind(ReadingKind.REVERSAL)
+    first, second = (row.value or 0.0 for row in rows)
+    second = first + wrap_pi(second - first)
+    sigma = card.sigma.reversal or 0.0
+    north = two_turning_points(first, second, session=session.id, reading_sigma=sigma)
+    text = (
+        f"session {session.id}: two turning points give a pre-orientation, no azimuth: "
+        "the damping of the swing stays in it"
+    )
+    return Reduction(
+        estimator="two turning points",
+        north=north,
+        points_used=2,
+        sigma_source="card",
+        amplitude=0.5 * abs(second - first),
+        warnings=(ResultWarning("pre_orientation", text),),
     )
 
 

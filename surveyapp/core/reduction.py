@@ -7,18 +7,22 @@ A method (tracking, amplitude, transit, automatic) turns the rows of a field boo
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
 
 from surveyapp.core.goodness import FitTest
 from surveyapp.core.resolution import rounding_sigma
-from surveyapp.core.tapezero import TapeZero, TapeZeroCoefficient
+from surveyapp.core.tapezero import MIN_POINTS_FOR_RESIDUALS, TapeZero, TapeZeroCoefficient
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.project import OrientationSession, ResultWarning
+from surveyapp.domain.readings import Reading
 from surveyapp.domain.results import PointResult
 from surveyapp.errors import Problem, SurveyError
 
-MIN_POINTS_FOR_RESIDUALS = 5
-"""Below this number the reading sigma is the card's (physics.md 2.1)."""
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,6 +149,32 @@ def reading_sigma(
 def unit_scatter(source: str, sigma: ReadingSigma) -> UnitScatter | None:
     """Scatter of one reading where the residuals tell it."""
     return UnitScatter(source, sigma.value, sigma.dof) if sigma.origin == "residuals" else None
+
+
+def point_results(
+    rows: Sequence[Reading],
+    *,
+    index: Floats,
+    sides: Floats,
+    observed: Sequence[float],
+    fitted: Sequence[float | None],
+    residuals: Sequence[float | None],
+) -> tuple[PointResult, ...]:
+    """Turning points beside their fit, for the record."""
+    return tuple(
+        PointResult(
+            seq=row.seq,
+            index=int(k),
+            side="R" if side > 0 else "L",
+            observed=value,
+            fitted=fit,
+            residual=residual,
+            elapsed_s=row.elapsed_s,
+        )
+        for row, k, side, value, fit, residual in zip(
+            rows, index.tolist(), sides.tolist(), observed, fitted, residuals, strict=True
+        )
+    )
 
 
 def need_points(session: OrientationSession, *, found: int, needed: int, kind: str) -> None:

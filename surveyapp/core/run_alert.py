@@ -18,7 +18,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from surveyapp.core.gyrofit import SwingFit, design
+from surveyapp.core.gyrofit import SwingFit
 
 Floats = NDArray[np.float64]
 
@@ -106,7 +106,7 @@ def find_trouble(
     """
     if index.size < MIN_POINTS or not fit.converged:
         return None
-    basis = design(index, sides, amplitude=fit.amplitude, log_decrement=fit.log_decrement)
+    basis = fit.jacobian(index, sides)
     return search(fit.residuals, basis, _candidates(index, sides), rng)
 
 

@@ -1,7 +1,8 @@
-"""A fitted swing as it is shown: its curve with the forecast, its residuals in two channels."""
+"""A fitted swing as it is shown: points, curve with the forecast, residuals in two channels."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -9,7 +10,9 @@ from numpy.typing import NDArray
 
 from surveyapp.core.forecast import swing_curve
 from surveyapp.core.gyrofit import SwingFit
+from surveyapp.core.progress import Point
 from surveyapp.core.run_alert import channels
+from surveyapp.domain.readings import Reading
 
 Floats = NDArray[np.float64]
 
@@ -17,6 +20,30 @@ CURVE_STEPS: Final = 24
 """Points of the drawn swing in one half swing."""
 AHEAD: Final = 2
 """Half swings that are drawn beyond the last point."""
+
+
+def shown_points(
+    rows: Sequence[Reading],
+    fit: SwingFit | None,
+    *,
+    index: Floats,
+    sides: Floats,
+    readings: Sequence[float],
+    offsets: Floats,
+) -> tuple[Point, ...]:
+    """The turning points read so far, with residuals where the fit has redundancy.
+
+    ``readings`` as they stand on the circle or scale, ``offsets`` as they are drawn.
+    """
+    residuals: list[float | None] = [None] * len(rows)
+    if fit is not None and fit.dof > 0:
+        residuals = list(fit.residuals.tolist())
+    return tuple(
+        Point(row.seq, int(k), "R" if side > 0 else "L", reading, offset, residual)
+        for row, k, side, reading, offset, residual in zip(
+            rows, index.tolist(), sides.tolist(), readings, offsets.tolist(), residuals, strict=True
+        )
+    )
 
 
 def residual_channel(fit: SwingFit | None, sides: Floats, which: int) -> tuple[float, ...]:

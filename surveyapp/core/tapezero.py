@@ -15,14 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.core.cardphysics import card_at
-from surveyapp.core.gyrofit import fit_swing, schuler_means
+from surveyapp.core.gyrofit import fit_swing, schuler_means, side_signs
 from surveyapp.core.sights import swing_moments
 from surveyapp.domain.instrument import InstrumentCard
-from surveyapp.domain.readings import FieldBook, Place, Reading, ReadingKind, Side
+from surveyapp.domain.readings import FieldBook, Place, Reading, ReadingKind
 
 Floats = NDArray[np.float64]
 
 MIN_POINTS_FOR_RESIDUALS = 5
+"""Below this number the reading sigma is the card's (physics.md 2.1)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +148,7 @@ def _group(rows: Sequence[Reading]) -> RestPosition | None:
     if not rows:
         return None
     readings = np.array([row.value for row in rows], dtype=np.float64)
-    sides = np.array([1.0 if row.side is Side.RIGHT else -1.0 for row in rows])
+    sides = side_signs(rows)
     return rest_position(readings, sides)
 
 

@@ -15,18 +15,22 @@ from numpy.typing import NDArray
 from surveyapp.core.clamped import session_problem
 from surveyapp.core.goodness import FitTest, Judge, goodness_of_fit
 from surveyapp.core.gyrofit import (
+    LEAST_SQUARES_FROM,
     SwingFit,
-    damping_left,
-    design,
+    SwingMiddle,
     fit_swing,
+    fitted_middle,
     schuler_means,
+    schuler_middle,
+    side_signs,
     unwrap,
 )
-from surveyapp.core.preorientation import two_turning_points
+from surveyapp.core.preorientation import pre_orientation
 from surveyapp.core.reduction import (
     ReadingSigma,
     Reduction,
     need_points,
+    point_results,
     reading_sigma,
     tape_zero_parts,
     unit_scatter,
@@ -43,7 +47,7 @@ from surveyapp.core.tapezero import (
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession, ResultWarning
-from surveyapp.domain.readings import Reading, ReadingKind, Side
+from surveyapp.domain.readings import Reading, ReadingKind
 from surveyapp.domain.results import PointResult
 from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.angles import RHO_ARCSEC, wrap_pi, wrap_two_pi
@@ -51,7 +55,6 @@ from surveyapp_models.angles import RHO_ARCSEC, wrap_pi, wrap_two_pi
 Floats = NDArray[np.float64]
 
 MIN_POINTS = 3
-LEAST_SQUARES_FROM = 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +107,7 @@ def turning_points(
     need_points(session, found=len(rows), needed=MIN_POINTS, kind=kind.value)
     index = np.array([i for i, _ in numbered], dtype=np.float64)
     readings = np.array([row.value for row in rows], dtype=np.float64)
-    sides = np.array([1.0 if row.side is Side.RIGHT else -1.0 for row in rows])
+    sides = side_signs(rows)
     if np.unique(sides).size < 2:
         raise session_problem(
             session,
@@ -190,27 +193,13 @@ def reduce_tracking(
         if the damped fit does not converge.
     """
     if len(session.book.of_kind(ReadingKind.REVERSAL)) == 2 and estimator is None:
-        return _pre_orientation(session, card)
+        return pre_orientation(session, card)
     points = turning_points(session)
     zero, coefficient, correction, warnings = tape_zero_of(session, card, points.rows, latitude)
     points = without_twist(without_tape_drift(points, zero, coefficient), twist)
-    chosen = estimator or (
-        "least-squares" if points.values.size >= LEAST_SQUARES_FROM else "schuler"
-    )
     fit = _fit(session, points)
-    means, weights = schuler_means(points.values, points.index)
-    if chosen == "schuler" and means.size == 0:
-        if estimator is not None:
-            raise SurveyError(_no_triple(session))
-        chosen = "least-squares"
-    left = 0.0
-    if chosen == "schuler":
-        observed, norm = float(means.mean()), float(np.sqrt(weights @ weights))
-        left = damping_left(fit, weights, index=points.index, sides=points.sides)
-    elif not fit.converged:
-        raise SurveyError(_no_fit(session, points))
-    else:
-        observed, norm = fit.north, math.sqrt(fit.cofactor[0, 0])
+    means, _ = schuler_means(points.values, points.index)
+    chosen, middle = _middle(session, points, fit, estimator)
     sigma = reading_sigma(
         count=points.values.size,
         variance=fit.variance,
@@ -218,21 +207,10 @@ def reduce_tracking(
         card_sigma=card.sigma.reversal,
         resolution=points.resolution,
     )
-    north = Uncertain(
-        points.origin + observed,
-        {
-            Source("turning points", session.id, sigma.dof): norm * sigma.value,
-            Source("damping", session.id): left,
-        },
-    )
+    north = _north(session, points, middle, sigma)
     if session.effects and run_model is not None:
-        modelled = run_model(session, card, latitude)
-        names = ", ".join(effect.id for effect in session.effects)
-        chosen = f"least-squares with {names}"
-        north = Uncertain(
-            points.origin + observed + wrap_pi(modelled.value - points.origin - observed),
-            {Source("turning points", session.id, modelled.dof): modelled.sigma},
-        )
+        chosen = f"least-squares with {', '.join(effect.id for effect in session.effects)}"
+        north = _modelled_north(session, points, middle, run_model(session, card, latitude))
     return Reduction(
         estimator=chosen,
         north=north if correction is None else north + correction,
@@ -255,24 +233,44 @@ def reduce_tracking(
     )
 
 
-def _pre_orientation(session: OrientationSession, card: InstrumentCard) -> Reduction:
-    """Two turning points: good for setting the alidade, and labelled so."""
-    rows = session.book.of_kind(ReadingKind.REVERSAL)
-    first, second = (row.value or 0.0 for row in rows)
-    second = first + wrap_pi(second - first)
-    sigma = card.sigma.reversal or 0.0
-    north = two_turning_points(first, second, session=session.id, reading_sigma=sigma)
-    text = (
-        f"session {session.id}: two turning points give a pre-orientation, no azimuth: "
-        "the damping of the swing stays in it"
+def _middle(
+    session: OrientationSession, points: TurningPoints, fit: SwingFit, estimator: str | None
+) -> tuple[str, SwingMiddle]:
+    """The estimator and its middle; without three consecutive points the default is the fit."""
+    chosen = estimator or (
+        "least-squares" if points.values.size >= LEAST_SQUARES_FROM else "schuler"
     )
-    return Reduction(
-        estimator="two turning points",
-        north=north,
-        points_used=2,
-        sigma_source="card",
-        amplitude=0.5 * abs(second - first),
-        warnings=(ResultWarning("pre_orientation", text),),
+    if chosen == "schuler":
+        means = schuler_middle(fit, points.values, index=points.index, sides=points.sides)
+        if means is not None:
+            return chosen, means
+        if estimator is not None:
+            raise SurveyError(_no_triple(session))
+    if not fit.converged:
+        raise SurveyError(_no_fit(session, points))
+    return "least-squares", fitted_middle(fit)
+
+
+def _north(
+    session: OrientationSession, points: TurningPoints, middle: SwingMiddle, sigma: ReadingSigma
+) -> Uncertain:
+    return Uncertain(
+        points.origin + middle.value,
+        {
+            Source("turning points", session.id, sigma.dof): middle.weight_norm * sigma.value,
+            Source("damping", session.id): middle.damping_left,
+        },
+    )
+
+
+def _modelled_north(
+    session: OrientationSession, points: TurningPoints, middle: SwingMiddle, modelled: ModelledNorth
+) -> Uncertain:
+    """North of the model with adopted effects, on the turn of the circle where the swing stands."""
+    shift = wrap_pi(modelled.value - points.origin - middle.value)
+    return Uncertain(
+        points.origin + middle.value + shift,
+        {Source("turning points", session.id, modelled.dof): modelled.sigma},
     )
 
 
@@ -350,33 +348,25 @@ def _correction_value(zero: TapeZero | None, correction: Uncertain | None) -> fl
 def _tests(
     points: TurningPoints, fit: SwingFit, judge: Judge, card: InstrumentCard
 ) -> tuple[FitTest, ...]:
-    jacobian = design(
-        points.index, points.sides, amplitude=fit.amplitude, log_decrement=fit.log_decrement
-    )
     return goodness_of_fit(
-        fit.residuals, jacobian, judge, sigma=card.sigma.reversal, resolution=points.resolution
+        fit.residuals,
+        fit.jacobian(points.index, points.sides),
+        judge,
+        sigma=card.sigma.reversal,
+        resolution=points.resolution,
     )
 
 
 def _point_results(points: TurningPoints, fit: SwingFit) -> tuple[PointResult, ...]:
-    return tuple(
-        PointResult(
-            seq=row.seq,
-            index=int(index),
-            side="R" if side > 0 else "L",
-            observed=observed,
-            fitted=wrap_two_pi(observed - residual),
-            residual=residual,
-            elapsed_s=row.elapsed_s,
-        )
-        for row, index, side, observed, residual in zip(
-            points.rows,
-            points.index.tolist(),
-            points.sides.tolist(),
-            [row.value or 0.0 for row in points.rows],
-            fit.residuals.tolist(),
-            strict=True,
-        )
+    observed = [row.value or 0.0 for row in points.rows]
+    residuals = fit.residuals.tolist()
+    return point_results(
+        points.rows,
+        index=points.index,
+        sides=points.sides,
+        observed=observed,
+        fitted=[wrap_two_pi(x - v) for x, v in zip(observed, residuals, strict=True)],
+        residuals=residuals,
     )
 
 

@@ -20,19 +20,26 @@ from surveyapp.core.forecast import (
     period_share,
 )
 from surveyapp.core.goodness import Judge
-from surveyapp.core.gyrofit import SwingFit, design, fit_swing, schuler_means, unwrap
-from surveyapp.core.progress import Point, Progress
+from surveyapp.core.gyrofit import (
+    SwingFit,
+    expected_weight_norm,
+    fit_swing,
+    schuler_means,
+    side_signs,
+    unwrap,
+)
+from surveyapp.core.progress import Progress
 from surveyapp.core.reduction import ReadingSigma, reading_sigma
 from surveyapp.core.resolution import reading_resolution
 from surveyapp.core.run_alert import Alert, find_trouble
 from surveyapp.core.sights import moments
-from surveyapp.core.swing_shown import residual_channel, shown_curve
-from surveyapp.core.tracking import LEAST_SQUARES_FROM, MIN_POINTS, reduce_tracking
+from surveyapp.core.swing_shown import residual_channel, shown_curve, shown_points
+from surveyapp.core.tracking import MIN_POINTS, reduce_tracking
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.core.unfinished import lacking
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession
-from surveyapp.domain.readings import Reading, ReadingKind, Side
+from surveyapp.domain.readings import Reading, ReadingKind
 from surveyapp.errors import SurveyError
 from surveyapp_models.angles import wrap_two_pi
 
@@ -74,7 +81,7 @@ def tracking_progress(
     next_index = len(swing) - first
     readings = np.array([row.value for row in rows], dtype=np.float64)
     values = unwrap(readings)
-    sides = np.array([1.0 if row.side is Side.RIGHT else -1.0 for row in rows])
+    sides = side_signs(rows)
     fit = _fit(values, index, sides)
     sigma = _sigma(session, card, rows, fit)
     share = period_share(latitude)
@@ -83,7 +90,14 @@ def tracking_progress(
     north, missing, source = _north(session, card, rng, latitude)
     origin = float(readings[0])
     return Progress(
-        points=_points(rows, index, sides, values, fit),
+        points=shown_points(
+            rows,
+            fit,
+            index=index,
+            sides=sides,
+            readings=[row.value or 0.0 for row in rows],
+            offsets=values,
+        ),
         origin=origin,
         next=forecast,
         next_reading=_absolute(origin, forecast.reading),
@@ -185,31 +199,11 @@ def _two_more(
     last = float(sides[-1]) * (-1.0 if round(next_index - float(index[-1])) % 2 else 1.0)
     longer = np.concatenate([index, [next_index, next_index + 1.0]])
     both = np.concatenate([sides, [last, -last]])
-    if longer.size < LEAST_SQUARES_FROM:
-        _, weights = schuler_means(np.zeros(longer.size), longer)
-        norm = float(np.sqrt(weights @ weights))
-    else:
-        basis = design(longer, both, amplitude=fit.amplitude, log_decrement=fit.log_decrement)
-        inverse = np.linalg.pinv(basis)
-        norm = float(np.linalg.norm(inverse[0]))
+    norm = expected_weight_norm(fit, index=longer, sides=both)
     dof = math.inf if sigma.origin == "card" else float(longer.size - 3)
     others = north.without("turning points", "damping")
     part = Source("turning points", "", dof)
     return others.with_part(part, norm * sigma.value).interval95
-
-
-def _points(
-    rows: list[Reading], index: Floats, sides: Floats, values: Floats, fit: SwingFit | None
-) -> tuple[Point, ...]:
-    residuals: list[float | None] = [None] * len(rows)
-    if fit is not None and fit.dof > 0:
-        residuals = list(fit.residuals.tolist())
-    return tuple(
-        Point(row.seq, int(k), "R" if side > 0 else "L", row.value or 0.0, value, residual)
-        for row, k, side, value, residual in zip(
-            rows, index.tolist(), sides.tolist(), values.tolist(), residuals, strict=True
-        )
-    )
 
 
 def _alert(

@@ -11,10 +11,11 @@ Source of the effective degrees of freedom: Welch-Satterthwaite, JCGM 100:2008 (
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from surveyapp.core.statistics.distributions import student_quantile
+from surveyapp_models.angles import wrap_pi
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,3 +123,9 @@ def combine(terms: Iterable[tuple[float, Uncertain]]) -> Uncertain:
         for source, part in term.parts.items():
             parts[source] = parts.get(source, 0.0) + factor * part
     return Uncertain(value, {s: p for s, p in parts.items() if p != 0.0})
+
+
+def aligned(directions: Sequence[Uncertain]) -> list[Uncertain]:
+    """Directions [rad] moved by whole turns to within half a turn of the first one."""
+    first = directions[0].value
+    return [item.shifted(first + wrap_pi(item.value - first) - item.value) for item in directions]

@@ -17,6 +17,7 @@ SEPARATING = {
     "smooth": "a longer record",
     "long_oscillation": "a record of at least twice that period",
     "periodic": "a record of at least twice that period",
+    "pulse": "the book itself, or a second run: a touch that came and went does not repeat",
     "step": "a repetition on the first part",
     "amplitude_step": "a second run, followed evenly",
     "amplitude_smooth": "a second run, begun with another amplitude",

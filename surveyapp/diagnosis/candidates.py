@@ -32,6 +32,13 @@ GROSS_WEIGHT = 3.0
 candidates share stay where they are (weighted p values: Genovese, Roeder & Wasserman 2006)."""
 SHAPE_WEIGHT = 0.5
 """A generic shape ends in no name."""
+SMOOTH_FROM = 12
+"""Observations from which pulses and bent decays are looked for."""
+SINGLE_SHARE = 0.75
+"""Share of what the model leaves of a shift above which one reading alone shows it."""
+PULSE_PHASES = (0.0, 0.25, 0.5, 0.75)
+SHORTEST_PULSE, LONGEST_PULSE = 2, 6
+"""Places for which a pulse lasts; a quarter of the record at most."""
 AMPLITUDE_SHAPES = frozenset({"amplitude_step", "amplitude_smooth"})
 """Generic shapes of the amplitude of a swing."""
 
@@ -73,6 +80,12 @@ class Candidate:
         return self.effect is not None and self.effect.law is not None
 
     @property
+    def is_slip(self) -> bool:
+        """Whether it is a single gross error."""
+        effect = self.effect
+        return effect is not None and effect.acts_on == "observation" and self.count == 1
+
+    @property
     def describes_amplitude(self) -> bool:
         """Whether it is a description of the amplitude, named or generic; a model has one."""
         return self.is_law or self.id in AMPLITUDE_SHAPES
@@ -82,9 +95,7 @@ class Candidate:
         """Share of the false alarms that it may spend, a named effect taking one."""
         if self.kind == "shape":
             return SHAPE_WEIGHT
-        if self.effect is not None and self.effect.acts_on == "observation" and self.count == 1:
-            return GROSS_WEIGHT
-        return 1.0
+        return GROSS_WEIGHT if self.is_slip else 1.0
 
     @property
     def one_sided(self) -> bool:
@@ -205,12 +216,17 @@ def _shapes(problem: Problem, columns: Mapping[str, Array], root: Array) -> list
         _shape("smooth", [np.column_stack([x, x**2, x**3])], 3, root),
     ]
     taken = {effect.id for effect in problem.effects}
+    if problem.size >= SMOOTH_FROM:
+        shapes += _pulse_shape(problem, columns, root)
     if problem.has_swing:
         amplitude = columns["side"] * columns["relative_amplitude"]
         inner = np.unique(position)[2:-3]
         kicks = [((position > p) * amplitude)[:, None] for p in inner]
         if kicks:
             shapes.append(_shape("amplitude_step", kicks, 2, root))
+        if problem.size >= SMOOTH_FROM:
+            decayed = (x + 1.0)[:, None] ** np.array([2.0, 3.0]) * amplitude[:, None]
+            shapes.append(_shape("amplitude_smooth", [decayed], 3, root))
         shapes.append(_periodic("long_oscillation", x, (0.8, 1.45), root, n=problem.size))
     else:
         if "transport_step" not in taken:
@@ -223,6 +239,48 @@ def _shapes(problem: Problem, columns: Mapping[str, Array], root: Array) -> list
         single = [np.eye(problem.size)[:, i : i + 1] for i in range(problem.size)]
         shapes.append(_shape("outlier", single, 2, root))
     return shapes
+
+
+def _pulse_shape(
+    problem: Problem, columns: Mapping[str, Array], root: Array
+) -> tuple[Candidate, ...]:
+    """The pulses that show in more than one reading: in one alone it is a slip."""
+    stacked = np.stack(_pulses(problem.position, problem.side))
+    base = [problem.base]
+    if problem.has_swing:
+        amplitude = columns["side"] * columns["relative_amplitude"]
+        base.append(amplitude[:, None] * np.column_stack([np.ones(problem.size), problem.position]))
+    q, _ = np.linalg.qr(np.hstack(base))
+    left = (stacked - q @ (q.T @ stacked))[:, :, 0] ** 2
+    spread = left.max(axis=1) < SINGLE_SHARE * left.sum(axis=1)
+    charge = 3 if problem.side is None else 5
+    return (_shape("pulse", list(stacked[spread]), charge, root),) if spread.any() else ()
+
+
+def _pulses(position: Array, side: Array | None) -> list[Array]:
+    """North, or the constant, off for two places or more and then back, shape (n, 1) each.
+
+    At either end of the record only two places: what is off for longer there is a step. A shift
+    inside a half swing kicks the amplitude too, by its phase, when it comes and when it goes.
+    """
+    places = np.unique(position)
+    count = places.size
+    longest = max(SHORTEST_PULSE, min(LONGEST_PULSE, count // 4))
+    shifts = {i: _shifts(position, side, places[i]) for i in range(count - SHORTEST_PULSE)}
+    found = list(shifts[1]) + list(shifts[count - SHORTEST_PULSE - 1])
+    for first in range(count - SHORTEST_PULSE - 1):
+        for last in range(first + SHORTEST_PULSE, min(first + longest, count - 3) + 1):
+            found += [come - go for come in shifts[first] for go in shifts[last]]
+    return [column[:, None] for column in found]
+
+
+def _shifts(position: Array, side: Array | None, place: float) -> tuple[Array, ...]:
+    """A shift after a place, at each phase of the half swing that follows it, shape (n,) each."""
+    after = (position > place).astype(np.float64)
+    if side is None:
+        return (after,)
+    kick = side * side[int(np.argmin(np.abs(position - place)))]
+    return tuple(after * (1.0 - kick * np.cos(np.pi * phase)) for phase in PULSE_PHASES)
 
 
 def _periodic(

@@ -15,12 +15,23 @@ from dataclasses import dataclass
 import numpy as np
 
 from surveyapp.diagnosis.candidates import Candidate, Projected, project
-from surveyapp.diagnosis.fits import Fit, Member, bic_of, fit_members, scan_law, with_noise
+from surveyapp.diagnosis.fits import (
+    Fit,
+    Member,
+    bic_of,
+    fit_members,
+    is_spoilt,
+    scan_exact,
+    scan_law,
+    with_noise,
+)
 from surveyapp.diagnosis.nulls import reductions
 from surveyapp.diagnosis.problem import Array, Problem
 
 MARGIN = 4.0
 """BIC by which every rival must be worse (diagnosis.md step 4)."""
+FULL_SIZE = 12
+"""Observations from which the margin is the specification's own."""
 ANCHORS = 8
 """Best sets of one depth from which those of the next are built."""
 REFINED = 12.0
@@ -31,6 +42,18 @@ GROSS_SHARE = 6
 """At most one observation in so many is taken for a gross error."""
 SPANNED = 0.05
 """Share of a fitted effect that may be left beside a rival that spans it."""
+
+
+def margin(fit: Fit) -> float:
+    """BIC by which every rival must be worse than a fit.
+
+    From few observations BIC overrates a difference: it counts all n, and n - p are free.
+    """
+    n = fit.residual.size
+    if n >= FULL_SIZE:
+        return MARGIN
+    base = fit.design.shape[1] - sum(m.candidate.size for m in fit.members)
+    return float(MARGIN * n / max(n - base, 1))
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,14 +225,21 @@ def _best_addition(
     item = project(candidate, q)
     if item.index.size == 0:
         return None
-    if candidate.is_law and anchor.theta is not None and not anchor.members:
+    if anchor.theta is not None and not anchor.members and candidate.is_law:
         rss = scan_law(problem, candidate, anchor.members, anchor.theta)[item.index]
+    elif anchor.theta is not None and not anchor.members and slip_bends(candidate, anchor):
+        rss = scan_exact(problem, candidate, anchor.members, anchor.theta)[item.index]
     else:
         rss = anchor.sum_of_squares - reductions(item, anchor.residual)
     total = anchor.parameters + candidate.charge[item.index]
     bics = bic_of(problem, rss, total)
     g = int(np.argmin(bics))
     return float(bics[g]), (*anchor.members, Member(candidate, int(item.index[g])))
+
+
+def slip_bends(candidate: Candidate, fit: Fit) -> bool:
+    """Whether gross errors must be fitted one by one beside a fit."""
+    return candidate.is_slip and is_spoilt(fit)
 
 
 def _refined(problem: Problem, members: tuple[Member, ...], anchor: Fit, *, every: bool) -> Fit:
@@ -248,8 +278,14 @@ def within_margin(level: Level) -> tuple[Fit, ...]:
     best = level.preferred
     if best is None:
         return level.every[:1]
-    limit = min(best.score, level.best_score) + MARGIN
-    near = [f for f in level.every if f.score < limit and f.key != best.key]
+    limit = min(best.score, level.best_score) + margin(best)
+    # A shape says that something is there, not that no cause would do: causes are heard longer.
+    patience = MARGIN if best.is_generic else 0.0
+    near = [
+        f
+        for f in level.every
+        if f.key != best.key and f.score < limit + (0.0 if f.is_generic else patience)
+    ]
     rivals = [fit for fit in near if not spans(fit, best)]
     # What a smaller set within the margin explains needs no more.
     rivals = [f for f in rivals if not any(g.key < f.key for g in rivals)]

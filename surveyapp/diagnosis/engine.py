@@ -85,11 +85,12 @@ def _diagnosed(
     if record is not None and not record.white:
         found = unnamed(found)
     base = found.levels[0].fits[0]
-    averaged = _widened(problem, found, averaged_value(problem, found.levels[-1].every))
     battery = run_battery(problem, base, int(digest[:15], 16))
     adopted = adoptions(problem, found, digest, confirm)
     ambiguous = ambiguities(problem, found)
     verdict = _verdict(found, ambiguous)
+    averaged = averaged_value(problem, found.levels[-1].every)
+    averaged = _widened(problem, found, averaged, verdict)
     best = found.best if ambiguous else found.after
     return Diagnosis(
         subject=problem.subject,
@@ -116,15 +117,25 @@ def _diagnosed(
     )
 
 
-def _widened(problem: Problem, found: Search, averaged: Value) -> Value:
-    """The averaged value, not more certain than the scatter that the stated sigmas deny."""
+def _widened(problem: Problem, found: Search, averaged: Value, verdict: Verdict) -> Value:
+    """The averaged value, not more certain than what remains without a name allows.
+
+    What no cause explains is not taken out of the sigma: it is the sigma of the named model, with
+    the shift. Where stated sigmas serve, the scatter that they deny enters.
+    """
     known = unit_variance(problem)
     base = found.levels[0].fits[0]
     dof = problem.size - base.design.shape[1]
-    if known is None or found.levels[-1].depth == 0 or found.adopted or dof < 1:
-        return averaged
-    scatter = math.sqrt(max(1.0, base.sum_of_squares / dof / known))
-    return Value(averaged.value, max(averaged.sigma, scatter * value_of(problem, base).sigma), dof)
+    if known is not None and found.levels[-1].depth > 0 and not found.adopted and dof >= 1:
+        scatter = math.sqrt(max(1.0, base.sum_of_squares / dof / known))
+        sigma = max(averaged.sigma, scatter * value_of(problem, base).sigma)
+        averaged = Value(averaged.value, sigma, dof)
+    if verdict == "unattributed" or (found.near and found.near[0].is_generic):
+        after = value_of(problem, found.after)
+        least = math.hypot(after.sigma, averaged.value - after.value)
+        if least > averaged.sigma:
+            return Value(averaged.value, least, after.dof)
+    return averaged
 
 
 def _quantity(problem: Problem, value: Value) -> Quantity:

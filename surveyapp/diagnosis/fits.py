@@ -17,6 +17,9 @@ from surveyapp.diagnosis.problem import Array, Problem
 from surveyapp.diagnosis.stochastic import EXTRA_PARAMETERS, NoiseFit, best_noises
 from surveyapp.diagnosis.swing import fit_swing, starting_values, tangent
 
+SPOILT = 0.02
+"""Share of the amplitude from which a residual may have bent the swing that was fitted."""
+
 
 @dataclass(frozen=True, slots=True)
 class Member:
@@ -90,6 +93,11 @@ class Fit:
         ids = [member.candidate.id for member in self.members]
         unique = list(dict.fromkeys(ids))
         return (*unique, *((self.noise.kind,) if self.noise is not None else ()))
+
+    @property
+    def is_generic(self) -> bool:
+        """Whether a shape or noise without a name takes part."""
+        return self.noise is not None or any(m.candidate.kind == "shape" for m in self.members)
 
     @property
     def sum_of_squares(self) -> float:
@@ -198,6 +206,37 @@ def scan_law(
         effect=candidate.effect,
         grid=grid,
     ).sum_of_squares
+
+
+def is_spoilt(fit: Fit) -> bool:
+    """Whether residuals are so large that the swing itself may be fitted beside the truth.
+
+    A slip of whole minutes bends amplitude and damping; what it takes away must then be fitted, not
+    projected.
+    """
+    if fit.theta is None:
+        return False
+    return float(np.abs(fit.residual).max(initial=0.0)) > SPOILT * abs(float(fit.theta[0]))
+
+
+def scan_exact(
+    problem: Problem, candidate: Candidate, others: tuple[Member, ...], start: Array
+) -> Array:
+    """Sum of squares at each grid point with the whole model fitted anew, shape (g,).
+
+    Each fit begins at the best swing of the others, and at the one without what the point explains.
+    """
+    found = np.empty(len(candidate.points))
+    for g in range(found.size):
+        members = (*others, Member(candidate, g))
+        hidden = np.abs(candidate.columns[g]).max(axis=1) > 0.0
+        fits = [fit_members(problem, members, start)]
+        if problem.side is not None and problem.half_swing is not None and (~hidden).sum() > 3:
+            seen = (problem.observations[~hidden], problem.side[~hidden])
+            clean = starting_values(*seen, problem.half_swing[~hidden])
+            fits.append(fit_members(problem, members, clean))
+        found[g] = min(fit.sum_of_squares for fit in fits)
+    return found
 
 
 def with_noise(problem: Problem, fit: Fit) -> tuple[Fit, ...]:

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from surveyapp.diagnosis.candidates import Candidate, Projected, project
-from surveyapp.diagnosis.compare import may_join, orthonormal_design
-from surveyapp.diagnosis.fits import Fit, scan_law, unit_variance
+from surveyapp.diagnosis.compare import may_join, orthonormal_design, slip_bends
+from surveyapp.diagnosis.fits import Fit, scan_exact, scan_law, unit_variance
 from surveyapp.diagnosis.nulls import Noise, null_of, ratio, reductions
 from surveyapp.diagnosis.problem import Array, Problem
 
@@ -79,6 +79,9 @@ def statistic(problem: Problem, fit: Fit, item: Projected, q: Array) -> float:
     candidate = item.candidate
     if candidate.is_law and fit.theta is not None and fit.law is None:
         rss = scan_law(problem, candidate, fit.members, fit.theta)[item.index]
+        reduction = max(reduction, fit.sum_of_squares - float(rss.min()))
+    elif fit.theta is not None and not fit.members and slip_bends(candidate, fit):
+        rss = scan_exact(problem, candidate, fit.members, fit.theta)[item.index]
         reduction = max(reduction, fit.sum_of_squares - float(rss.min()))
     known = unit_variance(problem)
     if known is not None:

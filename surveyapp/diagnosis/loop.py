@@ -19,13 +19,13 @@ from surveyapp.diagnosis.compare import (
     Level,
     base_level,
     best_with,
-    best_without,
     most_parameters,
     next_level,
+    spans,
     within_margin,
 )
 from surveyapp.diagnosis.fits import Fit, fit_members, with_noise
-from surveyapp.diagnosis.gate import Gate, open_gate
+from surveyapp.diagnosis.gate import GATE, Gate, open_gate
 from surveyapp.diagnosis.problem import Problem
 from surveyapp.diagnosis.prove import confirm_rms, flagged, leave_one_out, unforetold
 from surveyapp.diagnosis.value import plausible
@@ -34,7 +34,8 @@ DEFAULT_DRAWS = 4000
 DEPTHS = ((45, 4), (20, 3), (12, 2), (8, 1))
 """At most so many effects from so many observations on (diagnosis.md step 6)."""
 NAMED_DEPTH = 2
-"""Effects that enter later are named only when a second set confirms them."""
+"""Effects that enter later are named only when a second set confirms them. Noise that wanders does
+not end the search before: two effects at once look like it."""
 LEAST_TO_NAME = 8
 NOISE_MARGIN = 2.0 * MARGIN
 """BIC by which noise that wanders must be worse: it is no single rival but stands for every shape
@@ -105,7 +106,8 @@ def search(problem: Problem, *, draws: int, confirm: Problem | None) -> Search:
         fit = levels[-1].preferred or base
         gates.append(open_gate(problem, fit, current, draws))
         done = len(levels) - 1 >= deepest(problem.size)
-        if not gates[-1].fired or done or (len(levels) > 1 and levels[-1].stochastic):
+        wandering = len(levels) > NAMED_DEPTH and levels[-1].stochastic
+        if not gates[-1].fired or done or wandering:
             break
         level, dropped = _possible(problem, next_level(problem, levels[-1], current))
         implausible |= dropped
@@ -121,7 +123,8 @@ def search(problem: Problem, *, draws: int, confirm: Problem | None) -> Search:
     near = within_margin(last)
     chosen = last.preferred or base
     names = _names(problem, levels, near, confirmed=confirm is not None)
-    adopted, refused, after = _proved(problem, chosen, names, base, confirm)
+    proofs = Proofs(current, draws, confirm)
+    adopted, refused, after = _proved(problem, chosen, names, base, proofs)
     return Search(
         tuple(levels),
         tuple(gates),
@@ -166,15 +169,24 @@ def _names(
     return [i for i in found if early is not None and i in early.key]
 
 
+@dataclass(frozen=True, slots=True)
+class Proofs:
+    """What the proofs need beside the fits."""
+
+    pool: tuple[Candidate, ...]
+    draws: int
+    confirm: Problem | None
+
+
 def _proved(
-    problem: Problem, best: Fit, names: list[str], base: Fit, confirm: Problem | None
+    problem: Problem, best: Fit, names: list[str], base: Fit, proofs: Proofs
 ) -> tuple[tuple[str, ...], tuple[tuple[str, str], ...], Fit]:
     """Keep the names that predict better and are missed when removed; fit them jointly."""
     refused: list[tuple[str, str]] = []
     names = list(names)
     while names:
         after = reduced(problem, best, names)
-        failure = _failure(problem, after, names, confirm)
+        failure = _failure(problem, after, names, proofs)
         if failure is None:
             return tuple(names), tuple(refused), after
         refused.append(failure)
@@ -190,7 +202,7 @@ def reduced(problem: Problem, fit: Fit, names: Iterable[str]) -> Fit:
 
 
 def _failure(
-    problem: Problem, after: Fit, names: list[str], confirm: Problem | None
+    problem: Problem, after: Fit, names: list[str], proofs: Proofs
 ) -> tuple[str, str] | None:
     """First adopted effect that fails a proof and why, else None."""
     mask = unforetold(after)
@@ -199,6 +211,11 @@ def _failure(
         without = reduced(problem, after, [n for n in names if n != name])
         if without.bic <= after.bic:
             return name, "the model is as good without it"
+        hidden = partly_missing(name, proofs.pool)
+        if hidden:
+            return name, f"{hidden} could look the same"
+        if not significant(problem, without, name, proofs):
+            return name, "noise would show as much"
         gross = float(np.sum(flagged(after))) > float(np.sum(flagged(without)))
         if not gross:
             other = leave_one_out(problem, without, mask)
@@ -207,14 +224,43 @@ def _failure(
         kind = imitating_noise(problem, after, without)
         if kind is not None:
             return name, f"{NOISE_WORDS[kind]} would look like it too often"
-        if confirm is not None:
-            here = confirm_rms(confirm, after)
-            there = confirm_rms(confirm, without)
-            if here is None or there is None:
-                return name, "the second set lacks what is needed to confirm it"
-            if here >= there:
-                return name, "the second set is predicted no better with it"
+        if proofs.confirm is not None:
+            failure = unconfirmed(proofs.confirm, after, without)
+            if failure is not None:
+                return name, failure
     return None
+
+
+def partly_missing(name: str, pool: Iterable[Candidate]) -> str:
+    """An effect that may look like a named one and lacks values here and there, else empty."""
+    every = {c.id: c for c in pool if c.effect is not None}
+    named = every.get(name)
+    for other in every.values():
+        if named is None or named.effect is None or other.effect is None:
+            continue
+        alike = other.id in named.effect.confusable_with or name in other.effect.confusable_with
+        if alike and " missing at " in other.missing:
+            return f"{other.effect.title.lower()} cannot be tested ({other.missing}) and"
+    return ""
+
+
+def significant(problem: Problem, without: Fit, name: str, proofs: Proofs) -> bool:
+    """Whether noise would rarely show an effect as strong, anywhere in its own scan.
+
+    The gate may have been opened by another candidate. One that the model without it cannot be
+    told from by its columns alone has no p value and is left to the other proofs.
+    """
+    gate = open_gate(problem, without, proofs.pool, proofs.draws)
+    own = [test.p for test in gate.tests if test.id == name]
+    return not own or own[0] is None or own[0] <= GATE
+
+
+def unconfirmed(confirm: Problem, after: Fit, without: Fit) -> str | None:
+    """Why a second set does not confirm an effect, else None."""
+    here, there = confirm_rms(confirm, after), confirm_rms(confirm, without)
+    if here is None or there is None:
+        return "the second set lacks what is needed to confirm it"
+    return "the second set is predicted no better with it" if here >= there else None
 
 
 def imitating_noise(problem: Problem, after: Fit, without: Fit) -> str | None:
@@ -232,9 +278,15 @@ def rivals_delta(level: Level, identity: str) -> float | None:
 
 
 def margin_of(level: Level, identity: str) -> float | None:
-    """How much worse the best set without an effect is than the best one with it."""
-    fit, other = best_with(level, identity), best_without(level, identity)
-    return None if fit is None or other is None else other.bic - fit.bic
+    """How much worse the best other explanation is than the best set with an effect.
+
+    A set that merely contains it (more gross errors, a shape that spans it) is no other one.
+    """
+    fit = best_with(level, identity)
+    if fit is None:
+        return None
+    others = [f for f in level.every if identity not in f.key and not spans(f, fit)]
+    return min(f.score for f in others) - fit.score if others else None
 
 
 __all__ = ["DEFAULT_DRAWS", "MARGIN", "Search", "deepest", "margin_of", "rivals_delta", "search"]

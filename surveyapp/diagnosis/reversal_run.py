@@ -76,32 +76,12 @@ def reversal_run(points: TurningPoints, extra: tuple[Effect, ...] = ()) -> Probl
     """
     readings = np.asarray(points.readings, dtype=np.float64)
     _check(points, readings)
-    count = (
-        np.arange(readings.size, dtype=np.float64)
-        if points.count is None
-        else np.asarray(points.count, dtype=np.float64)
-    )
+    n = readings.size
+    count = np.asarray(np.arange(n) if points.count is None else points.count, dtype=np.float64)
+    number = count - count[0]
     offset = _middle(readings)
     y = wrap_pi_array(readings - offset)
-    side = _sides(points, y, count)
-    warnings: list[ResultWarning] = []
-    columns = {name: np.asarray(v, dtype=np.float64) for name, v in points.covariates.items()}
-    if points.elapsed_s is None:
-        warnings.append(
-            ResultWarning(
-                "no_times",
-                "no times: the number of the turning point stands in for time, rates and time "
-                "constants are per half swing",
-            )
-        )
-    else:
-        times = np.asarray(points.elapsed_s, dtype=np.float64)
-        columns["elapsed_s"] = times
-        warnings += _time_warnings(times, count)
-    n = readings.size
-    references = {}
-    if points.reference_temperature_c is not None:
-        references["temperature_c"] = points.reference_temperature_c
+    temperature = points.reference_temperature_c
     return Problem(
         subject="reversal_run",
         observations=y,
@@ -109,21 +89,28 @@ def reversal_run(points: TurningPoints, extra: tuple[Effect, ...] = ()) -> Probl
         base_names=("north",),
         value_base=np.ones(1),
         value_weights=np.full(n, 1.0 / n),
-        position=count - count[0],
-        columns=columns,
+        position=number,
+        columns=_columns(points),
         effects=(*of_subject("reversal_run"), *extra),
-        side=side,
-        half_swing=count - count[0],
+        side=_sides(points, y, count),
+        half_swing=number,
         sigma=None if points.sigma is None else np.full(n, points.sigma),
         resolution=points.resolution,
-        references=references,
+        references={} if temperature is None else {"temperature_c": temperature},
         offset=offset,
         direction=True,
         instrument=points.instrument,
         identity=points.identity,
-        labels=tuple(f"turning point {int(k) + 1}" for k in count - count[0]),
-        warnings=tuple(warnings),
+        labels=tuple(f"turning point {int(k) + 1}" for k in number),
+        warnings=_warnings(points, count),
     )
+
+
+def _columns(points: TurningPoints) -> dict[str, Array]:
+    columns = {name: np.asarray(v, dtype=np.float64) for name, v in points.covariates.items()}
+    if points.elapsed_s is not None:
+        columns["elapsed_s"] = np.asarray(points.elapsed_s, dtype=np.float64)
+    return columns
 
 
 def _middle(readings: Array) -> float:
@@ -195,6 +182,16 @@ def _sides(points: TurningPoints, y: Array, count: Array) -> Array:
     even, odd = y[parity > 0.0], y[parity < 0.0]
     first_is_right = float(np.median(even)) >= float(np.median(odd))
     return parity if first_is_right else -parity
+
+
+def _warnings(points: TurningPoints, count: Array) -> tuple[ResultWarning, ...]:
+    if points.elapsed_s is None:
+        text = (
+            "no times: the number of the turning point stands in for time, rates and time "
+            "constants are per half swing"
+        )
+        return (ResultWarning("no_times", text),)
+    return tuple(_time_warnings(np.asarray(points.elapsed_s, dtype=np.float64), count))
 
 
 def _time_warnings(times: Array, count: Array) -> list[ResultWarning]:

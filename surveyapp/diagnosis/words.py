@@ -21,7 +21,9 @@ NOISE_AND_SHAPES = {
     "smooth": "a smooth change without a known cause",
     "long_oscillation": "an oscillation longer than the record can judge",
     "periodic": "an oscillation without a known cause",
+    "pulse": "a shift of several readings that came and went",
     "step": "a step without a known cause",
+    "amplitude_smooth": "a change of the damping without a known cause",
     "amplitude_step": "a sudden change of the amplitude without a known cause",
     "outlier": "a single determination that stands off",
 }

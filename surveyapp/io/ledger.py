@@ -18,6 +18,7 @@ from typing import Any, Final
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.bookreading import move_tail_aside
 from surveyapp.io.files import shown
+from surveyapp.io.tomltext import sync_folder
 
 LEDGER_FILE: Final = "ledger.jsonl"
 _KEYS: Final = frozenset({"at", "data", "kind", "previous", "seq", "sha256", "software"})
@@ -213,17 +214,4 @@ def _append(path: Path, data: bytes) -> None:
             os.ftruncate(stream.fileno(), size)
             raise
     if new:
-        _sync_folder(path.parent)
-
-
-def _sync_folder(folder: Path) -> None:
-    try:
-        handle = os.open(folder, os.O_RDONLY)
-    except OSError:
-        return
-    try:
-        os.fsync(handle)
-    except OSError:
-        return
-    finally:
-        os.close(handle)
+        sync_folder(path.parent)

@@ -8,7 +8,7 @@ left out of the mean square error: the regulations mean the measurement.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import date
 from itertools import combinations
@@ -18,7 +18,7 @@ from surveyapp.core.orientation import Orientation
 from surveyapp.core.scatter import weighted_mean
 from surveyapp.core.tolerance.evaluate import Measured
 from surveyapp.core.tolerance.quantities import quantity
-from surveyapp.core.uncertain import Uncertain, combine
+from surveyapp.core.uncertain import Uncertain, aligned, combine
 from surveyapp.domain.project import OrientationSession
 from surveyapp_models.angles import RHO_ARCSEC, wrap_pi
 
@@ -65,7 +65,7 @@ def side_orientations(orientation: Orientation) -> dict[frozenset[str], list[Sid
         line = lines.get((station, target_name, instrument))
         if line is None:
             continue
-        azimuth, kind = _carried(_mean(values), line)
+        azimuth, kind = _carried(weighted_mean(aligned(values)), line)
         sides.setdefault(frozenset((station, target_name)), []).append(
             SideOrientation(station, target_name, instrument, day, azimuth, kind)
         )
@@ -77,13 +77,6 @@ def _day(session: OrientationSession) -> date | None:
         return session.date
     times = [row.time for row in session.book.live if row.time is not None]
     return times[0].date() if times else None
-
-
-def _mean(values: Sequence[Uncertain]) -> Uncertain:
-    first = values[0].value
-    return weighted_mean(
-        [item.shifted(first + wrap_pi(item.value - first) - item.value) for item in values]
-    )
 
 
 def _carried(gyro: Uncertain, line: OrientedLine) -> tuple[Uncertain, str]:

@@ -98,37 +98,8 @@ def _with_azimuths(network: Network) -> Network:
     sides = [i for i, obs in enumerate(network.observations) if obs.kind is K.GYRO]
     if not sides:
         return network
+    covariance, blocks = _covariance_of_sides(network, sides)
     constants = {item.name: item for item in network.constants}
-    places = {place: i for i, place in enumerate(sides)}
-    problems = [
-        Problem(
-            "A .gkf file cannot hold an instrument constant that the network is to find",
-            f"constant {name}",
-            "no standard deviation",
-            "a constant known beforehand",
-        )
-        for name in dict.fromkeys(network.observations[i].constant for i in sides)
-        if constants[name].sigma is None
-    ]
-    covariance = np.diag([network.observations[i].sigma ** 2 for i in sides])
-    blocks = []
-    for block in network.blocks:
-        inside = [member in places for member in block.members]
-        if not any(inside):
-            blocks.append(block)
-        elif all(inside):
-            index = [places[member] for member in block.members]
-            covariance[np.ix_(index, index)] = np.asarray(block.covariance)
-        else:
-            problems.append(
-                Problem("A .gkf file cannot correlate gyro sides with others", "covariances")
-            )
-    if problems:
-        raise SurveyError(problems)
-    names = [network.observations[i].constant for i in sides]
-    same = np.array([[a == b for b in names] for a in names], dtype=np.float64)
-    shared = np.array([constants[name].sigma or 0.0 for name in names])
-    covariance += same * np.outer(shared, shared)
     observations = list(network.observations)
     for row, i in enumerate(sides):
         obs = observations[i]
@@ -144,6 +115,43 @@ def _with_azimuths(network: Network) -> Network:
         rows = tuple(tuple(row) for row in covariance.tolist())
         blocks.append(CorrelatedBlock(tuple(sides), rows))
     return replace(network, observations=tuple(observations), blocks=tuple(blocks), constants=())
+
+
+def _covariance_of_sides(
+    network: Network, sides: Sequence[int]
+) -> tuple[np.ndarray, list[CorrelatedBlock]]:
+    """Covariance of the gyro sides, what they share included, and the blocks of the others."""
+    names = [network.observations[i].constant for i in sides]
+    constants = {item.name: item for item in network.constants}
+    problems = [
+        Problem(
+            "A .gkf file cannot hold an instrument constant that the network is to find",
+            f"constant {name}",
+            "no standard deviation",
+            "a constant known beforehand",
+        )
+        for name in dict.fromkeys(names)
+        if constants[name].sigma is None
+    ]
+    places = {place: i for i, place in enumerate(sides)}
+    covariance = np.diag([network.observations[i].sigma ** 2 for i in sides])
+    others = []
+    for block in network.blocks:
+        inside = [member in places for member in block.members]
+        if not any(inside):
+            others.append(block)
+        elif all(inside):
+            index = [places[member] for member in block.members]
+            covariance[np.ix_(index, index)] = np.asarray(block.covariance)
+        else:
+            problems.append(
+                Problem("A .gkf file cannot correlate gyro sides with others", "covariances")
+            )
+    if problems:
+        raise SurveyError(problems)
+    same = np.array([[a == b for b in names] for a in names], dtype=np.float64)
+    shared = np.array([constants[name].sigma or 0.0 for name in names])
+    return covariance + same * np.outer(shared, shared), others
 
 
 def _point(point: NetworkPoint, axes: Axes) -> str:
@@ -227,7 +235,12 @@ def _check_sets(network: Network, gathered: dict[tuple[object, ...], list[int]])
         if len(kinds) > 1 or len(sets) > 1:
             where = network.observations[members[0]].where
             problems.append(
-                Problem("A .gkf file cannot correlate these observations", where, str(kinds), "")
+                Problem(
+                    "A .gkf file cannot correlate these observations",
+                    where,
+                    ", ".join(sorted(kinds)),
+                    "",
+                )
             )
     problems += [
         Problem("A .gkf file needs one covariance matrix for a whole set", f"station {at}", name)

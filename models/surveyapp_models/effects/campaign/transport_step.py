@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
+from surveyapp_models.effects.datum import both_plateaus
 from surveyapp_models.effects.effect import (
     Array,
     Coefficient,
@@ -33,14 +32,6 @@ def positions(columns: Columns) -> Array:
     return np.unique(inner[inner < dates[-margin]])
 
 
-def at_datum(
-    columns: Columns, references: Mapping[str, float], /, **grid: float
-) -> tuple[tuple[str, tuple[float, ...]], ...]:
-    """Both plateaus."""
-    del columns, references, grid
-    return (("before the step", (0.0,)), ("after the step", (1.0,)))
-
-
 EFFECT = Effect(
     id="transport_step",
     title="Step of the instrument constant",
@@ -58,5 +49,5 @@ EFFECT = Effect(
     separate_by="repeat the determination on the first line",
     per="instrument",
     confusable_with=("time_drift", "line_offset", "gyro_block"),
-    at_datum=at_datum,
+    at_datum=both_plateaus,
 )

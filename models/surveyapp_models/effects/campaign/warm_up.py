@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
+from surveyapp_models.effects.datum import asymptote
 from surveyapp_models.effects.effect import (
     Array,
     Coefficient,
@@ -28,14 +27,6 @@ def taus(columns: Columns) -> Array:
     return 60.0 * np.array([5.0, 7.5, 10.0, 15.0, 20.0, 30.0])
 
 
-def at_datum(
-    columns: Columns, references: Mapping[str, float], /, **grid: float
-) -> tuple[tuple[str, tuple[float, ...]], ...]:
-    """The asymptote."""
-    del columns, references, grid
-    return (("asymptote", (0.0,)),)
-
-
 EFFECT = Effect(
     id="warm_up",
     title="Warm-up after spin-up",
@@ -55,5 +46,5 @@ EFFECT = Effect(
     separate_by="determinations in the opposite order after a longer running time",
     per="instrument",
     confusable_with=("temperature", "gyro_block"),
-    at_datum=at_datum,
+    at_datum=asymptote,
 )

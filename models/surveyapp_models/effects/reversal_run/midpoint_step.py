@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
+from surveyapp_models.effects.datum import both_plateaus
 from surveyapp_models.effects.effect import (
     DECAY,
     HALF_SWING,
@@ -53,14 +52,6 @@ def phases(columns: Columns) -> Array:
     return np.array([0.0, 0.25, MID_SWING, 0.75])
 
 
-def at_datum(
-    columns: Columns, references: Mapping[str, float], /, **grid: float
-) -> tuple[tuple[str, tuple[float, ...]], ...]:
-    """Both plateaus."""
-    del columns, references, grid
-    return (("before the step", (0.0,)), ("after the step", (1.0,)))
-
-
 EFFECT = Effect(
     id="midpoint_step",
     title="Step of north",
@@ -86,6 +77,6 @@ EFFECT = Effect(
     symptom="north jumped once",
     separate_by="a second run; sights and tape zero before and after tell which plateau is right",
     confusable_with=("midpoint_drift", "warm_up", "secondary_oscillation", "gross_error"),
-    at_datum=at_datum,
+    at_datum=both_plateaus,
     midpoint=midpoint,
 )

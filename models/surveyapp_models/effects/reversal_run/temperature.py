@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
+from surveyapp_models.effects.datum import reference_temperature
 from surveyapp_models.effects.effect import Array, Coefficient, Column, Columns, Effect
 
 
@@ -15,16 +14,6 @@ def basis(columns: Columns, /, **grid: float) -> Array:
     del grid
     theta = columns["temperature_c"]
     return np.asarray(theta - theta.mean())[:, None]
-
-
-def at_datum(
-    columns: Columns, references: Mapping[str, float], /, **grid: float
-) -> tuple[tuple[str, tuple[float, ...]], ...]:
-    """The reference temperature, else the mean."""
-    del grid
-    mean = float(columns["temperature_c"].mean())
-    reference = references.get("temperature_c", mean)
-    return ((f"{reference:g} degrees Celsius", (reference - mean,)),)
 
 
 EFFECT = Effect(
@@ -42,5 +31,5 @@ EFFECT = Effect(
     symptom="north followed the temperature",
     separate_by="a run in which the temperature goes the other way",
     confusable_with=("midpoint_drift", "warm_up"),
-    at_datum=at_datum,
+    at_datum=reference_temperature,
 )

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
+from surveyapp_models.effects.datum import asymptote
 from surveyapp_models.effects.effect import (
     HALF_SWING,
     Array,
@@ -26,14 +25,6 @@ def taus(columns: Columns) -> Array:
     """From 1.4 to 8.5 half swings (5 to 30 minutes)."""
     del columns
     return np.array([1.4, 1.8, 2.3, 2.9, 3.4, 4.0, 5.0, 6.0, 7.0, 8.5])
-
-
-def at_datum(
-    columns: Columns, references: Mapping[str, float], /, **grid: float
-) -> tuple[tuple[str, tuple[float, ...]], ...]:
-    """The asymptote."""
-    del columns, references, grid
-    return (("asymptote", (0.0,)),)
 
 
 EFFECT = Effect(
@@ -58,5 +49,5 @@ EFFECT = Effect(
     symptom="north settled towards a final value",
     separate_by="more turning points at the end, or a second run directly after this one",
     confusable_with=("midpoint_drift", "midpoint_step", "amplitude_asymmetry"),
-    at_datum=at_datum,
+    at_datum=asymptote,
 )

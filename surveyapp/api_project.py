@@ -1,0 +1,125 @@
+"""Projects and cards for scripts, re-exported by ``surveyapp.api``: open, make, look up."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from surveyapp import __version__
+from surveyapp.domain.instrument import InstrumentCard
+from surveyapp.domain.project import Project
+from surveyapp.errors import Problem, SurveyError, nearest_names
+
+if TYPE_CHECKING:
+    from surveyapp.io.simulated import SimulatedFiles
+
+Folder = str | os.PathLike[str]
+
+SOFTWARE = f"surveyapp {__version__}"
+
+
+def open_project(folder: Folder) -> Project:
+    """Read a project folder.
+
+    Raises
+    ------
+    SurveyError
+        With all problems of project.toml and of every book together.
+    """
+    from surveyapp.io.project import read_project
+
+    return read_project(Path(folder))
+
+
+def opened(project: Project | Folder) -> Project:
+    """The project itself, read if it is given by its folder."""
+    return project if isinstance(project, Project) else open_project(project)
+
+
+def require(name: str, known: Iterable[str], kind: str, more: str = "") -> None:
+    """Refuse a name that is not among the known ones; ``more`` is added to the hint."""
+    names = list(known)
+    if name not in names:
+        raise SurveyError(
+            Problem(
+                what=f"there is no {kind} of this name",
+                where=f"--{kind}",
+                found=name,
+                expected=f"the name of a {kind} of the project",
+                hint=". ".join(filter(None, [nearest_names(name, names), more])),
+            )
+        )
+
+
+def new_project(
+    folder: Folder, *, name: str | None = None, crs: str | None = None, angle_unit: str = "dms"
+) -> Path:
+    """Make a new project folder with a commented project.toml.
+
+    Raises
+    ------
+    SurveyError
+        If the folder holds anything already, or if the crs is no projected grid.
+    """
+    from surveyapp.core.geodesy import open_grid
+    from surveyapp.io.template import create_project
+    from surveyapp_models.angles import AngleUnit
+
+    path = Path(folder)
+    if crs is not None:
+        open_grid(crs)
+    title = name if name is not None else path.resolve().name
+    create_project(path, name=title, crs=crs, angle_unit=AngleUnit(angle_unit))
+    return path
+
+
+def simulate(
+    kind: str, out: Folder, *, effects: Sequence[str] = (), seed: int = 1
+) -> SimulatedFiles:
+    """Write a simulated project, and its truth beside it.
+
+    Parameters
+    ----------
+    kind : str
+        ``reversal-run`` or ``campaign``.
+    out : path
+        A folder that does not exist or is empty.
+    effects : sequence of str
+        ``ID=VALUE[,option=value]`` each.
+    seed : int
+        The same seed, the same files.
+
+    Raises
+    ------
+    SurveyError
+        For an unknown kind or effect, or a folder that cannot be used.
+    """
+    from surveyapp.core.simulate.kinds import simulate_kind
+    from surveyapp.io.simulated import write_simulated
+
+    if seed < 0:
+        raise SurveyError(Problem("the seed is negative", "--seed", str(seed), "0 or more"))
+    files, truth = simulate_kind(kind, effects=effects, seed=seed)
+    return write_simulated(Path(out), files, truth)
+
+
+def models() -> tuple[InstrumentCard, ...]:
+    """Every installed instrument card."""
+    from surveyapp.io.cards import installed_card_ids
+
+    return tuple(model(identity) for identity in installed_card_ids())
+
+
+def model(identity: str) -> InstrumentCard:
+    """One instrument card by id, or by the path of a file.
+
+    Raises
+    ------
+    SurveyError
+        If there is none; the nearest id is named.
+    """
+    from surveyapp.io.cards import read_card
+
+    return read_card(identity, base=Path(), override={})

@@ -1,0 +1,98 @@
+"""The constant of an instrument as results hold it: by line, by determination, in force."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from surveyapp.domain.angle_result import finite, to_arcsec, to_degrees
+from surveyapp_models.angles import wrap_pi
+
+
+@dataclass(frozen=True, slots=True)
+class LineConstant:
+    """Instrument constant from one calibration line [rad]."""
+
+    station: str
+    target: str
+    value: float
+    sigma: float
+    count: int
+    rounds: int
+    distance_m: float | None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON."""
+        return {
+            "station": self.station,
+            "target": self.target,
+            "arcsec": to_arcsec(self.value),
+            "sigma_arcsec": to_arcsec(self.sigma),
+            "n": self.count,
+            "rounds": self.rounds,
+            "distance_m": finite(self.distance_m),
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Determination:
+    """One determination of the instrument constant, for the plot through time."""
+
+    session: str
+    station: str
+    target: str
+    value: float
+    sigma: float
+    moment_s: float | None
+    phase: str
+    known_azimuth: float
+    from_coordinates: float | None
+
+    @property
+    def known_minus_coordinates(self) -> float | None:
+        """Known grid azimuth minus the one from the coordinates [rad], None without those."""
+        if self.from_coordinates is None:
+            return None
+        return wrap_pi(self.known_azimuth - self.from_coordinates)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON."""
+        return {
+            "session": self.session,
+            "station": self.station,
+            "target": self.target,
+            "arcsec": to_arcsec(self.value),
+            "sigma_arcsec": to_arcsec(self.sigma),
+            "phase": self.phase,
+            "azimuth_known_deg": to_degrees(self.known_azimuth),
+            "known_minus_coordinates_arcsec": to_arcsec(self.known_minus_coordinates),
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class ConstantResult:
+    """Instrument constant (true minus gyro, astronomic terms) of one instrument [rad]."""
+
+    instrument: str
+    value: float | None
+    sigma: float | None
+    interval95: float | None
+    count: int
+    stable: bool | None
+    choice: str
+    by_line: tuple[LineConstant, ...]
+    determinations: tuple[Determination, ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON."""
+        return {
+            "instrument": self.instrument,
+            "arcsec": to_arcsec(self.value),
+            "sigma_arcsec": to_arcsec(self.sigma),
+            "interval95_arcsec": to_arcsec(self.interval95),
+            "n": self.count,
+            "stable": self.stable,
+            "choice": self.choice,
+            "by_line": [line.to_dict() for line in self.by_line],
+            "determinations": [item.to_dict() for item in self.determinations],
+        }
