@@ -93,7 +93,7 @@ def diagnose(
     from surveyapp.workflows.diagnosing import diagnose_project
 
     project = opened(project)
-    own = () if effects is None else load_effects(Path(effects))
+    own = () if effects is None else load_effects(Path(effects), only_known_columns=True)
     kept = without_unfinished(project, keep=[name for name in (session, confirm) if name])
     return diagnose_project(
         computed(kept if kept.sessions else project),

@@ -58,7 +58,7 @@ def run(options: argparse.Namespace) -> int:
 def subjects_text(found: Diagnosed) -> str:
     """What could be diagnosed."""
     if not found.subjects:
-        return "Nothing in this project can be diagnosed by itself."
+        return "\n".join(textwrap.fill(text, 79) for text in found.words)
     rows = [[s.option, s.id, str(s.observations)] for s in found.subjects]
     return "Choose one:\n" + table(["option", "", "rows"], rows)
 
@@ -124,4 +124,17 @@ def _candidates(diagnosis: Diagnosis) -> str:
         for item in diagnosis.candidates
     ]
     head = ["candidate", "verdict", "p", "p family", "delta BIC"]
-    return table(head, rows, indent=0) if rows else ""
+    return table(head, rows, indent=0) + _reasons(diagnosis) if rows else ""
+
+
+def _reasons(diagnosis: Diagnosis) -> str:
+    """Why candidates were not applicable or not adopted, one line for each reason."""
+    told: dict[tuple[str, str], list[str]] = {}
+    for item in diagnosis.candidates:
+        if item.reason:
+            told.setdefault((item.verdict.replace("_", " "), item.reason), []).append(item.effect)
+    lines = [
+        textwrap.fill(f"{verdict}: {', '.join(names)}: {reason}", 79, subsequent_indent="  ")
+        for (verdict, reason), names in told.items()
+    ]
+    return "".join(f"\n{line}" for line in lines)

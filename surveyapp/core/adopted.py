@@ -1,33 +1,47 @@
 """Adopted effects of an instrument, applied: the loop is closed here.
 
 A campaign found that the constant depends on something, a person adopted it, and from then on
-every gyro azimuth of the instrument, on known lines and on unknown ones, is reduced by it. Inside
-the range of the data that chose it the correction carries the sigma of its coefficients; outside
-it is held at the edge of the range, and the whole of what it would have become enters the sigma.
+every gyro azimuth of the instrument, on known lines and on unknown ones, is reduced by it to the
+reference that was written down at the adoption: what a session is corrected by depends on that
+session alone. A constant, pooled or stated, is then the one at the reference. Inside the range of
+the data that chose it the correction carries the sigma of its coefficients; outside it is held at
+the edge of the range, and the whole of what it would have become enters the sigma.
+
+An effect of a line stands in what the calibrations of that line are compared with, not in the gyro
+(line_offset: its known azimuth, centring, deflection): it is taken from calibrations alone.
 """
 
 from __future__ import annotations
 
-import math
+import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from surveyapp.core.campaign_columns import Circumstances, circumstances, columns_of, in_blocks
+from surveyapp.core.campaign_columns import (
+    BLOCK_GAP_DAYS,
+    LABELLED,
+    Circumstances,
+    circumstances,
+    columns_of,
+    in_blocks,
+)
 from surveyapp.core.geodesy import Position
 from surveyapp.core.session import ReducedSession, TargetReduction
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import AdoptedEffect, Instrument
 from surveyapp.domain.project import ResultWarning
-from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp_models.angles import RHO_ARCSEC
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Effect
 
 Floats = NDArray[np.float64]
 
 SOURCE = "adopted effect"
+STEPS = 25
+"""Values of a missing column that are tried over its range for the largest effect."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,14 +62,10 @@ def apply_adopted(
     Parameters
     ----------
     instrument : Instrument
+        Its effects are checked (``adopted_checks``).
     reduced : sequence of ReducedSession
         All sessions; those of other instruments are passed on.
     positions : mapping of station to Position
-
-    Raises
-    ------
-    SurveyError
-        If an adopted effect is in no catalogue, or its coefficients do not fit it.
     """
     if not instrument.effects:
         return tuple(reduced), []
@@ -76,18 +86,29 @@ def apply_adopted(
             for place in places
         ]
     )
+    sessions = [reduced[place.session].session for place in places]
     targets = {place: reduced[place.session].targets[place.target] for place in places}
     warnings: list[ResultWarning] = []
-    for effect in instrument.effects:
+    for adopted in instrument.effects:
+        effect = known_effects()[adopted.id]
+        chosen = list(range(len(places)))
+        if effect.per == "line":
+            chosen = [i for i in chosen if sessions[i].purpose == "calibration"]
+            warnings += _not_moved(adopted, [s.id for s in sessions], facts, chosen)
         shifts, found = effect_shifts(
-            instrument, effect, facts, [reduced[place.session].session.id for place in places]
+            instrument, adopted, [facts[i] for i in chosen], [sessions[i].id for i in chosen]
         )
         warnings += found
-        for place, shift in zip(places, shifts, strict=True):
-            azimuth = targets[place].gyro_azimuth
+        for i, shift in zip(chosen, shifts, strict=True):
+            azimuth = targets[places[i]].gyro_azimuth
             if azimuth is not None:
-                targets[place] = replace(targets[place], gyro_azimuth=azimuth + shift)
+                targets[places[i]] = replace(targets[places[i]], gyro_azimuth=azimuth + shift)
     return _replaced(reduced, targets), warnings
+
+
+def known_effects() -> dict[str, Effect]:
+    """The effects that an instrument can have adopted."""
+    return {effect.id: effect for effect in of_subject("campaign")}
 
 
 def _replaced(
@@ -102,25 +123,50 @@ def _replaced(
     )
 
 
-def _known(instrument: Instrument, adopted: AdoptedEffect) -> Effect:
-    catalogue = {effect.id: effect for effect in of_subject("campaign")}
-    where = f"instrument {instrument.id}, adopted effect"
-    if adopted.id not in catalogue:
-        hint = nearest_names(adopted.id, catalogue)
-        raise SurveyError(
-            Problem("an adopted effect is in no catalogue", where, adopted.id, hint=hint)
-        )
-    effect = catalogue[adopted.id]
-    if len(adopted.coefficients) != len(effect.coefficients):
-        raise SurveyError(
-            Problem(
-                "the coefficients of an adopted effect do not fit it",
-                f"{where} {adopted.id}",
-                f"{len(adopted.coefficients)} coefficients",
-                ", ".join(c.name for c in effect.coefficients),
-            )
-        )
-    return effect
+def _not_moved(
+    adopted: AdoptedEffect,
+    sessions: Sequence[str],
+    facts: Sequence[Circumstances],
+    calibrations: Sequence[int],
+) -> list[ResultWarning]:
+    """Surveys of the very line that stands off: its offset is not the gyro's."""
+    line = dict(adopted.grid).get("line")
+    told = {
+        sessions[i]: None
+        for i in range(len(sessions))
+        if i not in calibrations and facts[i].line == line
+    }
+    if not told:
+        return []
+    size = ", ".join(f"{value:+.1f} {unit}" for _, value, _, unit in adopted.coefficients)
+    text = (
+        f"{', '.join(told)}: the line {line} stands off by {size} in its calibrations (adopted "
+        f"effect {adopted.id}): its known azimuth, centring or deflection; a survey of it is not "
+        "moved by that"
+    )
+    return [ResultWarning("line_not_moved", text)]
+
+
+@dataclass(frozen=True, slots=True)
+class _Rows:
+    """Rows of a basis for each gyro azimuth, shape (n, p), and what stands in the way.
+
+    Parameters
+    ----------
+    inside : ndarray
+        Held inside the range that is known; 0 where none is.
+    free : ndarray
+        As the columns are.
+    outside : list of list of str
+        Columns outside their range.
+    missing : list of list of str
+        Columns that the project does not tell.
+    """
+
+    inside: Floats
+    free: Floats
+    outside: list[list[str]]
+    missing: list[list[str]]
 
 
 def effect_shifts(
@@ -131,38 +177,75 @@ def effect_shifts(
 ) -> tuple[list[Uncertain], list[ResultWarning]]:
     """What one adopted effect adds to each gyro azimuth [rad], and warnings.
 
-    The constant is larger by the effect: true = gyro + constant + effect. A column that is missing
-    for a session counts as its mean, with the largest effect of the range as sigma.
+    The constant is larger by the effect: true = gyro + constant + effect. Where a column is
+    missing nothing is corrected (without a reference: as in the middle of the range), and the
+    largest effect inside the range is the sigma of that.
     """
-    effect = _known(instrument, adopted)
-    ranges = {name: (low, high) for name, low, high in adopted.valid}
+    if not facts:
+        return [], []
+    effect = known_effects()[adopted.id]
+    columns = _columns(effect, adopted, facts)
+    values, root = _coefficients(effect, adopted)
+    rows = _rows(effect, adopted, columns)
+    name = " ".join([adopted.id, *(str(value) for _, value in adopted.grid)])
+    shifts, warnings = [], []
+    for i, session in enumerate(sessions):
+        parts = {
+            Source(SOURCE, instrument.id, detail=f"{name} {k}"): float(part)
+            for k, part in enumerate(rows.inside[i] @ root)
+        }
+        shift = Uncertain(float(rows.inside[i] @ values), parts)
+        beyond = f"{SOURCE} outside its range"
+        if rows.missing[i]:
+            excess = _largest(effect, adopted, columns, (i, rows), values)
+            shift = shift.with_part(Source(beyond, session, detail=name), excess)
+        else:
+            # sessions on one side of the range err alike: it does not average out
+            excess = float((rows.free[i] - rows.inside[i]) @ values)
+            if excess != 0.0:
+                shift = shift.with_part(Source(beyond, instrument.id, detail=name), excess)
+        if rows.missing[i]:
+            warnings.append(_missing_warning(session, adopted, rows.missing[i], excess))
+        elif rows.outside[i] and not unknown_ranges(adopted):
+            warnings.append(_outside_warning(session, adopted, rows.outside[i], abs(excess)))
+        shifts.append(shift)
+    return shifts, warnings
+
+
+def unknown_ranges(adopted: AdoptedEffect) -> list[str]:
+    """Columns of an adopted effect that have no range."""
+    ranged = {name for name, _, _ in adopted.valid}
+    effect = known_effects()[adopted.id]
+    return [n.name for n in effect.needs if n.name not in LABELLED and n.name not in ranged]
+
+
+def without_reference(adopted: AdoptedEffect) -> bool:
+    """Whether an adopted effect lacks the reference that it needs to be the same everywhere."""
+    return known_effects()[adopted.id].reference is not None and not adopted.reference
+
+
+def _columns(
+    effect: Effect, adopted: AdoptedEffect, facts: Sequence[Circumstances]
+) -> dict[str, Floats]:
+    """The columns that an effect needs; a named line or block has the number 0."""
     named = dict(adopted.grid)
     columns = columns_of(
         facts,
         lines=[str(named["line"])] if "line" in named else [],
         blocks=[str(named["block"])] if "block" in named else [],
+        time=adopted.time,
     )
-    grid = {name: 0.0 if isinstance(value, str) else value for name, value in adopted.grid}
-    held, outside, missing = _held(effect, columns, ranges)
-    values, root = _coefficients(effect, adopted)
-    inside = effect.basis(held, **grid)
-    free = effect.basis(_filled(columns, held), **grid)
-    shifts, warnings = [], []
-    for i, session in enumerate(sessions):
-        parts = {
-            Source(SOURCE, instrument.id, detail=f"{adopted.id} {k}"): float(part)
-            for k, part in enumerate(inside[i] @ root)
-        }
-        shift = Uncertain(float(inside[i] @ values), parts)
-        if outside[i] or missing[i]:
-            excess = abs(float((free[i] - inside[i]) @ values))
-            if missing[i]:
-                excess = float(np.max(np.abs(inside @ values), initial=0.0))
-            source = Source(f"{SOURCE} outside its range", session, detail=adopted.id)
-            shift = shift.with_part(source, excess)
-            warnings.append(_outside_warning(session, adopted, missing[i]))
-        shifts.append(shift)
-    return shifts, warnings
+    days = {name: (low, high) for name, low, high in adopted.valid}.get("elapsed_days")
+    if "block" in named and days is not None:
+        # the name of a block depends on its first session, which may be in another project
+        start, end = days[0] - BLOCK_GAP_DAYS, days[1] + BLOCK_GAP_DAYS
+        within = (columns["elapsed_days"] >= start) & (columns["elapsed_days"] <= end)
+        columns["block"] = np.where(within, 0.0, 1.0)
+    return {need.name: columns[need.name] for need in effect.needs}
+
+
+def _grid(adopted: AdoptedEffect) -> dict[str, float]:
+    return {name: 0.0 if isinstance(value, str) else value for name, value in adopted.grid}
 
 
 def _coefficients(effect: Effect, adopted: AdoptedEffect) -> tuple[Floats, Floats]:
@@ -172,49 +255,113 @@ def _coefficients(effect: Effect, adopted: AdoptedEffect) -> tuple[Floats, Float
     return values, _root(adopted) * scale[:, None]
 
 
-def _outside_warning(session: str, adopted: AdoptedEffect, missing: Sequence[str]) -> ResultWarning:
-    why = f"{', '.join(missing)} missing" if missing else "outside its range"
+def _rows(effect: Effect, adopted: AdoptedEffect, columns: Mapping[str, Floats]) -> _Rows:
+    ranges = {name: (low, high) for name, low, high in adopted.valid}
+    count = len(next(iter(columns.values())))
+    held, free = dict(columns), dict(columns)
+    outside: list[list[str]] = [[] for _ in range(count)]
+    missing: list[list[str]] = [[] for _ in range(count)]
+    for name, values in columns.items():
+        gaps = np.isnan(values)
+        for i in np.flatnonzero(gaps).tolist():
+            missing[i].append(name)
+        filled = np.where(gaps, _filler(adopted, name, values), values)
+        held[name] = free[name] = filled
+        if name in ranges and name not in LABELLED:
+            low, high = ranges[name]
+            held[name] = np.clip(filled, low, high)
+            slack = 1e-9 * max(abs(low), abs(high), 1.0)
+            beyond = (np.abs(held[name] - filled) > slack) & ~gaps
+            for i in np.flatnonzero(beyond).tolist():
+                outside[i].append(name)
+            # a filler is no observation: it may lie outside the range of those
+            held[name] = np.where(gaps, filled, held[name])
+    inside = _basis(effect, adopted, held)
+    if unknown_ranges(adopted):
+        inside = np.zeros_like(inside)
+    return _Rows(inside, _basis(effect, adopted, free), outside, missing)
+
+
+def _filler(adopted: AdoptedEffect, name: str, values: Floats) -> float:
+    """What stands for a missing value: the reference, else the middle of the range."""
+    reference = dict(adopted.reference)
+    ranges = {column: 0.5 * (low + high) for column, low, high in adopted.valid}
+    if name in reference:
+        return reference[name]
+    if name in ranges and not without_reference(adopted):
+        return ranges[name]
+    present = values[~np.isnan(values)]
+    return float(present.mean()) if present.size else 0.0
+
+
+def _basis(effect: Effect, adopted: AdoptedEffect, columns: Mapping[str, Floats]) -> Floats:
+    """Rows of the basis relative to the reference.
+
+    A basis may refer to the mean of its columns, which in the difference of two rows drops out:
+    each row is computed with the reference alone, whatever other sessions there are.
+    """
+    grid, reference = _grid(adopted), dict(adopted.reference)
+    if effect.reference is None or not reference:
+        return effect.basis(columns, **grid)
+    count = len(next(iter(columns.values())))
+    rows = np.empty((count, len(effect.coefficients)))
+    for i in range(count):
+        pair = {name: np.array([columns[name][i], reference[name]]) for name in columns}
+        both = effect.basis(pair, **grid)
+        rows[i] = both[0] - both[1]
+    return rows
+
+
+def _largest(
+    effect: Effect,
+    adopted: AdoptedEffect,
+    columns: Mapping[str, Floats],
+    at: tuple[int, _Rows],
+    values: Floats,
+) -> float:
+    """Largest change of the correction of one row while its missing columns run over their range.
+
+    Without a range the other sessions tell how large the effect becomes.
+    """
+    place, rows = at
+    ranges = {name: (low, high) for name, low, high in adopted.valid}
+    gaps = rows.missing[place]
+    if any(name not in ranges for name in gaps) or without_reference(adopted):
+        return float(np.max(np.abs(rows.free @ values), initial=0.0))
+    steps = [np.linspace(*ranges[name], STEPS) for name in gaps]
+    tried = np.array(list(itertools.product(*steps)))
+    trial = {name: np.full(len(tried), columns[name][place]) for name in columns}
+    trial |= {name: tried[:, k] for k, name in enumerate(gaps)}
+    apart = _basis(effect, adopted, trial) - rows.inside[place]
+    return float(np.max(np.abs(apart @ values)))
+
+
+def _missing_warning(
+    session: str, adopted: AdoptedEffect, missing: Sequence[str], excess: float
+) -> ResultWarning:
+    known = {name for name, _ in adopted.reference}
+    where = "at its reference" if known.issuperset(missing) else "in the middle of its range"
     text = (
-        f"session {session}: the adopted effect {adopted.id} is used "
-        f"{why}: its correction is held at the edge and its sigma enlarged"
+        f"session {session}: {' and '.join(missing)} missing: the adopted effect {adopted.id} is "
+        f'taken as {where}, and the most that it may differ, {excess * RHO_ARCSEC:.1f}", enters '
+        "the sigma"
     )
     return ResultWarning("effect_outside_range", text)
 
 
-def _held(
-    effect: Effect, columns: Mapping[str, Floats], ranges: Mapping[str, tuple[float, float]]
-) -> tuple[dict[str, Floats], list[bool], list[list[str]]]:
-    """Columns held inside the valid ranges, which rows lay outside, and which lack a column."""
-    held = dict(columns)
-    count = len(next(iter(columns.values())))
-    outside = [False] * count
-    missing: list[list[str]] = [[] for _ in range(count)]
-    for need in effect.needs:
-        values = held.get(need.name, np.full(count, math.nan))
-        gaps = np.isnan(values)
-        for i in np.flatnonzero(gaps).tolist():
-            missing[i].append(need.name)
-        filler = float(values[~gaps].mean()) if np.any(~gaps) else 0.0
-        values = np.where(gaps, filler, values)
-        if need.name in ranges:
-            low, high = ranges[need.name]
-            clipped = np.clip(values, low, high)
-            slack = 1e-9 * max(abs(low), abs(high), 1.0)
-            for i in np.flatnonzero(np.abs(clipped - values) > slack).tolist():
-                outside[i] = True
-            values = clipped
-        held[need.name] = values
-    return held, outside, missing
-
-
-def _filled(columns: Mapping[str, Floats], held: Mapping[str, Floats]) -> dict[str, Floats]:
-    """The columns as they are, gaps filled as in the held ones."""
-    return {
-        name: np.where(np.isnan(columns[name]), values, columns[name])
-        if name in columns
-        else values
-        for name, values in held.items()
-    }
+def _outside_warning(
+    session: str, adopted: AdoptedEffect, outside: Sequence[str], excess: float
+) -> ResultWarning:
+    ranges = {name: f"{name} {low:.6g} to {high:.6g}" for name, low, high in adopted.valid}
+    text = (
+        f"session {session} lies outside the range of the adopted effect {adopted.id} "
+        f"({', '.join(ranges[name] for name in outside)}): the correction is that of the edge, and "
+    )
+    if excess > 0.0:
+        text += f'what lies beyond, {excess * RHO_ARCSEC:.1f}", enters the sigma'
+    else:
+        text += "beyond it the effect does not change: the sigma stays"
+    return ResultWarning("effect_outside_range", text)
 
 
 def _root(adopted: AdoptedEffect) -> Floats:

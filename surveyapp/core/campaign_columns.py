@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,8 @@ Floats = NDArray[np.float64]
 SECONDS_PER_DAY = 86400.0
 BLOCK_GAP_DAYS = 0.25
 """A pause of six hours ends a block: a shift is one block, also over midnight of any zone."""
+LABELLED = frozenset({"line", "block"})
+"""Columns that number names: between two numbers lies nothing."""
 NUMBERS = ("temperature_c", "latitude", "line_reading", "north_reading", "running_s")
 
 
@@ -133,7 +136,11 @@ def _running(session: OrientationSession) -> float | None:
 
 
 def columns_of(
-    items: Sequence[Circumstances], *, lines: Sequence[str] = (), blocks: Sequence[str] = ()
+    items: Sequence[Circumstances],
+    *,
+    lines: Sequence[str] = (),
+    blocks: Sequence[str] = (),
+    time: Literal["days", "order", ""] = "",
 ) -> dict[str, Floats]:
     """Columns of a basis, one row for each determination; a gap is NaN.
 
@@ -142,6 +149,9 @@ def columns_of(
     items : sequence of Circumstances
     lines, blocks : sequence of str
         Names in the order in which they are numbered; further ones follow as they come.
+    time : str
+        What ``elapsed_days`` counts: days, or the stated order; empty = days if every item has
+        them, else the order.
     """
     columns = {
         name: np.array(
@@ -151,7 +161,7 @@ def columns_of(
         for name in NUMBERS
     }
     days = [item.elapsed_days for item in items]
-    if any(day is None for day in days):
+    if time == "order" or (not time and any(day is None for day in days)):
         days = [item.order for item in items]
     columns["elapsed_days"] = np.array(
         [math.nan if day is None else day for day in days], dtype=np.float64

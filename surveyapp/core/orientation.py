@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from surveyapp.core.adopted import apply_adopted
+from surveyapp.core.adopted_checks import check_adopted
 from surveyapp.core.calibration_sessions import calibrations_of
 from surveyapp.core.geodesy import (
     MAX_LATITUDE_DEG,
@@ -107,7 +108,7 @@ def orient_project(
         station.name: _with_position(station, positions[station.name])
         for station in project.stations
     }
-    warnings = list(project.warnings)
+    warnings = [*project.warnings, *check_adopted(project)]
     tested = sum(session.method != "automatic" for session in project.sessions)
     judge = Judge(rng, tested)
     setting = _Setting(project, positions, stations, judge, estimator, run_model)

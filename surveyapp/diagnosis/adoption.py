@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 
+from surveyapp.core.adopted_checks import numbered
+from surveyapp.core.campaign_columns import LABELLED
 from surveyapp.diagnosis.compare import Level
 from surveyapp.diagnosis.fits import Member
 from surveyapp.diagnosis.loop import Search, margin_of
@@ -63,10 +66,12 @@ def adoptions(
         record = replace(
             shared,
             id=identity,
-            coefficients=tuple((c.name, c.value, c.sigma or 0.0, c.unit) for c in named),
-            grid=tuple((name, value) for name, value, _ in grid),
+            coefficients=_numbered(effect, named),
+            grid=_places(effect, members),
             covariance=covariance,
-            valid=_valid(problem, [need.name for need in effect.needs]),
+            valid=_valid(problem, effect, members[0].point),
+            reference=_reference(problem, effect, members[0].point),
+            time=_time(problem, effect),
         )
         p_family = p_values(found, identity)[1]
         margin = margin_of(named_level(found, identity), identity)
@@ -100,10 +105,57 @@ def _grid(effect: Effect, members: Sequence[Member]) -> tuple[tuple[str, float, 
     )
 
 
-def _valid(problem: Problem, names: Iterable[str]) -> tuple[tuple[str, float, float], ...]:
-    ranges = []
-    for name in names:
-        values = problem.columns.get(name)
-        if values is not None and np.isfinite(values).all():
-            ranges.append((name, float(values.min()), float(values.max())))
+def _places(effect: Effect, members: Sequence[Member]) -> tuple[tuple[str, float], ...]:
+    """Non-linear parameters of every occurrence, under names that differ like the coefficients."""
+    names = [g.name for g in effect.grid]
+    values = [
+        member.point[name if member.candidate.count == 1 else f"{name}_{k + 1}"]
+        for member in members
+        for k in range(member.candidate.count)
+        for name in names
+    ]
+    count = sum(member.candidate.count for member in members)
+    return tuple(zip(numbered(names, count), values, strict=True))
+
+
+def _numbered(
+    effect: Effect, named: Sequence[NamedCoefficient]
+) -> tuple[tuple[str, float, float, str], ...]:
+    """Coefficients under names that differ: two gross errors are ``error_1`` and ``error_2``."""
+    count = len(named) // len(effect.coefficients)
+    names = numbered([c.name for c in effect.coefficients], count)
+    return tuple(
+        (name, c.value, c.sigma or 0.0, c.unit) for name, c in zip(names, named, strict=True)
+    )
+
+
+def _valid(
+    problem: Problem, effect: Effect, point: Mapping[str, float]
+) -> tuple[tuple[str, float, float], ...]:
+    """Range of each column that is a quantity; of a block of days the days."""
+    chosen = {n.name: problem.columns[n.name] for n in effect.needs if n.name in problem.columns}
+    chosen = {name: values for name, values in chosen.items() if name not in LABELLED}
+    if "block" in point and problem.position_unit == "d":
+        inside = problem.columns["block"] == point["block"]
+        chosen["elapsed_days"] = problem.columns["elapsed_days"][inside]
+    ranges = [
+        (name, float(values.min()), float(values.max()))
+        for name, values in chosen.items()
+        if np.isfinite(values).all()
+    ]
     return tuple(ranges)
+
+
+def _reference(
+    problem: Problem, effect: Effect, point: Mapping[str, float]
+) -> tuple[tuple[str, float], ...]:
+    if effect.reference is None:
+        return ()
+    return tuple(effect.reference(problem.columns, problem.references, **point).items())
+
+
+def _time(problem: Problem, effect: Effect) -> Literal["days", "order", ""]:
+    """What its column of time counts, where it has one."""
+    if all(need.name != "elapsed_days" for need in effect.needs):
+        return ""
+    return "days" if problem.position_unit == "d" else "order"

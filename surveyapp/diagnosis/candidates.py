@@ -32,7 +32,7 @@ GROSS_WEIGHT = 3.0
 candidates share stay where they are (weighted p values: Genovese, Roeder & Wasserman 2006)."""
 SHAPE_WEIGHT = 0.5
 """A generic shape ends in no name."""
-SMOOTH_FROM = 12
+PULSES_FROM, SMOOTH_FROM = 12, 16
 """Observations from which pulses and bent decays are looked for."""
 SINGLE_SHARE = 0.75
 """Share of what the model leaves of a shift above which one reading alone shows it."""
@@ -216,7 +216,7 @@ def _shapes(problem: Problem, columns: Mapping[str, Array], root: Array) -> list
         _shape("smooth", [np.column_stack([x, x**2, x**3])], 3, root),
     ]
     taken = {effect.id for effect in problem.effects}
-    if problem.size >= SMOOTH_FROM:
+    if problem.size >= PULSES_FROM and not ("gyro_block" in taken and "block" in columns):
         shapes += _pulse_shape(problem, columns, root)
     if problem.has_swing:
         amplitude = columns["side"] * columns["relative_amplitude"]

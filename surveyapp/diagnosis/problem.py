@@ -24,6 +24,13 @@ FEW_OBSERVATIONS = 6
 """Below this number the stated sigmas serve instead of the residuals (diagnosis.md step 0)."""
 
 
+def _read_only(values: Array) -> Array:
+    """A view through which nobody can write; the array of the caller stays as it is."""
+    view = np.asarray(values).view()
+    view.flags.writeable = False
+    return view
+
+
 @dataclass(frozen=True, slots=True)
 class Problem:
     """Observations with their base model.
@@ -103,6 +110,15 @@ class Problem:
     grid_labels: Mapping[str, Mapping[float, str]] = field(default_factory=dict)
     warnings: tuple[ResultWarning, ...] = ()
     position_unit: str = ""
+
+    def __post_init__(self) -> None:
+        """Hand out what effects may read so that they cannot write into it."""
+        frozen = {name: _read_only(values) for name, values in self.columns.items()}
+        object.__setattr__(self, "columns", frozen)
+        for name in ("side", "half_swing"):
+            values = getattr(self, name)
+            if values is not None:
+                object.__setattr__(self, name, _read_only(values))
 
     @property
     def size(self) -> int:

@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from surveyapp.core.adopted import SOURCE
+from surveyapp.core.adopted_checks import occurrences
 from surveyapp.core.campaign_columns import Circumstances, circumstances, in_blocks
 from surveyapp.core.orientation import Orientation
 from surveyapp.core.scatter import SHARED
@@ -25,7 +26,7 @@ from surveyapp.core.tracking import (
 )
 from surveyapp.core.uncertain import Uncertain
 from surveyapp.diagnosis.campaign import Determination, campaign
-from surveyapp.diagnosis.candidates import all_candidates
+from surveyapp.diagnosis.candidates import Candidate, all_candidates
 from surveyapp.diagnosis.fits import Member, fit_members
 from surveyapp.diagnosis.problem import Problem
 from surveyapp.diagnosis.reversal_run import TurningPoints, reversal_run
@@ -131,14 +132,23 @@ def adopted_run(problem: Problem, effects: Sequence[AdoptedEffect]) -> Value:
                     hint=nearest_names(adopted.id, known),
                 )
             )
-        wanted = {name: value for name, value in adopted.grid if not isinstance(value, str)}
-        distances = [
-            sum(abs(point.get(name, value) - value) for name, value in wanted.items())
-            for point in candidate.points
-        ]
-        members.append(Member(candidate, int(np.argmin(distances))))
+        members += [Member(candidate, place) for place in _places(candidate, adopted)]
     value = value_of(problem, fit_members(problem, members, base.theta))
     return Value(value.value + problem.offset, value.sigma, value.dof)
+
+
+def _places(candidate: Candidate, adopted: AdoptedEffect) -> list[int]:
+    """Grid points of an adopted effect, one for each time that it occurs."""
+    grid = {name: value for name, value in adopted.grid if not isinstance(value, str)}
+    count = 1 if candidate.effect is None else occurrences(adopted, candidate.effect)
+    places = []
+    for k in range(1, count + 1):
+        distances = [
+            sum(abs(grid.get(n if count == 1 else f"{n}_{k}", v) - v) for n, v in point.items())
+            for point in candidate.points
+        ]
+        places.append(int(np.argmin(distances)))
+    return places
 
 
 def modelled_run(
@@ -150,7 +160,7 @@ def modelled_run(
 
 
 def determinations(orientation: Orientation, instrument: str) -> tuple[Determination, ...]:
-    """Every determination of the constant of one instrument, in the order of the project.
+    """Every determination of the constant of one instrument, in order of time where it is known.
 
     The sigma is that of what belongs to one determination alone: centring, deflection and the
     known azimuth are the line's own, and whether a line stands off is to be found, not assumed.
@@ -193,9 +203,14 @@ def _circumstances(
 
 
 def _in_time(items: Sequence[Determination]) -> tuple[Determination, ...]:
-    """Where every date is the same (or none is known) the sequence stands in for time."""
+    """In order of time, whatever the order of the project's tables.
+
+    Where every date is the same (or none is known) the sequence stands in for time.
+    """
     if len({item.elapsed_days for item in items}) > 1:
-        return tuple(items)
+        if any(item.elapsed_days is None for item in items):
+            return tuple(items)
+        return tuple(sorted(items, key=lambda item: (item.elapsed_days or 0.0, item.label)))
     stated = all(item.order is not None for item in items)
     return tuple(
         replace(item, elapsed_days=None, order=item.order if stated else float(place))
@@ -290,6 +305,7 @@ def campaign_problem(
                 )
             )
         cut = labels.index(confirm_from)
+        _check_parts(cut, len(items), confirm_from)
     first = campaign(
         items[:cut], instrument=instrument, reference_temperature_c=reference, extra=extra
     )
@@ -299,3 +315,17 @@ def campaign_problem(
         items[cut:], instrument=instrument, reference_temperature_c=reference, extra=extra
     )
     return first, second
+
+
+def _check_parts(cut: int, count: int, confirm_from: str) -> None:
+    """Both parts of a campaign must be campaigns, in order of time."""
+    if min(cut, count - cut) < 2:
+        raise SurveyError(
+            InputProblem(
+                "the confirming session leaves no two parts of the campaign",
+                "--confirm",
+                f"{confirm_from}: {cut} determinations before it, {count - cut} from it on",
+                "at least 2 in each part; from 8 before it on an effect can be named",
+                "Name the session from which on, in time, the determinations only confirm.",
+            )
+        )

@@ -149,7 +149,14 @@ class AdoptedEffect:
         Covariance of the coefficients, in their units, shape (p, p).
     valid : tuple of (column, low, high)
         Range of the data that chose it.
+    reference : tuple of (column, value)
+        State at which it corrects nothing and to which every azimuth is reduced.
+    time : str
+        What a column of time counts: days | order; empty where none is used, or nobody wrote it.
+    sessions : tuple of str
+        Those whose data chose it; empty where nobody wrote it.
     data_sha256 : str
+        Of the data of these sessions.
     before, after, confirm : float or None
         rms before and after on the data that chose it, and on the data that did not.
     adopted_at : str
@@ -164,6 +171,9 @@ class AdoptedEffect:
     grid: tuple[tuple[str, float | str], ...] = ()
     covariance: tuple[tuple[float, ...], ...] = ()
     valid: tuple[tuple[str, float, float], ...] = ()
+    reference: tuple[tuple[str, float], ...] = ()
+    time: Literal["days", "order", ""] = ""
+    sessions: tuple[str, ...] = ()
     data_sha256: str = ""
     before: float | None = None
     after: float | None = None

@@ -5,6 +5,8 @@ As in ``project_tables``: an effect is returned in any case, what is wrong is no
 
 from __future__ import annotations
 
+from typing import Literal, cast
+
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.io.cards import number_pair
 from surveyapp.io.files import shown
@@ -30,6 +32,9 @@ def read_effect(table: Table) -> AdoptedEffect:
         grid=_grid(table),
         covariance=_covariance(table, len(coefficients)),
         valid=_valid(table),
+        reference=_reference(table),
+        time=cast("Literal['days', 'order', '']", table.choice("time", ("days", "order")) or ""),
+        sessions=_sessions(table),
         data_sha256=table.text("sha256") or "",
         before=table.number("before", low=0.0),
         after=table.number("after", low=0.0),
@@ -52,6 +57,24 @@ def _grid(effect: Table) -> tuple[tuple[str, float | str], ...]:
         for name, value in table.data.items()
     ]
     return tuple((name, value) for name, value in pairs if value is not None)
+
+
+def _reference(effect: Table) -> tuple[tuple[str, float], ...]:
+    table = effect.table("reference")
+    if table is None:
+        return ()
+    pairs = [(name, table.number(name)) for name in table.data]
+    return tuple((name, value) for name, value in pairs if value is not None)
+
+
+def _sessions(effect: Table) -> tuple[str, ...]:
+    value = effect.get("sessions")
+    if value is None:
+        return ()
+    if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
+        effect.problem("sessions is no list of names", value, '["...", "..."]')
+        return ()
+    return tuple(value)
 
 
 def _covariance(effect: Table, size: int) -> tuple[tuple[float, ...], ...]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -167,23 +167,33 @@ def append_entry(
     SurveyError
         If the ledger cannot be written; it stands as before.
     """
+    return append_entries(folder, [(kind, data)], at=at, software=software)[0]
+
+
+def append_entries(
+    folder: Path, entries: Sequence[tuple[str, Mapping[str, Any]]], *, at: str, software: str
+) -> tuple[LedgerEntry, ...]:
+    """Append several entries (kind, data), all of them or none; as ``append_entry``."""
     path = folder / LEDGER_FILE
     ledger = read_ledger(folder)
-    if ledger.tail:
-        move_tail_aside(path, size=path.stat().st_size, tail=ledger.tail)
-    count = _lines(path)
-    body: dict[str, Any] = {
-        "at": at,
-        "data": json.loads(canonical(data)),
-        "kind": kind,
-        "previous": ledger.last_hash,
-        "seq": count + 1,
-        "software": software,
-    }
-    entry = LedgerEntry(sha256=digest_of(body), **body)
-    line = canonical({**body, "sha256": entry.sha256}) + "\n"
+    made: list[LedgerEntry] = []
+    lines = ""
     try:
-        _append(path, line.encode("utf-8"))
+        if ledger.tail:
+            move_tail_aside(path, size=path.stat().st_size, tail=ledger.tail)
+        count = _lines(path)
+        for number, (kind, data) in enumerate(entries, start=count + 1):
+            body: dict[str, Any] = {
+                "at": at,
+                "data": json.loads(canonical(data)),
+                "kind": kind,
+                "previous": made[-1].sha256 if made else ledger.last_hash,
+                "seq": number,
+                "software": software,
+            }
+            made.append(LedgerEntry(sha256=digest_of(body), **body))
+            lines += canonical({**body, "sha256": made[-1].sha256}) + "\n"
+        _append(path, lines.encode("utf-8"))
     except OSError as error:
         raise SurveyError(
             Problem(
@@ -194,7 +204,7 @@ def append_entry(
                 "the ledger stands as before",
             )
         ) from None
-    return entry
+    return tuple(made)
 
 
 def _lines(path: Path) -> int:

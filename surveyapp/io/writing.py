@@ -22,6 +22,7 @@ from surveyapp.io.tomltext import atomic_write, comments, plain, present, toml_k
 
 __all__ = [
     "append_subtable",
+    "append_subtables",
     "append_table",
     "append_tables",
     "atomic_write",
@@ -109,20 +110,31 @@ def append_subtable(
     SurveyError
         If there is no such table, or if the result would not parse to the intention.
     """
+    append_subtables(project_toml, parent, name, [mapping])
+
+
+def append_subtables(
+    project_toml: Path,
+    parent: tuple[str, str],
+    name: str,
+    mappings: Sequence[Mapping[str, object]],
+) -> None:
+    """Append several ``[[parent.name]]`` in one writing, all or none; as ``append_subtable``."""
     kind, identity = parent
     text, data = _read(project_toml)
     expected = copy.deepcopy(data)
     index, table = _element(project_toml, expected.get(kind), identity)
     if not isinstance(table, dict) or not isinstance(table.setdefault(name, []), list):
         raise _refused(project_toml, f"{name} of {identity} is no list of tables")
-    table[name].append(plain(mapping))
+    table[name] += [plain(mapping) for mapping in mappings]
     headers = list(
         re.finditer(rf"^[ \t]*\[\[[ \t]*{re.escape(kind)}[ \t]*\]\]", text, re.MULTILINE)
     )
     if index >= len(headers):
         raise _refused(project_toml, f"the header of {identity} was not found")
     place = _end_of_table(text, headers[index].end(), kind)
-    added = _table_text(f"[[{toml_key(kind)}.{toml_key(name)}]]", mapping)
+    header = f"[[{toml_key(kind)}.{toml_key(name)}]]"
+    added = "\n".join(_table_text(header, mapping) for mapping in mappings)
     before = text[:place].rstrip("\n")
     after = text[place:]
     new = f"{before}\n\n{added}" + (f"\n{after}" if after else "")

@@ -6,8 +6,8 @@ instrument (a campaign), with the digest of the data that chose it, and the next
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -18,17 +18,18 @@ from surveyapp.core.orientation import Orientation
 from surveyapp.diagnosis.battery import channels
 from surveyapp.diagnosis.engine import diagnose as run_engine
 from surveyapp.diagnosis.problem import Problem
-from surveyapp.diagnosis.result import Adoption, Diagnosis
+from surveyapp.diagnosis.result import Diagnosis
 from surveyapp.diagnosis.words import words_of
-from surveyapp.domain.project import Project
 from surveyapp.errors import Problem as InputProblem
 from surveyapp.errors import SurveyError
-from surveyapp.io.ledger import append_entry
-from surveyapp.io.lock import ProjectLock
-from surveyapp.io.writing import append_subtable
+from surveyapp.workflows.adopting import (
+    NotWritten,
+    adopted_before,
+    adopted_notes,
+    record,
+    tables_to_adopt,
+)
 from surveyapp.workflows.choosing import Networks, Request, Subject, choose
-
-RANGE_COLUMNS = ("temperature_c", "latitude", "elapsed_days", "running_s")
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +43,8 @@ class Diagnosed:
     subjects : tuple of Subject
     written : tuple of str
         Where adopted effects were written.
+    not_written : tuple of NotWritten
+        Named effects that should have been adopted and were not, and why.
     words : tuple of str
         The diagnosis in plain sentences.
     channels : tuple of (name, before, after)
@@ -52,6 +55,7 @@ class Diagnosed:
     diagnosis: Diagnosis | None
     subjects: tuple[Subject, ...] = ()
     written: tuple[str, ...] = ()
+    not_written: tuple[NotWritten, ...] = ()
     words: tuple[str, ...] = ()
     channels: tuple[tuple[str, tuple[float, ...], tuple[float, ...]], ...] = ()
 
@@ -59,10 +63,12 @@ class Diagnosed:
         """Keys of the JSON, schema ``surveyapp.diagnose/1``."""
         if self.diagnosis is None:
             subjects = [subject.to_dict() for subject in self.subjects]
-            return {"schema": "surveyapp.diagnose/1", "subjects": subjects}
+            schema = "surveyapp.diagnose/1"
+            return {"schema": schema, "subjects": subjects, "words": list(self.words)}
         return {
             **self.diagnosis.to_dict(),
             "written": list(self.written),
+            "not_written": [item.to_dict() for item in self.not_written],
             "words": list(self.words),
         }
 
@@ -103,36 +109,59 @@ def diagnose_project(
         For an unknown subject, too few observations, or a folder that cannot be written.
     """
     chosen = choose(orientation, request, networks)
-    if chosen.problem is None:
+    problem = chosen.problem
+    if problem is None:
         if adopt:
-            raise SurveyError(
-                InputProblem(
-                    "adopting needs one subject",
-                    "diagnose --adopt",
-                    "no --session or --campaign",
-                    "one subject",
-                    "Name it.",
-                )
-            )
-        return Diagnosed(None, chosen.subjects)
-    if adopt and chosen.problem.subject == "traverse":
-        _refuse_adoption(chosen.problem.identity)
-    diagnosis = run_engine(chosen.problem, confirm=chosen.confirm)
-    moment = (now or datetime.now(UTC)).isoformat(timespec="seconds")
+            raise SurveyError(_no_one_subject(chosen.subjects))
+        nothing = () if chosen.subjects else (NO_SUBJECTS,)
+        return Diagnosed(None, chosen.subjects, words=nothing)
+    if adopt and problem.subject == "traverse":
+        _refuse_adoption(problem.identity)
+    diagnosis = run_engine(problem, confirm=chosen.confirm)
+    already = adopted_before(orientation.project, diagnosis)
+    notes = adopted_notes(diagnosis, already)
+    tables: list[dict[str, object]] = []
+    refused: tuple[NotWritten, ...] = ()
+    if adopt:
+        tables, refused = tables_to_adopt(orientation.project, diagnosis, problem, already)
     written: tuple[str, ...] = ()
     if folder is not None and (adopt or log):
-        written = _record(
-            folder,
-            diagnosis,
-            effect_tables(diagnosis, chosen.problem, moment=moment, software=software)
-            if adopt
-            else (),
-            already=_already(orientation.project, diagnosis),
-            moment=moment,
-            software=software,
+        moment = (now or datetime.now(UTC)).isoformat(timespec="seconds")
+        stamped = [{**t, "adopted_at": moment, "software": software} for t in tables]
+        written, more = record(folder, diagnosis, stamped, moment=moment, software=software)
+        notes += more
+    told = [note.text for note in notes] + words_of(diagnosis, problem)
+    told += [f"Not written: {item}." for item in refused]
+    return Diagnosed(
+        replace(diagnosis, warnings=(*diagnosis.warnings, *notes)),
+        written=written,
+        not_written=refused,
+        words=tuple(told),
+        channels=_channels(diagnosis, problem),
+    )
+
+
+NO_SUBJECTS = (
+    "Nothing in this project can be diagnosed by itself: that needs a session with turning points "
+    "(reversal rows), an instrument with three sessions or more, or a traverse."
+)
+
+
+def _no_one_subject(subjects: Sequence[Subject]) -> InputProblem:
+    if not subjects:
+        return InputProblem(
+            "there is nothing to diagnose, and so nothing to adopt",
+            "diagnose --adopt",
+            "no subject",
+            "a session with turning points, an instrument with three sessions, or a traverse",
         )
-    words = tuple(words_of(diagnosis, chosen.problem))
-    return Diagnosed(diagnosis, (), written, words, _channels(diagnosis, chosen.problem))
+    return InputProblem(
+        "adopting needs one subject",
+        "diagnose --adopt",
+        "no --session or --campaign",
+        "one subject",
+        "Name it.",
+    )
 
 
 def _refuse_adoption(identity: str) -> None:
@@ -156,99 +185,3 @@ def _channels(
         (name, tuple(values[0].tolist()), tuple(after[name][0].tolist()))
         for name, values in before.items()
     )
-
-
-def _need_writable(lock: ProjectLock, folder: Path) -> None:
-    if not lock.writable:
-        raise SurveyError(
-            InputProblem(
-                "the project is open elsewhere or cannot be written",
-                str(folder),
-                "a locked or read-only folder",
-                "a folder that this program may write",
-                "Close the other window and adopt again.",
-            )
-        )
-
-
-def _already(project: Project, diagnosis: Diagnosis) -> frozenset[str]:
-    """Ids of the effects that the session (a run) or the instrument (a campaign) has already."""
-    if diagnosis.subject == "traverse":
-        return frozenset()
-    if diagnosis.subject == "reversal_run":
-        return frozenset(effect.id for effect in project.session(diagnosis.identity).effects)
-    return frozenset(effect.id for effect in project.instrument(diagnosis.instrument).effects)
-
-
-def _record(
-    folder: Path,
-    diagnosis: Diagnosis,
-    tables: Sequence[dict[str, object]],
-    *,
-    already: frozenset[str],
-    moment: str,
-    software: str,
-) -> tuple[str, ...]:
-    """Append to the ledger, and write every effect that is not adopted yet.
-
-    A folder that cannot be written keeps no ledger; adopting in it is an error.
-    """
-    written = []
-    wanted = [table for table in tables if table["id"] not in already]
-    with ProjectLock(folder) as lock:
-        if wanted:
-            _need_writable(lock, folder)
-        if not lock.writable:
-            return ()
-        append_entry(folder, "diagnosis", dict(diagnosis.ledger), at=moment, software=software)
-        if diagnosis.subject == "reversal_run":
-            parent = ("orientation", diagnosis.identity)
-        else:
-            parent = ("instrument", diagnosis.instrument)
-        for table in wanted:
-            append_subtable(folder / "project.toml", parent, "effect", table)
-            entry = {"parent": list(parent), "effect": table}
-            append_entry(folder, "adoption", entry, at=moment, software=software)
-            written.append(f"project.toml, {parent[0]} {parent[1]}, effect {table['id']}")
-    return tuple(written)
-
-
-def effect_tables(
-    diagnosis: Diagnosis, problem: Problem, *, moment: str, software: str
-) -> tuple[dict[str, object], ...]:
-    """The tables of every effect that the engine names, as they stand in project.toml."""
-    return tuple(
-        effect_table(item, problem, moment=moment, software=software) for item in diagnosis.adopted
-    )
-
-
-def effect_table(
-    item: Adoption, problem: Problem, *, moment: str, software: str
-) -> dict[str, object]:
-    """The table of an adopted effect as it stands in project.toml."""
-    record = item.record
-    labels: Mapping[str, Mapping[float, str]] = problem.grid_labels
-    grid: dict[str, object] = {
-        name: labels.get(name, {}).get(value, value) if isinstance(value, float) else value
-        for name, value in record.grid
-    }
-    table: dict[str, object] = {
-        "id": record.id,
-        "coefficients": {
-            name: {"value": value, "sigma": sigma, "unit": unit}
-            for name, value, sigma, unit in record.coefficients
-        },
-    }
-    if grid:
-        table["grid"] = grid
-    if record.covariance:
-        table["covariance"] = [list(row) for row in record.covariance]
-    if record.valid:
-        table["valid"] = {name: [low, high] for name, low, high in record.valid}
-    table["sha256"] = record.data_sha256
-    errors = {"before": record.before, "after": record.after, "confirm": record.confirm}
-    table.update({name: number for name, number in errors.items() if number is not None})
-    table["unit"] = record.unit
-    table["adopted_at"] = moment
-    table["software"] = software
-    return table

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 from collections import Counter
+from collections.abc import Mapping
 
 import numpy as np
 import pytest
@@ -102,6 +103,34 @@ def test_the_basis_is_pure_finite_and_needs_only_what_it_declares(effect: Effect
                 assert len(row) == len(effect.coefficients)
     for name, values in before.items():
         np.testing.assert_array_equal(values, only[name])
+
+
+def relative(
+    effect: Effect, columns: Columns, state: Mapping[str, float], point: Mapping[str, float]
+) -> np.ndarray:
+    """Rows of a basis relative to a state; no state = as they are."""
+    if not state:
+        return effect.basis(columns, **point)
+    basis = effect.basis({n: np.append(v, state[n]) for n, v in columns.items()}, **point)
+    return basis[:-1] - basis[-1]
+
+
+@pytest.mark.parametrize(
+    "effect", [e for e in CATALOGUE if e.subject == "campaign"], ids=lambda e: e.id
+)
+def test_an_adopted_effect_of_a_campaign_depends_on_one_session_alone(effect: Effect) -> None:
+    # relative to its reference a row of the basis is the same in any company
+    columns = {c.name: columns_of("campaign")[c.name] for c in effect.needs}
+    few = {name: values[3:9] for name, values in columns.items()}
+    for point in effect.grid_points(columns):
+        state = {} if effect.reference is None else effect.reference(columns, {}, **point)
+        assert set(state) <= set(columns)
+        whole = relative(effect, columns, state, point)
+        np.testing.assert_allclose(relative(effect, few, state, point), whole[3:9], atol=1e-9)
+        if effect.at_datum is not None:  # the reference is the state that the result is told at
+            _, row = effect.at_datum(columns, {}, **point)[-1]
+            told = effect.basis(columns, **point) - np.array(row)
+            np.testing.assert_allclose(whole, told, atol=1e-9)
 
 
 @pytest.mark.parametrize("effect", [e for e in CATALOGUE if e.law is not None], ids=lambda e: e.id)

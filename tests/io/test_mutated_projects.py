@@ -51,7 +51,7 @@ sigma = { reversal_arcsec = 5.0 }
 constant = { arcsec = -9.7, sigma_arcsec = 3.0 }
 [[instrument.effect]]
 id = "temperature"
-coefficients = { a = { value = 1.0, sigma = 0.1, unit = "arcsec" } }
+coefficients = { coefficient = { value = 1.0, sigma = 0.1, unit = "arcsec/K" } }
 covariance = [[0.01]]
 valid = { temperature_c = [1.0, 2.0] }
 [[station]]

@@ -64,9 +64,9 @@ def test_outside_its_range_an_adopted_effect_is_held_and_the_sigma_enlarged(tmp_
     assert any(warning.code == "effect_outside_range" for warning in result.warnings)
     high = next(e for e in api.open_project(folder).instruments[0].effects).valid[0][2]
     excess = 1.5 * (45.0 - high)
-    # four sessions share the line; each carries the whole excess as its own sigma
+    # four sessions share the line, and the excess: it does not average out
     assert outside["true_azimuth"]["sigma_arcsec"] > inside["true_azimuth"]["sigma_arcsec"]
-    assert outside["true_azimuth"]["sigma_arcsec"] > 0.4 * excess
+    assert outside["true_azimuth"]["sigma_arcsec"] > 0.9 * excess
 
 
 def test_quiet_campaign_adopts_nothing_and_writes_nothing(tmp_path: Path) -> None:

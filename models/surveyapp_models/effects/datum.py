@@ -1,11 +1,14 @@
-"""States at which a result is told when an effect moves it: what ``at_datum`` of an effect returns.
+"""States at which a result is told when an effect moves it, and at which an adopted one is nothing.
 
-Several effects settle, step or follow the temperature; each such state is written once, here.
+What ``at_datum`` and ``reference`` of an effect return. Several effects settle, step or follow the
+temperature; each such state is written once, here.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+
+import numpy as np
 
 from surveyapp_models.effects.effect import Columns
 
@@ -32,3 +35,37 @@ def reference_temperature(
     mean = float(columns["temperature_c"].mean())
     reference = references.get("temperature_c", mean)
     return ((f"{reference:g} degrees Celsius", (reference - mean,)),)
+
+
+def at_mean_temperature(
+    columns: Columns, references: Mapping[str, float], /, **grid: float
+) -> dict[str, float]:
+    """The reference temperature, else the mean: the datum of ``reference_temperature``."""
+    del grid
+    return {
+        "temperature_c": references.get("temperature_c", float(columns["temperature_c"].mean()))
+    }
+
+
+def at_mean_secant(
+    columns: Columns, references: Mapping[str, float], /, **grid: float
+) -> dict[str, float]:
+    """The latitude [rad] whose secant is the mean secant."""
+    del references, grid
+    return {"latitude": float(np.arccos(1.0 / (1.0 / np.cos(columns["latitude"])).mean()))}
+
+
+def at_mean_date(
+    columns: Columns, references: Mapping[str, float], /, **grid: float
+) -> dict[str, float]:
+    """The mean date [d]."""
+    del references, grid
+    return {"elapsed_days": float(columns["elapsed_days"].mean())}
+
+
+def at_last_date(
+    columns: Columns, references: Mapping[str, float], /, **grid: float
+) -> dict[str, float]:
+    """The last date [d]: after a step, where the later plateau counts."""
+    del references, grid
+    return {"elapsed_days": float(columns["elapsed_days"].max())}

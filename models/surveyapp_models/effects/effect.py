@@ -61,6 +61,16 @@ class DatumRows(Protocol):
         ...
 
 
+class ReferenceState(Protocol):
+    """Where an adopted effect counts as nothing."""
+
+    def __call__(
+        self, columns: Columns, references: Mapping[str, float], /, **grid: float
+    ) -> Mapping[str, float]:
+        """Return the value of every needed column there, from the data that chose the effect."""
+        ...
+
+
 @dataclass(frozen=True, slots=True)
 class Column:
     """A column that an effect reads.
@@ -173,6 +183,9 @@ class Effect:
     midpoint : callable or None
         The part of the basis that moves the result, where that is not all of it (a step inside a
         half swing changes the amplitude too); None = all of a midpoint effect.
+    reference : callable or None
+        State at which an adopted effect corrects nothing and to which it reduces everything else;
+        None = where the basis is zero, and then each row of the basis depends on itself alone.
     """
 
     id: str
@@ -194,6 +207,7 @@ class Effect:
     one_sided: bool = False
     at_datum: DatumRows | None = None
     midpoint: Basis | None = None
+    reference: ReferenceState | None = None
 
     def __post_init__(self) -> None:
         if self.law is not None and len(self.coefficients) != 1:

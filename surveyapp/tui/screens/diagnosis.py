@@ -122,6 +122,8 @@ class DiagnosisScreen(Screen[None]):
         self._list()
         for place in message.found.written:
             self.notify(texts.ADOPTED.format(place=place), markup=False)
+        for item in message.found.not_written:
+            self.notify(str(item), severity="warning", markup=False)
 
     def on_diagnosis_screen_failed(self, message: Failed) -> None:
         """Say in words why there is none."""

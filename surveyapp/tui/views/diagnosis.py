@@ -68,7 +68,11 @@ def diagnosis_view(found: Diagnosed) -> Text:
         )
         for item in diagnosis.candidates
     ]
-    return text.append_text(table_text([head, *rows]))
+    text.append_text(table_text([head, *rows]))
+    for item in diagnosis.candidates:
+        if item.reason:
+            text.append(f"{item.effect}: {item.verdict.replace('_', ' ')}: {item.reason}\n")
+    return text
 
 
 def _models(found: Diagnosed) -> Text:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
+from surveyapp_models.effects.datum import at_mean_secant
 from surveyapp_models.effects.effect import Array, Coefficient, Column, Columns, Effect
 
 
@@ -38,4 +39,5 @@ EFFECT = Effect(
     separate_by="two lines at one latitude, and one of them again at another season",
     per="instrument",
     confusable_with=("line_offset", "time_drift", "temperature"),
+    reference=at_mean_secant,
 )

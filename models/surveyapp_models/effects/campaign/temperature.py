@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
-from surveyapp_models.effects.datum import reference_temperature
+from surveyapp_models.effects.datum import at_mean_temperature, reference_temperature
 from surveyapp_models.effects.effect import Array, Coefficient, Column, Columns, Effect
 
 
@@ -38,4 +38,5 @@ EFFECT = Effect(
     per="instrument",
     confusable_with=("time_drift", "latitude", "warm_up"),
     at_datum=reference_temperature,
+    reference=at_mean_temperature,
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
+from surveyapp_models.effects.datum import at_mean_date
 from surveyapp_models.effects.effect import Array, Coefficient, Column, Columns, Effect
 
 
@@ -31,4 +32,5 @@ EFFECT = Effect(
     separate_by="one more determination on the first line",
     per="instrument",
     confusable_with=("transport_step", "temperature", "line_offset", "latitude"),
+    reference=at_mean_date,
 )

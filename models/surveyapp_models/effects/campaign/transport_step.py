@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
-from surveyapp_models.effects.datum import both_plateaus
+from surveyapp_models.effects.datum import at_last_date, both_plateaus
 from surveyapp_models.effects.effect import (
     Array,
     Coefficient,
@@ -50,4 +50,5 @@ EFFECT = Effect(
     per="instrument",
     confusable_with=("time_drift", "line_offset", "gyro_block"),
     at_datum=both_plateaus,
+    reference=at_last_date,
 )

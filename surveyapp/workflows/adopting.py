@@ -1,0 +1,212 @@
+"""Adopting what a diagnosis named: tables for project.toml, entries for the ledger.
+
+All of it is written or nothing; what is not written is told with its reason.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, cast
+
+from surveyapp.core.adopted_checks import identity_of
+from surveyapp.core.session_digest import sessions_digest
+from surveyapp.diagnosis.problem import Problem
+from surveyapp.diagnosis.result import Adoption, Diagnosis
+from surveyapp.domain.instrument import AdoptedEffect
+from surveyapp.domain.project import Project, ResultWarning
+from surveyapp.errors import Problem as InputProblem
+from surveyapp.errors import SurveyError
+from surveyapp.io.ledger import append_entries
+from surveyapp.io.lock import ProjectLock
+from surveyapp.io.writing import append_subtables, atomic_write
+from surveyapp_models.effects import of_subject
+from surveyapp_models.effects.effect import Effect
+
+
+@dataclass(frozen=True, slots=True)
+class NotWritten:
+    """An effect that was not adopted although it was asked for; empty = no effect was named."""
+
+    effect: str
+    reason: str
+
+    def to_dict(self) -> dict[str, str]:
+        """Keys of the JSON."""
+        return {"effect": self.effect, "reason": self.reason}
+
+    def __str__(self) -> str:
+        return f"{self.effect}: {self.reason}" if self.effect else self.reason
+
+
+def adopted_before(project: Project, diagnosis: Diagnosis) -> tuple[AdoptedEffect, ...]:
+    """Effects that the session (a run) or the instrument (a campaign) has already."""
+    if diagnosis.subject == "traverse":
+        return ()
+    if diagnosis.subject == "reversal_run":
+        return project.session(diagnosis.identity).effects
+    return project.instrument(diagnosis.instrument).effects
+
+
+def adopted_notes(diagnosis: Diagnosis, already: Sequence[AdoptedEffect]) -> list[ResultWarning]:
+    """That effects are adopted already, and what the verdict is about then."""
+    if not already:
+        return []
+    names = ", ".join(dict.fromkeys(effect.id for effect in already))
+    if diagnosis.subject == "reversal_run":
+        text = (
+            f"Session {diagnosis.identity} has adopted {names} already, and orient uses it; this "
+            "diagnosis is about the run without it, so that it is found again."
+        )
+    else:
+        text = (
+            f"Instrument {diagnosis.instrument} has adopted {names} already; the determinations "
+            "are reduced by it before they are diagnosed, and what is found here is what is left."
+        )
+    return [ResultWarning("already_adopted", text)]
+
+
+def tables_to_adopt(
+    project: Project,
+    diagnosis: Diagnosis,
+    problem: Problem,
+    already: Sequence[AdoptedEffect],
+) -> tuple[list[dict[str, object]], tuple[NotWritten, ...]]:
+    """Tables of the named effects that can be adopted, and why others cannot."""
+    catalogue = {effect.id: effect for effect in of_subject(problem.subject)}
+    owner = diagnosis.instrument if problem.subject == "campaign" else diagnosis.identity
+    tables: list[dict[str, object]] = []
+    refused = []
+    if not diagnosis.adopted and already:
+        reason = f"already adopted by {owner}, and no further effect is named: nothing was written"
+        refused += [NotWritten(name, reason) for name in dict.fromkeys(e.id for e in already)]
+    elif not diagnosis.adopted:
+        refused.append(NotWritten("", "no effect is named: nothing was written"))
+    for item in diagnosis.adopted:
+        effect = catalogue.get(item.effect)
+        if effect is None:
+            reason = "an effect of your own is in no catalogue, and orient could not use it"
+            refused.append(NotWritten(item.effect, reason))
+            continue
+        table = effect_table(item, problem, project)
+        place = tuple(dict(cast("Mapping[str, float | str]", table.get("grid", {}))).items())
+        wanted = identity_of(AdoptedEffect(item.effect, grid=place), effect)
+        if any(_same(wanted, other, effect, problem) for other in already):
+            reason = f"already adopted by {owner}: nothing was written"
+            refused.append(NotWritten(item.effect, reason))
+            continue
+        tables.append(table)
+    return tables, tuple(refused)
+
+
+def _same(
+    wanted: tuple[object, ...], other: AdoptedEffect, effect: Effect, problem: Problem
+) -> bool:
+    """Whether an effect has been adopted before; a bare run shows the same one again."""
+    if problem.subject == "reversal_run":
+        return other.id == effect.id
+    return other.id == effect.id and identity_of(other, effect) == wanted
+
+
+def record(
+    folder: Path,
+    diagnosis: Diagnosis,
+    tables: Sequence[Mapping[str, object]],
+    *,
+    moment: str,
+    software: str,
+) -> tuple[tuple[str, ...], list[ResultWarning]]:
+    """Write the adopted effects and append to the ledger: all of it, or nothing.
+
+    A folder that cannot be written keeps no ledger, and says so; adopting in it is an error.
+    """
+    parent = ("orientation", diagnosis.identity)
+    if diagnosis.subject != "reversal_run":
+        parent = ("instrument", diagnosis.instrument)
+    entries: list[tuple[str, Mapping[str, Any]]] = [("diagnosis", dict(diagnosis.ledger))]
+    entries += [("adoption", {"parent": list(parent), "effect": table}) for table in tables]
+    with ProjectLock(folder) as lock:
+        if tables:
+            _need_writable(lock, folder)
+        if not lock.writable:
+            return (), []
+        if not tables:
+            try:
+                append_entries(folder, entries, at=moment, software=software)
+            except SurveyError as error:
+                text = f"The diagnosis is in no ledger: {error.problems[0].what}."
+                return (), [ResultWarning("ledger_not_written", text)]
+            return (), []
+        path = folder / "project.toml"
+        before = path.read_bytes()
+        append_subtables(path, parent, "effect", tables)
+        try:
+            append_entries(folder, entries, at=moment, software=software)
+        except SurveyError:
+            atomic_write(path, before)
+            raise
+    place = f"project.toml, {parent[0]} {parent[1]}, effect"
+    return tuple(f"{place} {table['id']}" for table in tables), []
+
+
+def effect_table(item: Adoption, problem: Problem, project: Project) -> dict[str, object]:
+    """The table of an adopted effect as it stands in project.toml, without moment and software."""
+    record = item.record
+    labels: Mapping[str, Mapping[float, str]] = problem.grid_labels
+    grid: dict[str, object] = {
+        name: labels.get(name, {}).get(value, value) if isinstance(value, float) else value
+        for name, value in record.grid
+    }
+    table: dict[str, object] = {
+        "id": record.id,
+        "coefficients": {
+            name: {"value": value, "sigma": sigma, "unit": unit}
+            for name, value, sigma, unit in record.coefficients
+        },
+    }
+    if grid:
+        table["grid"] = grid
+    if record.covariance:
+        table["covariance"] = [list(row) for row in record.covariance]
+    if record.valid:
+        table["valid"] = {name: [low, high] for name, low, high in record.valid}
+    if record.reference:
+        table["reference"] = dict(record.reference)
+    if record.time:
+        table["time"] = record.time
+    sessions = _sessions_of(problem, project)
+    run = problem.subject == "reversal_run"
+    table["sessions"] = sessions
+    table["sha256"] = sessions_digest(project, sessions, run=run) or record.data_sha256
+    errors = {"before": record.before, "after": record.after, "confirm": record.confirm}
+    table.update({name: number for name, number in errors.items() if number is not None})
+    table["unit"] = record.unit
+    return table
+
+
+def _sessions_of(problem: Problem, project: Project) -> list[str]:
+    """Sessions whose data a problem is made of: a run itself, or those of a campaign by label."""
+    if problem.subject == "reversal_run":
+        return [problem.identity]
+    labels = set(problem.labels)
+    return [
+        session.id
+        for session in project.sessions
+        if session.id in labels or any(label.startswith(f"{session.id} (") for label in labels)
+    ]
+
+
+def _need_writable(lock: ProjectLock, folder: Path) -> None:
+    if not lock.writable:
+        raise SurveyError(
+            InputProblem(
+                "the project is open elsewhere or cannot be written",
+                str(folder),
+                "a locked or read-only folder",
+                "a folder that this program may write",
+                "Reopen the project first: it is closed."
+                if lock.closed
+                else "Close the other window and adopt again.",
+            )
+        )
