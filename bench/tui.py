@@ -63,7 +63,7 @@ def key_to_screen(place: Path) -> tuple[list[float], float]:
     folder = place / "p"
     write_points(folder, POINTS)
     child = start(folder, place / "keys.log")
-    child.expect(rb"ENOUGH|wanted")
+    child.expect(rb"ENOUGH|wanted|no target")
     delays = []
     for number in range(KEYS):
         if number % 12 == 0:
