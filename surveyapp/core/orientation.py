@@ -35,6 +35,7 @@ from surveyapp.core.lines import (
 )
 from surveyapp.core.plausibility import place_warnings, refuse_one_place
 from surveyapp.core.pooled_weights import with_pooled_weights
+from surveyapp.core.run_model import RunModel
 from surveyapp.core.scatter import RunScatter, run_scatter
 from surveyapp.core.sequence import session_moments, surveys_before
 from surveyapp.core.session import (
@@ -49,7 +50,6 @@ from surveyapp.core.session import (
 )
 from surveyapp.core.sights import SightSet, tripod_twist, zenith_angle
 from surveyapp.core.survey_lines import oriented_lines
-from surveyapp.core.tracking import RunModel
 from surveyapp.core.uncertain import Uncertain, aligned
 from surveyapp.domain.project import (
     OrientationSession,

@@ -12,13 +12,14 @@ from surveyapp.core.nontracking import reduce_nontracking
 from surveyapp.core.plausibility import refuse_wrong_faces
 from surveyapp.core.reduction import Reduction
 from surveyapp.core.resolution import reading_resolution, rounding_sigma
+from surveyapp.core.run_model import RunModel
 from surveyapp.core.sights import (
     SightSet,
     TripodTwist,
     eccentric_correction,
     reduce_sights,
 )
-from surveyapp.core.tracking import RunModel, reduce_tracking
+from surveyapp.core.tracking import reduce_tracking
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession, ResultWarning, Station, grid_distance_m

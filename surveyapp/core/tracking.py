@@ -6,7 +6,7 @@ Source: physics.md 1.4 (tracking: N = N_obs - lambda mu d) and 2.1.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -36,6 +36,7 @@ from surveyapp.core.reduction import (
     unit_scatter,
 )
 from surveyapp.core.resolution import reading_resolution
+from surveyapp.core.run_model import ModelledNorth, RunModel, ShownModel, shown_model
 from surveyapp.core.sights import TripodTwist, moments
 from surveyapp.core.tapezero import (
     TapeZero,
@@ -55,40 +56,6 @@ from surveyapp_models.angles import RHO_ARCSEC, wrap_pi, wrap_two_pi
 Floats = NDArray[np.float64]
 
 MIN_POINTS = 3
-
-
-@dataclass(frozen=True, slots=True)
-class ModelledNorth:
-    """A run estimated by a model with adopted effects.
-
-    Parameters
-    ----------
-    value, sigma : float
-        North averaged over the run [rad].
-    dof : float
-    residuals : ndarray, shape (n,)
-        Observed minus modelled [rad].
-    design : ndarray, shape (n, p)
-        Derivatives of the turning points by the parameters of the model.
-    amplitude : float
-        At the first turning point [rad].
-    damping_ratio : float
-        Amplitude ratio of one half swing.
-    """
-
-    value: float
-    sigma: float
-    dof: float
-    residuals: Floats
-    design: Floats
-    amplitude: float
-    damping_ratio: float
-
-
-RunModel = Callable[
-    [OrientationSession, InstrumentCard, float | None, TripodTwist | None], ModelledNorth
-]
-"""Estimates a run with its adopted effects; handed in from above, where the effects are known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,7 +189,7 @@ def reduce_tracking(
     modelled = None
     if session.effects and run_model is not None:
         modelled = run_model(session, card, latitude, twist)
-    shown = _shown(points, fit, modelled)
+    shown = shown_model(fit, points.index, points.sides, modelled)
     means, _ = schuler_means(points.values, points.index)
     chosen, middle = _middle(session, points, fit, estimator)
     sigma = reading_sigma(
@@ -370,42 +337,8 @@ def _correction_value(zero: TapeZero | None, correction: Uncertain | None) -> fl
     return 0.0 if zero is None else None
 
 
-@dataclass(frozen=True, slots=True)
-class _Shown:
-    """The model that the session shows and is judged by: the damped swing, or that with effects."""
-
-    residuals: Floats
-    design: Floats
-    dof: int
-    amplitude: float
-    damping_ratio: float
-
-    @property
-    def variance(self) -> float | None:
-        """Variance of one reading, None without redundancy."""
-        return float(self.residuals @ self.residuals) / self.dof if self.dof > 0 else None
-
-    @property
-    def residual_rms(self) -> float:
-        """sqrt(v'v / n)."""
-        return math.sqrt(float(self.residuals @ self.residuals) / self.residuals.size)
-
-
-def _shown(points: TurningPoints, fit: SwingFit, modelled: ModelledNorth | None) -> _Shown:
-    if modelled is None:
-        jacobian = fit.jacobian(points.index, points.sides)
-        return _Shown(fit.residuals, jacobian, fit.dof, fit.amplitude, fit.damping_ratio)
-    return _Shown(
-        modelled.residuals,
-        modelled.design,
-        math.floor(modelled.dof),
-        modelled.amplitude,
-        modelled.damping_ratio,
-    )
-
-
 def _tests(
-    points: TurningPoints, shown: _Shown, judge: Judge, card: InstrumentCard
+    points: TurningPoints, shown: ShownModel, judge: Judge, card: InstrumentCard
 ) -> tuple[FitTest, ...]:
     return goodness_of_fit(
         shown.residuals,

@@ -16,10 +16,10 @@ from surveyapp.core.adopted import SOURCE
 from surveyapp.core.adopted_checks import occurrences
 from surveyapp.core.campaign_columns import Circumstances, circumstances, in_blocks
 from surveyapp.core.orientation import Orientation
+from surveyapp.core.run_model import ModelledNorth
 from surveyapp.core.scatter import SHARED
 from surveyapp.core.sights import TripodTwist, moments
 from surveyapp.core.tracking import (
-    ModelledNorth,
     tape_zero_of,
     turning_points,
     without_tape_drift,
