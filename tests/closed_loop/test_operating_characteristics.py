@@ -35,7 +35,9 @@ def test_pure_noise_raises_an_alarm_as_often_as_stated(size: int, rounding: floa
 
 LINES = [
     (Truth("drift 4", 20, "midpoint_drift", drift=4.0), 1.0, 0.96),
+    (Truth("drift 1", 20, "midpoint_drift", drift=1.0), 1.0, 0.54),
     (Truth("step 25", 20, "midpoint_step", step=25.0), 1.0, 1.0),
+    (Truth("step 12", 20, "midpoint_step", step=12.0), 1.0, 0.62),
     (Truth("oscillation 35", 20, "secondary_oscillation", oscillation=35.0), 1.0, 0.96),
     (Truth("warm-up 70", 45, "warm_up", warm_up=70.0), 1.0, 1.0),
     (Truth("temperature 15/K", 20, "temperature", temperature=15.0), 1.0, 1.0),
