@@ -239,8 +239,10 @@ def _columns(
     if "block" in named and days is not None:
         # the name of a block depends on its first session, which may be in another project
         start, end = days[0] - BLOCK_GAP_DAYS, days[1] + BLOCK_GAP_DAYS
-        within = (columns["elapsed_days"] >= start) & (columns["elapsed_days"] <= end)
-        columns["block"] = np.where(within, 0.0, 1.0)
+        known = [np.nan if f.elapsed_days is None else f.elapsed_days for f in facts]
+        dates = np.array(known, dtype=np.float64)
+        within = (dates >= start) & (dates <= end)
+        columns["block"] = np.where(np.isnan(dates), np.nan, np.where(within, 0.0, 1.0))
     return {need.name: columns[need.name] for need in effect.needs}
 
 
@@ -283,7 +285,12 @@ def _rows(effect: Effect, adopted: AdoptedEffect, columns: Mapping[str, Floats])
 
 
 def _filler(adopted: AdoptedEffect, name: str, values: Floats) -> float:
-    """What stands for a missing value: the reference, else the middle of the range."""
+    """What stands for a missing value: the reference, else the middle of the range.
+
+    Where nobody knows whether a session belongs to the named line or block, it does not.
+    """
+    if name in LABELLED:
+        return 1.0
     reference = dict(adopted.reference)
     ranges = {column: 0.5 * (low + high) for column, low, high in adopted.valid}
     if name in reference:
@@ -326,6 +333,8 @@ def _largest(
     place, rows = at
     ranges = {name: (low, high) for name, low, high in adopted.valid}
     gaps = rows.missing[place]
+    if any(name in LABELLED for name in gaps):
+        return float(np.max(np.abs(values)))
     if any(name not in ranges for name in gaps) or without_reference(adopted):
         return float(np.max(np.abs(rows.free @ values), initial=0.0))
     steps = [np.linspace(*ranges[name], STEPS) for name in gaps]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -59,6 +59,8 @@ class Candidate:
     charge : ndarray, shape (g,)
         Parameters that are paid for: coefficients and searched positions.
     effect : Effect or None
+    midpoint : ndarray, shape (g, n, q), or None
+        What north itself does where the columns hold a kick of the amplitude too, unweighted.
     count : int
         Number of gross errors in one candidate, else 1.
     missing : str
@@ -71,6 +73,7 @@ class Candidate:
     columns: Array
     charge: Array
     effect: Effect | None = None
+    midpoint: Array | None = None
     count: int = 1
     missing: str = ""
 
@@ -246,6 +249,7 @@ def _pulse_shape(
 ) -> tuple[Candidate, ...]:
     """The pulses that show in more than one reading: in one alone it is a slip."""
     stacked = np.stack(_pulses(problem.position, problem.side))
+    pure = np.stack(_pulses(problem.position, problem.side, kicked=False))
     base = [problem.base]
     if problem.has_swing:
         amplitude = columns["side"] * columns["relative_amplitude"]
@@ -254,19 +258,25 @@ def _pulse_shape(
     left = (stacked - q @ (q.T @ stacked))[:, :, 0] ** 2
     spread = left.max(axis=1) < SINGLE_SHARE * left.sum(axis=1)
     charge = 3 if problem.side is None else 5
-    return (_shape("pulse", list(stacked[spread]), charge, root),) if spread.any() else ()
+    if not spread.any():
+        return ()
+    shape = _shape("pulse", list(stacked[spread]), charge, root)
+    return (replace(shape, midpoint=pure[spread]),)
 
 
-def _pulses(position: Array, side: Array | None) -> list[Array]:
+def _pulses(position: Array, side: Array | None, *, kicked: bool = True) -> list[Array]:
     """North, or the constant, off for two places or more and then back, shape (n, 1) each.
 
     At either end of the record only two places: what is off for longer there is a step. A shift
-    inside a half swing kicks the amplitude too, by its phase, when it comes and when it goes.
+    inside a half swing kicks the amplitude too, by its phase, when it comes and when it goes;
+    without ``kicked`` the shift alone, in the same order.
     """
     places = np.unique(position)
     count = places.size
     longest = max(SHORTEST_PULSE, min(LONGEST_PULSE, count // 4))
-    shifts = {i: _shifts(position, side, places[i]) for i in range(count - SHORTEST_PULSE)}
+    shifts = {
+        i: _shifts(position, side, places[i], kicked=kicked) for i in range(count - SHORTEST_PULSE)
+    }
     found = list(shifts[1]) + list(shifts[count - SHORTEST_PULSE - 1])
     for first in range(count - SHORTEST_PULSE - 1):
         for last in range(first + SHORTEST_PULSE, min(first + longest, count - 3) + 1):
@@ -274,12 +284,14 @@ def _pulses(position: Array, side: Array | None) -> list[Array]:
     return [column[:, None] for column in found]
 
 
-def _shifts(position: Array, side: Array | None, place: float) -> tuple[Array, ...]:
+def _shifts(
+    position: Array, side: Array | None, place: float, *, kicked: bool
+) -> tuple[Array, ...]:
     """A shift after a place, at each phase of the half swing that follows it, shape (n,) each."""
     after = (position > place).astype(np.float64)
     if side is None:
         return (after,)
-    kick = side * side[int(np.argmin(np.abs(position - place)))]
+    kick = float(kicked) * side * side[int(np.argmin(np.abs(position - place)))]
     return tuple(after * (1.0 - kick * np.cos(np.pi * phase)) for phase in PULSE_PHASES)
 
 

@@ -11,6 +11,7 @@ from surveyapp.diagnosis.battery import run_battery
 from surveyapp.diagnosis.checks import check_input
 from surveyapp.diagnosis.compare import Level
 from surveyapp.diagnosis.fits import Fit, unit_variance
+from surveyapp.diagnosis.gate import GATE
 from surveyapp.diagnosis.ledger import ledger_entry
 from surveyapp.diagnosis.long_record import LongRecord, is_long, reduce_record, unnamed, with_lines
 from surveyapp.diagnosis.loop import DEFAULT_DRAWS, Search, rivals_delta, search
@@ -88,7 +89,7 @@ def _diagnosed(
     battery = run_battery(problem, base, int(digest[:15], 16))
     adopted = adoptions(problem, found, digest, confirm)
     ambiguous = ambiguities(problem, found)
-    verdict = _verdict(found, ambiguous)
+    verdict = _verdict(problem, found, ambiguous)
     averaged = averaged_value(problem, found.levels[-1].every)
     averaged = _widened(problem, found, averaged, verdict)
     best = found.best if ambiguous else found.after
@@ -126,7 +127,12 @@ def _widened(problem: Problem, found: Search, averaged: Value, verdict: Verdict)
     known = unit_variance(problem)
     base = found.levels[0].fits[0]
     dof = problem.size - base.design.shape[1]
-    if known is not None and found.levels[-1].depth > 0 and not found.adopted and dof >= 1:
+    if (
+        known is not None
+        and dof >= 1
+        and not found.adopted
+        and (found.levels[-1].depth > 0 or denied(problem, base))
+    ):
         scatter = math.sqrt(max(1.0, base.sum_of_squares / dof / known))
         sigma = max(averaged.sigma, scatter * value_of(problem, base).sigma)
         averaged = Value(averaged.value, sigma, dof)
@@ -169,10 +175,20 @@ def _residuals(problem: Problem, fit: Fit) -> tuple[float, ...]:
     return tuple(float(v) for v in fit.residual / problem.root_weights)
 
 
-def _verdict(found: Search, ambiguous: tuple[Ambiguity, ...]) -> Verdict:
+def denied(problem: Problem, base: Fit) -> bool:
+    """Whether the scatter denies the stated sigmas, where these serve: chi-square at 5 %."""
+    from scipy.special import chdtrc
+
+    known = unit_variance(problem)
+    dof = problem.size - base.design.shape[1]
+    return known is not None and dof >= 1 and float(chdtrc(dof, base.sum_of_squares / known)) < GATE
+
+
+def _verdict(problem: Problem, found: Search, ambiguous: tuple[Ambiguity, ...]) -> Verdict:
     """The weakest that applies."""
     if found.levels[-1].depth == 0:
-        return "unattributed" if found.gates[-1].fired else "adequate"
+        fired = found.gates[-1].fired or denied(problem, found.levels[0].fits[0])
+        return "unattributed" if fired else "adequate"
     named = {m.candidate.id for f in found.near for m in f.members if m.candidate.kind == "named"}
     open_names = named - set(found.adopted)
     if found.unexplained or (ambiguous and not open_names) or (found.refused and not ambiguous):

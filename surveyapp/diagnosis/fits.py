@@ -15,8 +15,10 @@ import numpy as np
 from surveyapp.diagnosis.candidates import Candidate
 from surveyapp.diagnosis.problem import Array, Problem
 from surveyapp.diagnosis.stochastic import EXTRA_PARAMETERS, NoiseFit, best_noises
-from surveyapp.diagnosis.swing import fit_swing, starting_values, tangent
+from surveyapp.diagnosis.swing import fit_swing, starting_values, tangent, triangular
 
+DEPENDENT = 1e-6
+"""Relative singular value below which columns are one and the same."""
 SPOILT = 0.02
 """Share of the amplitude from which a residual may have bent the swing that was fitted."""
 
@@ -159,7 +161,7 @@ def fit_members(problem: Problem, members: Iterable[Member], start: Array | None
     parameters = problem.base_parameters + sum(m.charge for m in every)
     if problem.side is None or problem.half_swing is None:
         q, r = np.linalg.qr(X)
-        linear = np.linalg.solve(r, q.T @ y) if X.shape[0] >= X.shape[1] else np.zeros(X.shape[1])
+        linear = triangular(r, q.T @ y) if X.shape[0] >= X.shape[1] else np.zeros(X.shape[1])
         residual = y - X @ linear
         bic = information(problem, residual, parameters)
         return Fit(every, linear, None, X, residual, parameters, bic, bic)
@@ -176,6 +178,18 @@ def fit_members(problem: Problem, members: Iterable[Member], start: Array | None
     residual = y - X @ linear - problem.side * amplitude
     bic = information(problem, residual, parameters)
     return Fit(every, linear, theta, np.hstack([X, D]), residual, parameters, bic, bic)
+
+
+def independent(problem: Problem, members: Iterable[Member]) -> bool:
+    """Whether the columns of the base and of all members beside it can be told apart."""
+    root = problem.root_weights
+    additive = [m.columns for m in members if not m.candidate.is_law]
+    columns = np.hstack([problem.base * root[:, None], *additive])
+    norms = np.sqrt((columns**2).sum(axis=0))
+    if not (norms > 0.0).all() or columns.shape[0] < columns.shape[1]:
+        return False
+    s = np.linalg.svd(columns / norms, compute_uv=False)
+    return bool(s[-1] > DEPENDENT * s[0])
 
 
 def _amplitude(problem: Problem, theta: Array, law: Member | None) -> Array:

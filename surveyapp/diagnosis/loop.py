@@ -121,7 +121,7 @@ def search(problem: Problem, *, draws: int, confirm: Problem | None) -> Search:
             tuple(levels), tuple(gates), (), (), (), frozenset(implausible), base, base, pool
         )
     near = within_margin(last)
-    chosen = last.preferred or base
+    chosen = _chosen(last, near) or base
     names = _names(problem, levels, near, confirmed=confirm is not None)
     proofs = Proofs(current, draws, confirm)
     adopted, refused, after = _proved(problem, chosen, names, base, proofs)
@@ -133,9 +133,16 @@ def search(problem: Problem, *, draws: int, confirm: Problem | None) -> Search:
         refused,
         frozenset(implausible),
         after,
-        chosen if chosen.bic < near[0].bic + MARGIN else near[0],
+        chosen,
         pool,
     )
+
+
+def _chosen(level: Level, near: tuple[Fit, ...]) -> Fit | None:
+    """The set that stands for those that are told: the preferred one, if it is among them."""
+    if level.preferred is not None and any(fit is level.preferred for fit in near):
+        return level.preferred
+    return next((fit for fit in near if fit.noise is None), near[0] if near else None)
 
 
 def _possible(problem: Problem, level: Level) -> tuple[Level, set[str]]:

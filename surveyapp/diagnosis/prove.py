@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.diagnosis.candidates import Candidate, swing_columns
-from surveyapp.diagnosis.fits import Fit, Member, fit_members, unit_variance
+from surveyapp.diagnosis.fits import Fit, Member, fit_members, independent, unit_variance
 from surveyapp.diagnosis.problem import Array, Problem
 from surveyapp.diagnosis.swing import fit_swing, starting_values
 
 FOLD_POSITIONS = 8
-"""Grid points of each member, best first, among which a fold may choose."""
+"""Grid points of each member, next to its own on the grid, among which a fold may choose."""
 LEAST_CONTROL = 0.1
 """Redundancy below which an observation determines an effect by itself: the others foretell it to
 worse than three times their own scatter, which is no prediction."""
@@ -54,6 +54,8 @@ def _alternatives(problem: Problem, fit: Fit) -> list[Fit]:
         near = np.argsort(distance, kind="stable")[1 : FOLD_POSITIONS + 1]
         for g in near:
             swapped = [Member(m.candidate, int(g)) if m is member else m for m in fit.members]
+            if not independent(problem, swapped):
+                continue
             found.append(fit_members(problem, swapped, fit.theta))
     return found
 
@@ -166,6 +168,8 @@ def forecast(problem: Problem, fit: Fit) -> float | None:
         ):
             return None
         members.append(Member(_single(m, columns), 0))
+    if not independent(part, members):
+        return None
     trained = fit_members(part, members, fit.theta)
     predicted = _predict(problem, fit.members, trained)
     rest = np.setdiff1d(np.arange(n), rows)

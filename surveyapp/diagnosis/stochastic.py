@@ -79,6 +79,8 @@ def _build(problem: Problem) -> tuple[NoiseModel, ...]:
     lag = np.abs(np.subtract.outer(rank, rank))
     order = np.argsort(np.argsort(rank, kind="stable"), kind="stable").astype(np.float64)
     step = np.abs(np.subtract.outer(order, order))
+    if np.unique(rank).size < n:  # equal moments are no knowledge of equal noise
+        lag = step
     thin = slice(None, None, 2) if n >= LARGE else slice(None)
     models: list[tuple[NoiseKind, tuple[float, ...], Array]] = []
     for ratio in RATIOS[thin]:

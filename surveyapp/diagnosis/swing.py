@@ -19,6 +19,8 @@ Mask = NDArray[np.bool_]
 
 LARGEST_DECAY = 2.0
 """A swing that loses more than 86 % in a half swing is none."""
+SINGULAR = 1e-12
+"""Relative diagonal below which a triangle is singular."""
 ITERATIONS = 40
 CONVERGED = 1e-12
 """Relative change of the sum of squares at which the iteration ends."""
@@ -85,6 +87,14 @@ def _bounded(theta: Array, *, one_sided: bool, total: bool) -> Array:
     return theta
 
 
+def triangular(r: Array, b: Array) -> Array:
+    """Solve r x = b; where r is singular, the shortest solution."""
+    diagonal = np.abs(np.diag(r))
+    if diagonal.size and diagonal.min() <= SINGULAR * diagonal.max():
+        return np.asarray(np.linalg.lstsq(r, b, rcond=SINGULAR)[0])
+    return np.asarray(np.linalg.solve(r, b))
+
+
 def _linear_part(y: Array, X: Array, swing: Array) -> tuple[Array, Array]:
     """Best linear coefficients (g, p) and sums of squares (g,) beside a given swing."""
     rest = y - swing
@@ -93,7 +103,7 @@ def _linear_part(y: Array, X: Array, swing: Array) -> tuple[Array, Array]:
     q, r = np.linalg.qr(X)
     projected = rest @ q
     left = rest - projected @ q.T
-    return np.linalg.solve(r, projected.T).T, np.einsum("gn,gn->g", left, left)
+    return triangular(r, projected.T).T, np.einsum("gn,gn->g", left, left)
 
 
 def _steps(residual: Array, D: Array, frozen: Mask) -> Array:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from surveyapp.diagnosis.candidates import swing_columns
-from surveyapp.diagnosis.fits import Fit, Member, fit_members, unit_variance
+from surveyapp.diagnosis.fits import Fit, Member, fit_members, independent, unit_variance
 from surveyapp.diagnosis.problem import Array, Problem
 from surveyapp.diagnosis.stochastic import NoiseKind, NoisePoint
 
@@ -68,6 +68,8 @@ def _midpoint_columns(problem: Problem, fit: Fit, member: Member) -> Array:
     effect = member.candidate.effect
     if effect is not None and effect.midpoint is not None:
         return effect.midpoint(swing_columns(problem, fit.theta), **member.point)
+    if member.candidate.midpoint is not None:
+        return np.asarray(member.candidate.midpoint[member.g])
     return np.asarray(member.columns / problem.root_weights[:, None])
 
 
@@ -204,6 +206,8 @@ def neighbours(problem: Problem, fit: Fit, member: Member) -> tuple[Fit, ...]:
     found = []
     for g in near:
         swapped = [Member(candidate, g) if m is member else m for m in fit.members]
+        if not independent(problem, swapped):
+            continue
         trial = fit_members(problem, swapped, fit.theta)
         if trial.bic < fit.bic + NEAR_POSITIONS:
             found.append(trial)

@@ -16,6 +16,7 @@ from surveyapp.diagnosis.candidates import all_candidates
 from surveyapp.diagnosis.compare import base_level, next_level, settled_count
 from surveyapp.diagnosis.engine import diagnose
 from surveyapp.diagnosis.fits import Member, fit_members
+from surveyapp.diagnosis.value import plain_value
 from surveyapp_models.angles import ARCSEC
 
 DRAWS = 500
@@ -145,3 +146,70 @@ def test_what_has_no_name_stays_in_the_sigma() -> None:
         result = diagnose(problem, draws=DRAWS)
         if result.verdict == "unattributed":
             assert result.averaged.sigma >= result.after.value.sigma * (1.0 - 1e-9)
+
+
+def dated(values: list[float], days: list[float], sigma: float | None = None) -> Problem:
+    return campaign(
+        [
+            Determination(
+                v * ARCSEC, sigma=None if sigma is None else sigma * ARCSEC, elapsed_days=d
+            )
+            for v, d in zip(values, days, strict=True)
+        ]
+    )
+
+
+@pytest.mark.parametrize("seed", [5, 6, 8])
+def test_effects_that_coincide_in_the_first_part_have_no_forecast(seed: int) -> None:
+    # A block and a drift are one column in the first three quarters of three days.
+    days = np.repeat([0.0, 30.0, 60.0], [5, 6, 5])
+    values = 3.0 * np.random.default_rng(seed).standard_normal(16)
+    values += np.where(days == 30.0, 60.0, 0.0) + np.where(days == 60.0, 150.0, 0.0)
+    result = diagnose(dated(values.tolist(), days.tolist()), draws=DRAWS)
+    for model in (result.before, result.after, result.after_best):
+        assert model.forecast_rms is None or model.forecast_rms < 1000.0 * ARCSEC
+
+
+def test_scatter_that_denies_the_stated_sigmas_is_not_adequate() -> None:
+    result = diagnose(dated([0.0, 0.0, 3.0, 1000.0], [1.0] * 4, 10.0), draws=DRAWS)
+    assert result.verdict == "unattributed"
+    assert result.averaged.sigma > 200.0 * ARCSEC
+
+
+def test_equal_moments_do_not_widen_the_constant() -> None:
+    # Correlation by time would be exactly one within a day.
+    g = np.random.default_rng(2)
+    widths = []
+    for _ in range(10):
+        values = (10.0 * g.standard_normal(12)).tolist()
+        result = diagnose(dated(values, [0.0] * 6 + [5.0] * 6), draws=DRAWS)
+        widths.append(result.averaged.sigma / result.before.value.sigma)
+    assert max(widths) < 4.0
+
+
+def test_the_kick_of_a_pulse_is_no_part_of_north() -> None:
+    k = np.arange(13.0)
+    side = (-1.0) ** k
+    on = (k > 3.0) & (k <= 6.0)
+    # after a shift of d at a turning point the swing goes on about the new middle: A -> A - s d
+    amplitude = np.full(13, 3600.0)
+    amplitude[k > 3.0] -= side[3] * 60.0
+    amplitude[k > 6.0] += side[6] * 60.0
+    y = 3.0 + (amplitude * side + 60.0 * on) * ARCSEC
+    y += 0.5 * ARCSEC * np.random.default_rng(1).standard_normal(13)
+    problem = reversal_run(TurningPoints(list(y)))
+    base = fit_members(problem, ())
+    pulse = next(c for c in all_candidates(problem, base.theta) if c.id == "pulse")
+    fits = [fit_members(problem, [Member(pulse, g)], base.theta) for g in range(len(pulse.points))]
+    best = min(fits, key=lambda fit: fit.sum_of_squares)
+    value = plain_value(problem, best)
+    true = 3.0 + 60.0 * ARCSEC * on.mean()
+    assert abs(value.value + problem.offset - true) < 4.0 * value.sigma + 0.3 * ARCSEC
+
+
+def test_the_best_set_is_one_of_those_that_are_told() -> None:
+    for problem in problems(Truth("drift", 20, drift=1.0), 25, 260)[0]:
+        result = diagnose(problem, draws=DRAWS)
+        if result.ambiguous:
+            open_names = [n for n in result.after_best.effects if n not in result.after.effects]
+            assert " + ".join(open_names) in result.ambiguous[0].any_of
