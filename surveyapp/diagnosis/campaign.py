@@ -195,7 +195,7 @@ def _columns(
         warnings.append(
             ResultWarning(
                 "no_dates",
-                "dates are missing: the order of the determinations stands in for time"
+                "dates are missing or all the same: the order of the determinations stands for time"
                 if "elapsed_days" in columns
                 else "dates and order are missing: effects of time cannot be judged",
             )

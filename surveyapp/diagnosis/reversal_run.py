@@ -205,7 +205,7 @@ def _time_warnings(times: Array, count: Array) -> list[ResultWarning]:
             ResultWarning(
                 "times_disagree",
                 f"the time of turning point {int(count[k] - count[0]) + 1} does not agree with "
-                "the count of half swings: was one missed?",
+                "the count of half swings; perhaps one was missed",
             )
         ]
     return []

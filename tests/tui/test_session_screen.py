@@ -19,6 +19,7 @@ from surveyapp.domain.readings import ReadingKind
 from surveyapp.tui import texts
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.help import HelpScreen
+from surveyapp.tui.screens.project import ProjectScreen
 from surveyapp.tui.screens.result import ResultScreen
 from surveyapp.tui.screens.session import SessionScreen
 from surveyapp.tui.widgets.entry import EntryLine
@@ -313,3 +314,37 @@ async def test_a_second_target_joins_the_round_of_sights(tmp_path: Path) -> None
         ("3090", "R", "21-10-16"),
         ("", "R", "354-59-50"),
     ]
+
+
+async def test_what_is_typed_is_not_left_behind_by_the_next_step(tmp_path: Path) -> None:
+    app = SurveyApp(str(make_project(tmp_path / "ramp-3")))
+    async with app.run_test(size=SMALL) as pilot:
+        screen = await open_session(pilot)
+        step = screen.desk.step
+        screen.query_one(EntryLine).text = "1.5"
+        await pilot.pause()
+        await pilot.press("f8")
+        await settle(pilot)
+        assert screen.desk.step is step
+        assert told(screen) == texts.NOT_YET_WRITTEN
+        await pilot.press("f8")
+        await settle(pilot)
+        assert screen.desk.step is not step
+
+
+async def test_the_project_is_read_anew_after_the_result_of_a_session(tmp_path: Path) -> None:
+    app = SurveyApp(str(make_project(tmp_path / "ramp-3")))
+    async with app.run_test(size=SMALL) as pilot:
+        await settle(pilot)
+        project = app.screen
+        assert isinstance(project, ProjectScreen)
+        read: list[bool] = []
+        project.action_reload = lambda: read.append(True)  # type: ignore[method-assign]
+        await pilot.press("enter")
+        await settle(pilot)
+        await app.switch_screen(ResultScreen(app.folder or "", "r1", None))
+        await settle(pilot)
+        await pilot.press("escape")
+        await settle(pilot)
+        assert app.screen is project
+        assert read

@@ -82,6 +82,7 @@ class ProjectScreen(Screen[None]):
         self.folder = folder
         self.title_text = texts.PROJECT_TITLE.format(name=name)
         self.project: Project | None = None
+        self.left = False
         self.result: OrientationResult | None = None
         self.resumed = False
         self.draft: Draft = {}
@@ -103,6 +104,16 @@ class ProjectScreen(Screen[None]):
     def on_mount(self) -> None:
         """Begin to compute."""
         self.action_reload()
+
+    def on_screen_suspend(self) -> None:
+        """Another screen stands before this one: what it does may change the folder."""
+        self.left = True
+
+    def on_screen_resume(self) -> None:
+        """Back from another screen, whichever way it was left."""
+        if self.left:
+            self.left = False
+            self.action_reload()
 
     def action_reload(self) -> None:
         """Read the folder again."""

@@ -187,7 +187,11 @@ class SessionScreen(Screen[None]):
 
     def action_step(self, places: int) -> None:
         """Go on, or back, by one step."""
-        if places > 0 and self.desk.step is Step.RESULT:
+        entry = self.query_one(EntryLine)
+        if entry.text and not self.warned:
+            self.warned = True
+            entry.tell(texts.NOT_YET_WRITTEN, serious=True)
+        elif places > 0 and self.desk.step is Step.RESULT:
             self.post_message(ResultWanted(self.observation.session_id))
         else:
             self.attempt(lambda: self.desk.go(places))

@@ -75,6 +75,7 @@ ASK_AGAIN: Final = "{question} Enter keeps it, typing replaces it."
 BOOK_CHANGED: Final = "the book was changed by another hand: this is how it stands now"
 BOOK_BROKEN: Final = "the book was changed by another hand and cannot be read. {what}"
 DRAFT_KEPT: Final = "what you typed is kept; Escape again leaves, Enter writes it"
+NOT_YET_WRITTEN: Final = "not written yet: Enter writes it, the same key again goes without it"
 CLOSED_BEFORE: Final = "the swing has begun: what is read now counts as after it (F8 goes on)"
 CLOCK_SET: Final = (
     "; the computer's clock is off by {seconds:+.0f} s now, the session's time goes on unbroken"
