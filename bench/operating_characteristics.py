@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.stats import beta
 
 from bench._records import CampaignTruth, Truth, campaign_problem, problems
 from surveyapp.diagnosis import Diagnosis, Problem, diagnose
@@ -187,10 +188,11 @@ determinations a day of 4 to 7 arc-seconds on four lines over months. det: the v
 mean over the record by the averaged value's 95 % interval, and by the base model's own. Reference:
 the implementation of the specification, 24 runs a line.
 
-The reference ran 24 records a line: its 1.00 is any true share above 0.88, its 0.54 anything from
-0.33 to 0.74 (95 % of the binomial). The lines of smaller effects are of a leaner prototype with
-fewer rivals. A damping that changes by .002 can be seen in its 8 points only where the first
-amplitude is near 5 degrees, so it stands at that size; at 1 degree it is often dry friction too.
+The reference ran 24 records a line: its 1.00 is any true share above {certain}, its 0.54 anything
+from {low} to {high} (95 % of the binomial, Clopper and Pearson). The lines of smaller effects are
+of a leaner prototype with fewer rivals. A damping that changes by .002 can be seen in its 8 points
+only where the first amplitude is near 5 degrees, so it stands at that size; at 1 degree it is often
+dry friction too.
 
 How the reference is beaten: two and three gross errors are searched at once, so that they do not
 hide each other, and each must prove itself among all places where it could lie; rounding bounds
@@ -221,6 +223,12 @@ def best_possible(size: int, runs: int = 400) -> float:
         p = null.p_values(np.array([statistic(problem, fit, family[0], q)]))
         found += int(p[0] <= GATE)
     return found / runs
+
+
+def head() -> str:
+    """The text above the table, with what 24 records of the reference can tell."""
+    low, high = beta.ppf((0.025, 0.975), (13, 14), (12, 11))
+    return HEAD.format(certain=f"{0.025 ** (1 / 24):.2f}", low=f"{low:.2f}", high=f"{high:.2f}")
 
 
 def table(lines: Sequence[Line]) -> list[str]:
@@ -287,5 +295,5 @@ def run() -> list[str]:
     )
     text = [*table(lines), "", limit, "", "Campaigns:", "", *table(campaigns)]
     PAGE.parent.mkdir(parents=True, exist_ok=True)
-    PAGE.write_text(HEAD + "\n".join(text) + "\n", encoding="utf-8")
+    PAGE.write_text(head() + "\n".join(text) + "\n", encoding="utf-8")
     return [*text, *speed()]

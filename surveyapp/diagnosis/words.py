@@ -179,7 +179,7 @@ def _consequence(result: Diagnosis) -> list[str]:
             apart = (quantity.value - result.averaged.value) / result.scale
             said.append(
                 f"With {datum.effect.replace('_', ' ')} in the model: {text} "
-                f"{_figure(result, apart, '+')}{_unit(result)} from that."
+                f"{_figure(result, apart, '+')}{_unit(result)} from the average."
             )
     return said
 
