@@ -13,7 +13,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from surveyapp.diagnosis import Determination, Problem, TurningPoints, campaign, reversal_run
+from surveyapp.diagnosis import Determination, Problem, TurningPoints
+from surveyapp.diagnosis.subjects.choice import campaign, reversal_run
 from surveyapp_models.angles import ARCSEC
 
 Array = NDArray[np.float64]

@@ -35,7 +35,7 @@ WORKER = """
 import json, resource, sys, time
 from pathlib import Path
 from surveyapp import api
-from surveyapp.api_batch import batch_row
+from surveyapp.api.batch import batch_row
 folder, jobs, output = sys.argv[1], int(sys.argv[2]), sys.argv[3]
 first, last = int(sys.argv[4]), int(sys.argv[5])
 paths = sorted(str(path) for path in Path(folder).iterdir())[first:last]

@@ -12,7 +12,7 @@ from statistics import median
 import numpy as np
 
 from surveyapp import api
-from surveyapp.core.gyrofit import fit_swing
+from surveyapp.core.swing.gyrofit import fit_swing
 from surveyapp.io.locations import samples_folder
 
 

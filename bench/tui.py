@@ -16,9 +16,9 @@ import numpy as np
 import pexpect
 
 from bench.tui_kill import make_project, start, stop
-from surveyapp import api_session
-from surveyapp.core.steps import STEP_NOTE, Step
+from surveyapp.core.observing.steps import STEP_NOTE, Step
 from surveyapp.domain.readings import ReadingKind
+from surveyapp.observation import session as api_session
 from surveyapp_models.angles import ARCSEC, AngleUnit, format_angle
 
 POINTS = 45

@@ -18,10 +18,10 @@ from pathlib import Path
 import numpy as np
 import pexpect
 
-from surveyapp import api_session
-from surveyapp.core.steps import STEP_NOTE, Step
+from surveyapp.core.observing.steps import STEP_NOTE, Step
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.io.fieldbook import COLUMNS
+from surveyapp.observation import session as api_session
 from surveyapp_models.angles import ARCSEC, AngleUnit, format_angle
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from surveyapp.core.gyrofit import fit_swing
 from surveyapp.core.simulate.disturbing import damped_gyro
 from surveyapp.core.simulate.specification import SessionSpec
+from surveyapp.core.swing.gyrofit import fit_swing
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.gyro.integration import Disturbance, Start, TapeTop, integrate
 from surveyapp_models.gyro.moments import directive_moment

@@ -22,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Open the session screen on a simulated instrument; bad input is told before that."""
-    from surveyapp import api_practice
+    from surveyapp.observation import practice as api_practice
     from surveyapp.tui.app import run_practice
 
     practice = api_practice.begin(

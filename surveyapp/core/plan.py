@@ -14,11 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from surveyapp.core.cardphysics import CardAt, card_at
 from surveyapp.core.geodesy import open_grid, position_of
-from surveyapp.core.gyrofit import LEAST_SQUARES_FROM, fit_swing
 from surveyapp.core.statistics.distributions import student_quantile
-from surveyapp.core.swingfit import ClampedSwing, fit_clamped, passage_times
+from surveyapp.core.swing.card_physics import CardAt, card_at
+from surveyapp.core.swing.gyrofit import LEAST_SQUARES_FROM, fit_swing
+from surveyapp.core.swing.swingfit import ClampedSwing, fit_clamped, passage_times
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import Project
 from surveyapp_models.angles import RHO_ARCSEC

@@ -6,12 +6,12 @@
 
 from __future__ import annotations
 
-from surveyapp.diagnosis.campaign import Determination, campaign
 from surveyapp.diagnosis.engine import diagnose
+from surveyapp.diagnosis.plain_words import plain_words
 from surveyapp.diagnosis.problem import Problem
 from surveyapp.diagnosis.result import Diagnosis
-from surveyapp.diagnosis.reversal_run import TurningPoints, reversal_run
-from surveyapp.diagnosis.words import plain_words
+from surveyapp.diagnosis.subjects.campaign import Determination, campaign
+from surveyapp.diagnosis.subjects.reversal_run import TurningPoints, reversal_run
 
 __all__ = [
     "Determination",

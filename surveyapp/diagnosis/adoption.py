@@ -8,15 +8,15 @@ from typing import Literal
 
 import numpy as np
 
-from surveyapp.core.adopted_checks import numbered
-from surveyapp.core.campaign_columns import LABELLED
+from surveyapp.core.checks.adopted_checks import numbered
+from surveyapp.core.orientation.campaign_columns import LABELLED
 from surveyapp.diagnosis.compare import Level
 from surveyapp.diagnosis.fits import Member
+from surveyapp.diagnosis.held_out import confirm_rms
 from surveyapp.diagnosis.loop import Search, margin_of
 from surveyapp.diagnosis.problem import Array, Problem
-from surveyapp.diagnosis.prove import confirm_rms
 from surveyapp.diagnosis.result import Adoption, NamedCoefficient
-from surveyapp.diagnosis.value import coefficients, rms
+from surveyapp.diagnosis.run_value import coefficients, rms
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp_models.effects.effect import Effect
 

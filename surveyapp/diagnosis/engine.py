@@ -12,11 +12,17 @@ from surveyapp.diagnosis.checks import check_input
 from surveyapp.diagnosis.compare import Level
 from surveyapp.diagnosis.fits import Fit, unit_variance
 from surveyapp.diagnosis.gate import GATE
+from surveyapp.diagnosis.held_out import confirm_rms, forecast, leave_one_out
 from surveyapp.diagnosis.ledger import ledger_entry
-from surveyapp.diagnosis.long_record import LongRecord, is_long, reduce_record, unnamed, with_lines
+from surveyapp.diagnosis.long_records.record import (
+    LongRecord,
+    is_long,
+    reduce_record,
+    unnamed,
+    with_lines,
+)
 from surveyapp.diagnosis.loop import DEFAULT_DRAWS, Search, rivals_delta, search
 from surveyapp.diagnosis.problem import Problem
-from surveyapp.diagnosis.prove import confirm_rms, forecast, leave_one_out
 from surveyapp.diagnosis.result import (
     Ambiguity,
     CandidateResult,
@@ -27,7 +33,7 @@ from surveyapp.diagnosis.result import (
     Quantity,
     Verdict,
 )
-from surveyapp.diagnosis.value import (
+from surveyapp.diagnosis.run_value import (
     Value,
     averaged_value,
     datum_values,

@@ -26,9 +26,9 @@ from surveyapp.diagnosis.compare import (
 )
 from surveyapp.diagnosis.fits import Fit, fit_members, with_noise
 from surveyapp.diagnosis.gate import GATE, Gate, open_gate
+from surveyapp.diagnosis.held_out import confirm_rms, flagged, leave_one_out, unforetold
 from surveyapp.diagnosis.problem import Problem
-from surveyapp.diagnosis.prove import confirm_rms, flagged, leave_one_out, unforetold
-from surveyapp.diagnosis.value import plausible
+from surveyapp.diagnosis.run_value import plausible
 
 DEFAULT_DRAWS = 4000
 DEPTHS = ((45, 4), (20, 3), (12, 2), (8, 1))

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from surveyapp.diagnosis.battery import BatteryTest
-from surveyapp.diagnosis.lines import SpectralLine
+from surveyapp.diagnosis.long_records.lines import SpectralLine
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.domain.project import ResultWarning
 from surveyapp_models.angles import wrap_two_pi

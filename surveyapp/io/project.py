@@ -18,8 +18,8 @@ from typing import Final
 from surveyapp.domain.project import Centring, OrientationSession, Project, ResultWarning
 from surveyapp.domain.readings import FieldBook
 from surveyapp.errors import Problem, SurveyError, nearest_names
-from surveyapp.io.bookreading import interpret, move_tail_aside, split_tail
 from surveyapp.io.cards import is_path
+from surveyapp.io.fieldbook.reading import interpret, move_tail_aside, split_tail
 from surveyapp.io.files import decode, read_bytes, shown, shown_path
 from surveyapp.io.project_tables import (
     Names,
@@ -275,7 +275,7 @@ def _repair(folder: Path, name: str, torn: tuple[int, bytes], repair: bool | Non
     size, tail = torn
     if repair:
         return move_tail_aside(folder / name, size=size, tail=tail)
-    from surveyapp.io.lock import ProjectLock
+    from surveyapp.io.filing.lock import ProjectLock
 
     with ProjectLock(folder) as lock:
         return lock.writable and move_tail_aside(folder / name, size=size, tail=tail)

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from surveyapp.core.orientation import Orientation
+from surveyapp.core.checks.validity import validity_checks
+from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.core.tolerance import measure, rule_book_checks
-from surveyapp.core.validity import validity_checks
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import Check
 from surveyapp.domain.rulebook import RuleBook
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.filing.seals import seal_checks
 from surveyapp.io.rulebooks import read_rule_book
-from surveyapp.io.seals import seal_checks
 
 
 def project_rule_book(project: Project) -> RuleBook | None:

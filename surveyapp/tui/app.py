@@ -12,12 +12,13 @@ from textual.app import App, SystemCommand
 from textual.binding import Binding, BindingType
 from textual.screen import Screen
 
-from surveyapp import api_home, api_practice
-from surveyapp.api_practice import Practice
-from surveyapp.api_session import Observation
 from surveyapp.errors import SurveyError
-from surveyapp.io.clock import local_now, steady_seconds
+from surveyapp.io.fieldbook.clock import local_now, steady_seconds
 from surveyapp.io.settings import read_settings
+from surveyapp.observation import home as api_home
+from surveyapp.observation import practice as api_practice
+from surveyapp.observation.practice import Practice
+from surveyapp.observation.session import Observation
 from surveyapp.tui import texts
 from surveyapp.tui.messages import ResultWanted, SessionLeft
 from surveyapp.tui.screens.help import HelpScreen

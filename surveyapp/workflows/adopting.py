@@ -10,16 +10,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, cast
 
-from surveyapp.core.adopted_checks import identity_of
-from surveyapp.core.session_digest import sessions_digest
+from surveyapp.core.checks.adopted_checks import identity_of
+from surveyapp.core.orientation.session_digest import sessions_digest
 from surveyapp.diagnosis.problem import Problem
 from surveyapp.diagnosis.result import Adoption, Diagnosis
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.domain.project import Project, ResultWarning
 from surveyapp.errors import Problem as InputProblem
 from surveyapp.errors import SurveyError
-from surveyapp.io.ledger import append_entries
-from surveyapp.io.lock import ProjectLock
+from surveyapp.io.filing.ledger import append_entries
+from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.io.writing import append_subtables, atomic_write
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Effect

@@ -10,17 +10,22 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from surveyapp.core.orientation import Orientation
-from surveyapp.core.sights import tripod_twist
+from surveyapp.core.orientation.whole_project import Orientation
+from surveyapp.core.swing.sights import tripod_twist
 from surveyapp.diagnosis.problem import Problem
-from surveyapp.diagnosis.subjects import LEAST_CAMPAIGN, campaign_problem, is_run, run_problem
-from surveyapp.diagnosis.traverse import traverse as traverse_problem
+from surveyapp.diagnosis.subjects.choice import (
+    LEAST_CAMPAIGN,
+    campaign_problem,
+    is_run,
+    run_problem,
+)
+from surveyapp.diagnosis.subjects.traverse import traverse as traverse_problem
 from surveyapp.domain.project import Project
 from surveyapp.domain.traverse import Network
 from surveyapp.errors import Problem as InputProblem
 from surveyapp.errors import SurveyError, nearest_names
-from surveyapp.io.traversebook import traverse_rows
-from surveyapp.io.traverseheader import traverse_headers
+from surveyapp.io.traverse.book import traverse_rows
+from surveyapp.io.traverse.header import traverse_headers
 from surveyapp_models.effects.effect import Effect
 
 Networks = Callable[[str], Network]

@@ -14,12 +14,12 @@ from typing import Any
 
 import numpy as np
 
-from surveyapp.core.orientation import Orientation
+from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.diagnosis.battery import channels
 from surveyapp.diagnosis.engine import diagnose as run_engine
+from surveyapp.diagnosis.plain_words import words_of
 from surveyapp.diagnosis.problem import Problem
 from surveyapp.diagnosis.result import Diagnosis
-from surveyapp.diagnosis.words import words_of
 from surveyapp.errors import Problem as InputProblem
 from surveyapp.errors import SurveyError
 from surveyapp.workflows.adopting import (

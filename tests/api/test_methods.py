@@ -10,9 +10,9 @@ import pytest
 
 from surveyapp import api
 from surveyapp.core.plan import plan_methods
-from surveyapp.core.preorientation import quarter_period
 from surveyapp.core.simulate.project import project_files, project_truth, simulate_reversal_project
 from surveyapp.core.simulate.specification import SessionSpec
+from surveyapp.core.swing.preorientation import quarter_period
 from surveyapp.errors import SurveyError
 from surveyapp_models.angles import ARCSEC, RHO_ARCSEC
 from tests.api.projects import CARD, GYRO, rows, write

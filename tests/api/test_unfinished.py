@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from surveyapp import api
+from surveyapp.core.orientation.unfinished import lacking
 from surveyapp.core.simulate.session import book_text, simulate_session
 from surveyapp.core.simulate.specification import SessionSpec, SwingMethod
-from surveyapp.core.unfinished import lacking
 from surveyapp.errors import SurveyError
 from tests.cli.command import GOOD_BOOK, GOOD_TOML, run
 

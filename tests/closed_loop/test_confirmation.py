@@ -10,11 +10,12 @@ import dataclasses
 import numpy as np
 import pytest
 
-from surveyapp.diagnosis import Determination, Problem, TurningPoints, campaign, reversal_run
+from surveyapp.diagnosis import Determination, Problem, TurningPoints
 from surveyapp.diagnosis.candidates import all_candidates
 from surveyapp.diagnosis.engine import diagnose
 from surveyapp.diagnosis.fits import Member, fit_members, scan_law
-from surveyapp.diagnosis.prove import confirm_rms
+from surveyapp.diagnosis.held_out import confirm_rms
+from surveyapp.diagnosis.subjects.choice import campaign, reversal_run
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.effects import CATALOGUE
 

@@ -11,12 +11,13 @@ from scipy.stats import binom
 
 from bench._records import Truth, problems
 from bench.operating_characteristics import evaluate
-from surveyapp.diagnosis import Determination, Problem, TurningPoints, campaign, reversal_run
+from surveyapp.diagnosis import Determination, Problem, TurningPoints
 from surveyapp.diagnosis.candidates import all_candidates
 from surveyapp.diagnosis.compare import base_level, next_level, settled_count
 from surveyapp.diagnosis.engine import diagnose
 from surveyapp.diagnosis.fits import Member, fit_members
-from surveyapp.diagnosis.value import plain_value
+from surveyapp.diagnosis.run_value import plain_value
+from surveyapp.diagnosis.subjects.choice import campaign, reversal_run
 from surveyapp_models.angles import ARCSEC
 
 DRAWS = 500

@@ -16,13 +16,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from surveyapp import api
-from surveyapp.api_session import Observation
 from surveyapp.cli.main import main
 from surveyapp.errors import SurveyError
-from surveyapp.io.ledger import LEDGER_FILE, append_entry, parse_ledger, read_ledger
-from surveyapp.io.seals import is_closed, project_file_names, seal_checks
+from surveyapp.io.filing.ledger import LEDGER_FILE, append_entry, parse_ledger, read_ledger
+from surveyapp.io.filing.seals import is_closed, project_file_names, seal_checks
 from surveyapp.io.template import create_project
 from surveyapp.io.tomltext import atomic_write
+from surveyapp.observation.session import Observation
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -266,7 +266,7 @@ def test_a_full_disk_takes_the_entry_back(folder: Path, monkeypatch: pytest.Monk
     def full(_: int) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("surveyapp.io.ledger.os.fsync", full)
+    monkeypatch.setattr("surveyapp.io.filing.ledger.os.fsync", full)
     with pytest.raises(SurveyError) as caught:
         append_entry(folder, "closing", {}, at="2026-01-02", software="s")
     assert "No space" in caught.value.problems[0].what

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from surveyapp import api
-from surveyapp.api_batch import CHUNK
+from surveyapp.api.batch import CHUNK
 from surveyapp.cli.main import main
 from surveyapp.domain.results import to_arcsec
 from surveyapp.io.exporters.archive import stored_name

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from scripts import compare_estimators as compare
-from surveyapp.core.gyrofit import fit_swing
 from surveyapp.core.simulate.specification import Noise, SessionSpec
 from surveyapp.core.simulate.turning_points import simulate_turning_points
+from surveyapp.core.swing.gyrofit import fit_swing
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.gyro.integration import Start, TapeTop, integrate
 from surveyapp_models.gyro.motion import DampedSwing, swing_position

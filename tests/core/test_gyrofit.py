@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from surveyapp.core.gyrofit import (
+from surveyapp.core.swing.gyrofit import (
     design,
     fit_swing,
     schuler_means,

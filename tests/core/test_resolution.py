@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from surveyapp.core.resolution import infer_resolution
+from surveyapp.core.book.resolution import infer_resolution
 from surveyapp_models.angles import ARCSEC, AngleUnit, parse_angle
 
 STEPS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 6.0, 10.0, 20.0, 30.0, 60.0)

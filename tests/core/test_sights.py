@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from surveyapp.core.sights import (
+from surveyapp.core.swing.sights import (
     drift_probability,
     eccentric_correction,
     reduce_sights,

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from surveyapp.core.campaign_columns import block_names
+from surveyapp.core.orientation.campaign_columns import block_names
 from surveyapp.core.simulate.campaign import (
     CAMPAIGN_EFFECTS,
     CampaignSpec,

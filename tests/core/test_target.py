@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from surveyapp.core.target import target_of
+from surveyapp.core.observing.target import target_of
 from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import FieldBook
 from surveyapp.domain.rulebook import Limit, RuleBook

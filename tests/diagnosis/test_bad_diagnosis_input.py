@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from measured_runs import gi_b1, johannesburg
 
-from surveyapp.diagnosis import Determination, TurningPoints, campaign, diagnose, reversal_run
+from surveyapp.diagnosis import Determination, TurningPoints, diagnose
+from surveyapp.diagnosis.subjects.choice import campaign, reversal_run
 from surveyapp.errors import SurveyError
 from surveyapp_models.angles import ARCSEC
 

@@ -9,14 +9,15 @@ import pytest
 from measured_runs import johannesburg
 from scipy import optimize, stats
 
-from surveyapp.diagnosis import Determination, Problem, TurningPoints, campaign, reversal_run
+from surveyapp.diagnosis import Determination, Problem, TurningPoints
 from surveyapp.diagnosis.candidates import Candidate, all_candidates, project
 from surveyapp.diagnosis.compare import orthonormal_design, spans
 from surveyapp.diagnosis.fits import Fit, Member, fit_members, with_noise
+from surveyapp.diagnosis.held_out import leave_one_out
 from surveyapp.diagnosis.nulls import Noise, null_of, reductions
-from surveyapp.diagnosis.prove import leave_one_out
+from surveyapp.diagnosis.run_value import plain_value, value_of
 from surveyapp.diagnosis.stochastic import noise_models
-from surveyapp.diagnosis.value import plain_value, value_of
+from surveyapp.diagnosis.subjects.choice import campaign, reversal_run
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.effects import of_subject
 

@@ -12,11 +12,12 @@ import numpy as np
 import pytest
 from measured_runs import johannesburg
 
-from surveyapp.diagnosis import Diagnosis, Problem, diagnose, reversal_run
+from surveyapp.diagnosis import Diagnosis, Problem, diagnose
 from surveyapp.diagnosis.candidates import all_candidates
 from surveyapp.diagnosis.fits import Fit, Member, fit_members
-from surveyapp.diagnosis.prove import forecast
-from surveyapp.diagnosis.value import datum_values, rms, value_of
+from surveyapp.diagnosis.held_out import forecast
+from surveyapp.diagnosis.run_value import datum_values, rms, value_of
+from surveyapp.diagnosis.subjects.choice import reversal_run
 from surveyapp_models.angles import ARCSEC
 
 NORTH = math.radians(180.0 + 10.0 / 60.0)

@@ -28,13 +28,14 @@ from bench._long_records import (
     walk,
     white,
 )
-from surveyapp.diagnosis import Determination, TurningPoints, campaign, diagnose, reversal_run
-from surveyapp.diagnosis.blocks import block_means, runs_of, split
-from surveyapp.diagnosis.lines import find_lines
-from surveyapp.diagnosis.long_record import LONG, reduce_record
-from surveyapp.diagnosis.spectrum import exceedance, median_bias, spectrum
-from surveyapp.diagnosis.whiteness import whiteness
-from surveyapp.diagnosis.words import plain_words
+from surveyapp.diagnosis import Determination, TurningPoints, diagnose
+from surveyapp.diagnosis.long_records.blocks import block_means, runs_of, split
+from surveyapp.diagnosis.long_records.lines import find_lines
+from surveyapp.diagnosis.long_records.record import LONG, reduce_record
+from surveyapp.diagnosis.long_records.spectrum import exceedance, median_bias, spectrum
+from surveyapp.diagnosis.long_records.whiteness import whiteness
+from surveyapp.diagnosis.plain_words import plain_words
+from surveyapp.diagnosis.subjects.choice import campaign, reversal_run
 from surveyapp.errors import SurveyError
 from surveyapp.report.sections.diagnosis import blocks as report_blocks
 from surveyapp_models.angles import ARCSEC, AngleUnit

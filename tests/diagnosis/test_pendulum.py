@@ -12,7 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from surveyapp.diagnosis import TurningPoints, diagnose, reversal_run
+from surveyapp.diagnosis import TurningPoints, diagnose
+from surveyapp.diagnosis.subjects.choice import reversal_run
 
 SHARED = Path(os.environ.get("SURVEYAPP_DATA", Path(__file__).parents[2] / "../shared/data"))
 RECORD = SHARED / "pendulum_free_swing" / "pendulum_free_swing_data_01.txt"

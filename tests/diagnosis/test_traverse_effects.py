@@ -16,9 +16,14 @@ from surveyapp.cli.main import main
 from surveyapp.core.network import adjust
 from surveyapp.diagnosis.engine import diagnose
 from surveyapp.diagnosis.loop import search
+from surveyapp.diagnosis.plain_words import words_of
 from surveyapp.diagnosis.result import Diagnosis
-from surveyapp.diagnosis.traverse import TRANSFORM, chi_square_ratio, condition_count, traverse
-from surveyapp.diagnosis.words import words_of
+from surveyapp.diagnosis.subjects.traverse import (
+    TRANSFORM,
+    chi_square_ratio,
+    condition_count,
+    traverse,
+)
 from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.traverse import Network, Status
 from surveyapp.errors import SurveyError

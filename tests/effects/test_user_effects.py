@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 from surveyapp import api
-from surveyapp.diagnosis import TurningPoints, diagnose, reversal_run
+from surveyapp.diagnosis import TurningPoints, diagnose
 from surveyapp.diagnosis.candidates import all_candidates
+from surveyapp.diagnosis.subjects.choice import reversal_run
 from surveyapp.errors import SurveyError
-from surveyapp.io.effect_form import form_problems
-from surveyapp.io.effect_probe import probe_problems
-from surveyapp.io.effects import load_effects
+from surveyapp.io.user_effects.form import form_problems
+from surveyapp.io.user_effects.loading import load_effects
+from surveyapp.io.user_effects.probe import probe_problems
 from surveyapp_models.effects import CATALOGUE
 
 OWN = """

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from surveyapp.errors import SurveyError
-from surveyapp.io.bookreading import move_tail_aside
 from surveyapp.io.fieldbook import append_row, read_field_book
-from surveyapp.io.lock import ProjectLock
+from surveyapp.io.fieldbook.reading import move_tail_aside
+from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.io.project import read_project
 from surveyapp.io.writing import atomic_write
 from surveyapp_models.angles import AngleUnit

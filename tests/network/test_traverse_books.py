@@ -14,7 +14,7 @@ from surveyapp.core.network.centring import angle_centring, direction_centring
 from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.traverse import GyroConstant, OrientedLine, Status
 from surveyapp.errors import SurveyError
-from surveyapp.io.traversebook import network_of
+from surveyapp.io.traverse.book import network_of
 
 K = ObservationKind
 ARC = math.pi / 648000.0

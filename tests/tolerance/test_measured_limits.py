@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from surveyapp import api
-from surveyapp.core.orientation import orient_project
+from surveyapp.core.orientation.whole_project import orient_project
 from surveyapp.core.tolerance import measure, rule_book_checks
 from surveyapp.domain.results import Check
 from surveyapp.io.rulebooks import read_rule_book

@@ -11,18 +11,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from surveyapp.core.clamped_progress import standing_of, time_differences
-from surveyapp.core.observing import progress_of
-from surveyapp.core.passages import fit_passages, forecast_passage
-from surveyapp.core.progress import Progress
-from surveyapp.core.run_alert import Trouble
+from surveyapp.core.observing.by_method import progress_of
+from surveyapp.core.observing.clamped_progress import standing_of, time_differences
+from surveyapp.core.observing.passage_forecast import fit_passages, forecast_passage
+from surveyapp.core.observing.progress import Progress
+from surveyapp.core.observing.run_alert import Trouble
 from surveyapp.core.simulate.session import SimulatedSession, book_text, simulate_sessions
 from surveyapp.core.simulate.specification import Effect, SessionSpec, SwingMethod
-from surveyapp.core.swingfit import ClampedSwing
+from surveyapp.core.swing.swingfit import ClampedSwing
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import Method, OrientationSession
-from surveyapp.io.bookreading import interpret
 from surveyapp.io.cards import read_card
+from surveyapp.io.fieldbook.reading import interpret
 from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, AngleUnit
 
 LATITUDE = math.radians(60.0)

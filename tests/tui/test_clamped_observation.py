@@ -12,15 +12,16 @@ from helpers_tui import SMALL, Clock, make_project, rows_on_disk
 from textual.pilot import Pilot
 from textual.widgets import Static
 
-from surveyapp import api, api_session
-from surveyapp.api_entry import expected, understand
-from surveyapp.api_session import NewRow, Observation
-from surveyapp.core.plausible import Doubt
+from surveyapp import api
+from surveyapp.core.observing.doubts import Doubt
+from surveyapp.core.observing.steps import Step
 from surveyapp.core.simulate.session import Row, book_text, simulate_session
 from surveyapp.core.simulate.specification import SessionSpec, SwingMethod
-from surveyapp.core.steps import Step
 from surveyapp.domain.readings import ReadingKind, Side
 from surveyapp.errors import SurveyError
+from surveyapp.observation import session as api_session
+from surveyapp.observation.entry import expected, understand
+from surveyapp.observation.session import NewRow, Observation
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.views.progress import countdown_text, forecast_text, is_near
 from surveyapp_models.angles import AngleUnit

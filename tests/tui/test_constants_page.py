@@ -12,10 +12,10 @@ from helpers_tui import LARGE, SMALL
 from textual.widgets import Static
 
 from surveyapp import api
-from surveyapp.core.adopted import SOURCE as ADOPTED
-from surveyapp.core.clamped_outlook import SWING_SOURCES
-from surveyapp.core.constant_axis import EPOCH, calendar_moment, constant_axis
 from surveyapp.core.improvement import most_helpful
+from surveyapp.core.observing.clamped_outlook import SWING_SOURCES
+from surveyapp.core.orientation.adopted import SOURCE as ADOPTED
+from surveyapp.core.orientation.constant_axis import EPOCH, calendar_moment, constant_axis
 from surveyapp.domain.results import BudgetLine, ConstantResult, Determination
 from surveyapp.tui import texts
 from surveyapp.tui.app import SurveyApp

@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 from helpers_tui import Clock, make_project
 
-from surveyapp.api_entry import expected, understand
-from surveyapp.api_session import NewRow, Observation
-from surveyapp.core.plausible import Doubt, doubt_round
+from surveyapp.core.observing.doubts import Doubt, doubt_round
+from surveyapp.core.observing.steps import Step
+from surveyapp.core.observing.zero_forecast import forecast_zero
 from surveyapp.core.simulate.session import simulate_sessions
 from surveyapp.core.simulate.specification import SessionSpec
-from surveyapp.core.steps import Step
-from surveyapp.core.zero_forecast import forecast_zero
 from surveyapp.domain.project import Method
 from surveyapp.domain.readings import Face, Reading, ReadingKind, Side
+from surveyapp.observation.entry import expected, understand
+from surveyapp.observation.session import NewRow, Observation
 from surveyapp_models.angles import ARCSEC
 
 

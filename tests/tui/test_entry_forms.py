@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from surveyapp.core.entry import EntryError, complete_angle, complete_number
+from surveyapp.core.observing.typed_rows import EntryError, complete_angle, complete_number
 from surveyapp_models.angles import ARCSEC, AngleUnit, parse_angle, wrap_pi
 
 NEAR = parse_angle("179-02-10", AngleUnit.DMS)

@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from surveyapp.core.forecast import fit_timing, forecast_reading
-from surveyapp.core.gyrofit import fit_swing
-from surveyapp.core.run_alert import Trouble, channels, find_trouble
+from surveyapp.core.observing.forecast import fit_timing, forecast_reading
+from surveyapp.core.observing.run_alert import Trouble, channels, find_trouble
+from surveyapp.core.swing.gyrofit import fit_swing
 
 AMPLITUDE, DECREMENT = 3600.0, 0.012
 

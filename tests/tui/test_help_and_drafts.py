@@ -11,11 +11,11 @@ from textual.pilot import Pilot
 from textual.screen import ModalScreen, Screen
 from textual.widgets import Input, Select, Static, TextArea
 
-from surveyapp import api_home
 from surveyapp.core.geodesy import open_grid
 from surveyapp.core.simulate.session import book_text
 from surveyapp.domain.readings import Face
 from surveyapp.errors import SurveyError
+from surveyapp.observation import home as api_home
 from surveyapp.tui import screens
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.help import HelpScreen

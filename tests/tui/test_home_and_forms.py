@@ -10,8 +10,9 @@ from helpers_tui import SMALL
 from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Select, Static, TextArea
 
-from surveyapp import api, api_home
+from surveyapp import api
 from surveyapp.errors import SurveyError
+from surveyapp.observation import home as api_home
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.home import HomeScreen
 from surveyapp.tui.screens.new_project import NewProjectScreen

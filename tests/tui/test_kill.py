@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from bench.tui_kill import plain, run_once, start, stop
-from surveyapp.api_session import Observation
-from surveyapp.core.steps import Step
+from surveyapp.core.observing.steps import Step
+from surveyapp.observation.session import Observation
 from surveyapp.tui import texts
 
 

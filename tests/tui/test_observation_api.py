@@ -10,14 +10,15 @@ from pathlib import Path
 import pytest
 from helpers_tui import Clock, make_project, readings, rows_on_disk
 
-from surveyapp import api, api_session
-from surveyapp.api_entry import expected, understand
-from surveyapp.api_session import NewRow, Observation
-from surveyapp.core.entry import EntryError
-from surveyapp.core.plausible import Doubt
-from surveyapp.core.steps import State, Step
+from surveyapp import api
+from surveyapp.core.observing.doubts import Doubt
+from surveyapp.core.observing.steps import State, Step
+from surveyapp.core.observing.typed_rows import EntryError
 from surveyapp.domain.readings import Face, ReadingKind
 from surveyapp.errors import SurveyError
+from surveyapp.observation import session as api_session
+from surveyapp.observation.entry import expected, understand
+from surveyapp.observation.session import NewRow, Observation
 
 
 def observation(folder: Path, clock: Clock | None = None) -> Observation:

@@ -9,10 +9,10 @@ from helpers_tui import SMALL, Clock, make_project, rows_on_disk
 from textual.pilot import Pilot
 from textual.widgets import Static
 
-from surveyapp.api_session import NewRow, Observation
-from surveyapp.core.steps import Step
+from surveyapp.core.observing.steps import Step
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.errors import SurveyError
+from surveyapp.observation.session import NewRow, Observation
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.session import SessionScreen
 from surveyapp.tui.widgets.entry import EntryLine

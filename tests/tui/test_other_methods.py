@@ -10,9 +10,9 @@ from helpers_tui import SMALL, make_project, readings, rows_on_disk
 from textual.pilot import Pilot
 
 from surveyapp import api
+from surveyapp.core.observing.steps import Step
 from surveyapp.core.simulate.session import simulate_session
 from surveyapp.core.simulate.specification import SessionSpec
-from surveyapp.core.steps import Step
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.result import ResultScreen
 from surveyapp.tui.screens.session import SessionScreen

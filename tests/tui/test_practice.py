@@ -13,11 +13,10 @@ from helpers_tui import SMALL, Clock
 from textual.pilot import Pilot
 from textual.widgets import Select, Static
 
-from surveyapp import api, api_practice
-from surveyapp.api_entry import expected
-from surveyapp.api_practice import Practice
-from surveyapp.api_session import NewRow, Observation
-from surveyapp.core.practice import (
+from surveyapp import api
+from surveyapp.core.observing.steps import Step
+from surveyapp.core.practice.setup import simulate_instrument
+from surveyapp.core.practice.simulated_instrument import (
     LEAD_S,
     ROUND_S,
     AutomaticInstrument,
@@ -25,12 +24,14 @@ from surveyapp.core.practice import (
     PracticeOutcome,
     SuspendedInstrument,
 )
-from surveyapp.core.practice_setup import simulate_instrument
 from surveyapp.core.simulate.turning_points import timetable
-from surveyapp.core.steps import Step
 from surveyapp.domain.project import Method
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.errors import SurveyError
+from surveyapp.observation import practice as api_practice
+from surveyapp.observation.entry import expected
+from surveyapp.observation.practice import Practice
+from surveyapp.observation.session import NewRow, Observation
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.result import ResultScreen
 from surveyapp.tui.screens.session import SessionScreen

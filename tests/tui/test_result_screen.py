@@ -11,12 +11,12 @@ from textual.pilot import Pilot
 from textual.widgets import Static
 
 from surveyapp import api
-from surveyapp.api_session import NewRow, Observation
+from surveyapp.core.observing.steps import Step
 from surveyapp.core.simulate.session import book_text, simulate_session
 from surveyapp.core.simulate.specification import SessionSpec
-from surveyapp.core.steps import Step
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.errors import SurveyError
+from surveyapp.observation.session import NewRow, Observation
 from surveyapp.tui import texts
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.result import ResultScreen

@@ -12,10 +12,10 @@ from textual.pilot import Pilot
 from textual.widgets import Static
 
 from surveyapp import api
-from surveyapp.api_session import NewRow, Observation
+from surveyapp.core.observing.steps import Step
 from surveyapp.core.simulate.session import book_text
-from surveyapp.core.steps import Step
 from surveyapp.domain.readings import ReadingKind
+from surveyapp.observation.session import NewRow, Observation
 from surveyapp.tui import texts
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.help import HelpScreen

@@ -21,13 +21,13 @@ from helpers_tui import (
 )
 from textual.pilot import Pilot
 
-from surveyapp import api_practice
-from surveyapp.api_session import NewRow, Observation
+from surveyapp.core.observing.steps import Step
 from surveyapp.core.simulate.session import book_text, simulate_session
 from surveyapp.core.simulate.specification import SessionSpec, SwingMethod
-from surveyapp.core.steps import Step
 from surveyapp.domain.project import Method
 from surveyapp.domain.readings import ReadingKind
+from surveyapp.observation import practice as api_practice
+from surveyapp.observation.session import NewRow, Observation
 from surveyapp.tui import texts
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.confirm import ConfirmScreen

@@ -8,10 +8,10 @@ import pytest
 from helpers_tui import SMALL, Clock, make_project, simulated
 from textual.widgets import Static
 
-from surveyapp.api_session import Observation
-from surveyapp.core.progress import Progress
+from surveyapp.core.observing.progress import Progress
 from surveyapp.core.simulate.session import book_text
 from surveyapp.io.rulebooks import installed_rule_book_ids
+from surveyapp.observation.session import Observation
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.views.progress import outlook_text, target_source_text
 

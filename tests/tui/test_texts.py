@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from surveyapp.core.plausible import Doubt
-from surveyapp.core.run_alert import Trouble
-from surveyapp.core.steps import State, Step, steps_of
+from surveyapp.core.observing.doubts import Doubt
+from surveyapp.core.observing.run_alert import Trouble
+from surveyapp.core.observing.steps import State, Step, steps_of
 from surveyapp.domain.project import Method
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.tui import texts

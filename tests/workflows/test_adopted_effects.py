@@ -17,8 +17,8 @@ from surveyapp import api
 from surveyapp.cli.main import main
 from surveyapp.core.simulate.campaign import CAMPAIGN_EFFECTS
 from surveyapp.errors import SurveyError
-from surveyapp.io import ledger as ledger_module
 from surveyapp.io import tomltext
+from surveyapp.io.filing import ledger as ledger_module
 
 KNOWN = 'serial = "SIM-0001"\nconstant = { arcsec = 40.0, sigma_arcsec = 1.0 }\n'
 

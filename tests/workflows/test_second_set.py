@@ -12,7 +12,8 @@ import pytest
 
 from surveyapp import api
 from surveyapp.cli.main import main
-from surveyapp.diagnosis import TurningPoints, diagnose, reversal_run
+from surveyapp.diagnosis import TurningPoints, diagnose
+from surveyapp.diagnosis.subjects.choice import reversal_run
 from surveyapp.errors import SurveyError
 
 

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from datetime import date
 from itertools import combinations
 
-from surveyapp.core.lines import OrientedLine
-from surveyapp.core.orientation import Orientation
-from surveyapp.core.scatter import weighted_mean
+from surveyapp.core.orientation.lines import OrientedLine
+from surveyapp.core.orientation.whole_project import Orientation
+from surveyapp.core.statistics.repeated import weighted_mean
 from surveyapp.core.tolerance.evaluate import Measured
 from surveyapp.core.tolerance.quantities import quantity
 from surveyapp.core.uncertain import Uncertain, aligned, combine

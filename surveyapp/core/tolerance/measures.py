@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterator, Mapping
 from itertools import combinations, pairwise
 from typing import Final
 
-from surveyapp.core.automatic import stated_rounds
-from surveyapp.core.orientation import Orientation
-from surveyapp.core.session import ReducedSession, TargetReduction
+from surveyapp.core.orientation.whole_project import Orientation
+from surveyapp.core.swing.automatic import stated_rounds
+from surveyapp.core.swing.session import ReducedSession, TargetReduction
 from surveyapp.core.tolerance.evaluate import Measured
 from surveyapp.core.tolerance.independent import independent_difference, independent_mean_sigma
 from surveyapp.core.tolerance.quantities import quantity

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Final
 
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.io.ledger import LEDGER_FILE
-from surveyapp.io.seals import hash_file, project_file_names
+from surveyapp.io.filing.ledger import LEDGER_FILE
+from surveyapp.io.filing.seals import hash_file, project_file_names
 
 MANIFEST: Final = "MANIFEST.sha256"
 _MOMENT: Final = (1980, 1, 1, 0, 0, 0)

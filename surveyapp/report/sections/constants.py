@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from surveyapp.core.constant_axis import EPOCH, calendar_moment
+from surveyapp.core.orientation.constant_axis import EPOCH, calendar_moment
 from surveyapp.domain.results import ConstantResult, Determination, OrientationResult, to_arcsec
 from surveyapp.report.blocks import Block, Figure, Heading, KeyValues, Table
 from surveyapp.report.numbers import NOTHING, plain, seconds

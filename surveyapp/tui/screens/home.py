@@ -12,9 +12,9 @@ from textual.screen import Screen
 from textual.widgets import Footer, OptionList, Static
 from textual.widgets.option_list import Option
 
-from surveyapp import api_home
-from surveyapp.api_practice import PracticeWish
 from surveyapp.errors import SurveyError
+from surveyapp.observation import home as api_home
+from surveyapp.observation.practice import PracticeWish
 from surveyapp.tui import texts
 from surveyapp.tui.drafts import Draft
 from surveyapp.tui.screens.folder import FolderScreen

@@ -14,9 +14,10 @@ from textual.screen import Screen
 from textual.widgets import Footer, Input, OptionList, Select, Static, TextArea
 from textual.widgets.option_list import Option
 
-from surveyapp import api, api_home
-from surveyapp.api_home import GridChoice, NewProject, NewStation
+from surveyapp import api
 from surveyapp.errors import SurveyError
+from surveyapp.observation import home as api_home
+from surveyapp.observation.home import GridChoice, NewProject, NewStation
 from surveyapp.tui import texts
 from surveyapp.tui.drafts import Draft, keep, put_back
 from surveyapp.tui.views.card import card_known

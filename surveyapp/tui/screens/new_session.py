@@ -10,10 +10,10 @@ from textual.containers import VerticalScroll
 from textual.screen import Screen
 from textual.widgets import Footer, Static
 
-from surveyapp import api_home
-from surveyapp.api_home import NewSession
 from surveyapp.domain.project import Method, Project, Purpose
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.observation import home as api_home
+from surveyapp.observation.home import NewSession
 from surveyapp.tui import texts
 from surveyapp.tui.drafts import Draft, keep, put_back
 from surveyapp.tui.widgets.field import ChoiceField, TextField, chosen, typed

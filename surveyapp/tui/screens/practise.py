@@ -10,8 +10,8 @@ from textual.containers import VerticalScroll
 from textual.screen import Screen
 from textual.widgets import Footer
 
-from surveyapp.api_practice import PracticeWish
 from surveyapp.domain.project import Method
+from surveyapp.observation.practice import PracticeWish
 from surveyapp.tui import texts
 from surveyapp.tui.drafts import Draft, keep, put_back
 from surveyapp.tui.widgets.field import ChoiceField, chosen

@@ -18,10 +18,11 @@ from textual.message import Message
 from textual.screen import Screen
 from textual.widgets import DataTable, Footer, TabbedContent, TabPane
 
-from surveyapp import api, api_session
+from surveyapp import api
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import SurveyError
+from surveyapp.observation import session as api_session
 from surveyapp.tui import texts
 from surveyapp.tui.drafts import Draft
 from surveyapp.tui.page_keys import page_bindings

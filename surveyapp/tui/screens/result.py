@@ -14,14 +14,15 @@ from textual.message import Message
 from textual.screen import Screen
 from textual.widgets import Footer, Static
 
-from surveyapp import api, api_session
-from surveyapp.api_practice import Practice
+from surveyapp import api
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import SurveyError
+from surveyapp.observation import session as api_session
+from surveyapp.observation.practice import Practice
 from surveyapp.tui import texts
-from surveyapp.tui.desk import problem_text
 from surveyapp.tui.drafts import Draft
+from surveyapp.tui.entry_desk import problem_text
 from surveyapp.tui.screens.signature import SignatureScreen
 from surveyapp.tui.views.checks import summary
 from surveyapp.tui.views.result import result_headline, result_sections, truth_text

@@ -15,13 +15,13 @@ from textual.containers import Horizontal, Vertical
 from textual.screen import Screen
 from textual.widgets import Footer, Input
 
-from surveyapp.api_practice import Practice
-from surveyapp.api_session import Observation
-from surveyapp.core.steps import Step
+from surveyapp.core.observing.steps import Step
 from surveyapp.errors import SurveyError
+from surveyapp.observation.practice import Practice
+from surveyapp.observation.session import Observation
 from surveyapp.tui import texts
-from surveyapp.tui.desk import Desk, NotWrittenError, problem_text
 from surveyapp.tui.drafts import Draft
+from surveyapp.tui.entry_desk import Desk, NotWrittenError, problem_text
 from surveyapp.tui.messages import ResultWanted, SessionLeft
 from surveyapp.tui.screens.help import HelpScreen
 from surveyapp.tui.screens.strike import StrikeScreen

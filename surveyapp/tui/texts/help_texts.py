@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from surveyapp.core.steps import Step
+from surveyapp.core.observing.steps import Step
 
 CLOSE_HINT: Final = "Escape closes   Ctrl+P every action   F9 colours   Ctrl+Q quit"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from surveyapp.core.progress import Progress
+from surveyapp.core.observing.progress import Progress
 from surveyapp.domain.readings import FieldBook, Reading, ReadingKind
 from surveyapp.tui import texts
 from surveyapp.tui.views.progress import residual_text

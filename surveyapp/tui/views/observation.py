@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from surveyapp.api_session import Observation
+from surveyapp.observation.session import Observation
 from surveyapp.tui import texts
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import textwrap
 
-from surveyapp.api_session import Aim
-from surveyapp.core.passages import PassageForecast
-from surveyapp.core.progress import Progress
-from surveyapp.core.target import Target
+from surveyapp.core.observing.passage_forecast import PassageForecast
+from surveyapp.core.observing.progress import Progress
+from surveyapp.core.observing.target import Target
+from surveyapp.observation.session import Aim
 from surveyapp.tui import texts
 from surveyapp.tui.views.form import arcsec_text, number_text
 from surveyapp_models.angles import AngleUnit, format_angle

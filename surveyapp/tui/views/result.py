@@ -31,7 +31,7 @@ from surveyapp.tui.widgets.records import pairs_text, table_text
 from surveyapp_models.angles import AngleUnit, format_angle
 
 if TYPE_CHECKING:
-    from surveyapp.core.practice import PracticeOutcome
+    from surveyapp.core.practice.simulated_instrument import PracticeOutcome
 
 Section = tuple[str, Text]
 CONSTANT_HEIGHT = 11

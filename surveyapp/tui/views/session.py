@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from surveyapp.core.steps import current_step
+from surveyapp.core.observing.steps import current_step
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult, SessionResult
 from surveyapp.tui import texts

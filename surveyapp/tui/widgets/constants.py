@@ -14,7 +14,7 @@ from textual.containers import Vertical
 from textual.widget import Widget
 from textual.widgets import DataTable, Static
 
-from surveyapp.core.constant_axis import ConstantAxis, constant_axis
+from surveyapp.core.orientation.constant_axis import ConstantAxis, constant_axis
 from surveyapp.domain.results import ConstantResult, Determination, OrientationResult
 from surveyapp.tui import texts
 from surveyapp.tui.views.constants import (

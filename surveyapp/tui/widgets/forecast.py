@@ -7,8 +7,8 @@ from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.widgets import Static
 
-from surveyapp.api_session import Aim
-from surveyapp.core.progress import Progress
+from surveyapp.core.observing.progress import Progress
+from surveyapp.observation.session import Aim
 from surveyapp.tui import texts
 from surveyapp.tui.views.progress import (
     alert_text,

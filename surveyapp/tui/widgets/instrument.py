@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 from rich.text import Text
 from textual.widgets import Static
 
-from surveyapp.api_practice import Practice
 from surveyapp.domain.readings import ReadingKind
+from surveyapp.observation.practice import Practice
 from surveyapp.tui import texts
-from surveyapp.tui.desk import Desk
+from surveyapp.tui.entry_desk import Desk
 from surveyapp.tui.views.form import number_text
 from surveyapp_models.angles import AngleUnit, format_angle
 
 if TYPE_CHECKING:
-    from surveyapp.core.practice import View
+    from surveyapp.core.practice.simulated_instrument import View
 
 WIDTH = 19
 FRAMES_PER_SECOND = 10

@@ -10,13 +10,13 @@ from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.message import Message
 
-from surveyapp import api_session
-from surveyapp.core.progress import Progress
-from surveyapp.core.steps import Step, kinds_of
+from surveyapp.core.observing.progress import Progress
+from surveyapp.core.observing.steps import Step, kinds_of
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.errors import SurveyError
+from surveyapp.observation import session as api_session
 from surveyapp.tui import texts
-from surveyapp.tui.desk import Desk
+from surveyapp.tui.entry_desk import Desk
 from surveyapp.tui.views.ledger import QUIET, book_rows, ledger_rows
 from surveyapp.tui.widgets.forecast import Forecast
 from surveyapp.tui.widgets.ledger import Ledger

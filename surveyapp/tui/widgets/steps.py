@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from rich.text import Text
 from textual.widgets import Static
 
-from surveyapp.core.steps import Step, StepState
+from surveyapp.core.observing.steps import Step, StepState
 from surveyapp.tui import texts
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from rich.text import Text
 from textual.widget import Widget
 
-from surveyapp.core.progress import Progress
+from surveyapp.core.observing.progress import Progress
 from surveyapp.tui import texts
 
 BRAILLE = 0x2800

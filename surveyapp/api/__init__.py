@@ -1,0 +1,91 @@
+"""What scripts call: the same functions as the command line, on values instead of text.
+
+Every function returns a frozen dataclass with ``to_dict()``, the JSON of the command of its name.
+Each subject has a module of its own behind this one, which is all that scripts import.
+"""
+
+from __future__ import annotations
+
+from surveyapp.api.batch import batch, batch_rows
+from surveyapp.api.judgement import SubjectKeyword, check, diagnose, subjects
+from surveyapp.api.network import (
+    adjust,
+    adjust_network,
+    compass_rule,
+    network,
+    variance_components,
+)
+from surveyapp.api.office import (
+    blank_form,
+    close,
+    compare,
+    export_csv,
+    export_gkf,
+    export_json,
+    export_zip,
+    reopen,
+    report,
+    report_text,
+)
+from surveyapp.api.orientation import demo, generator_of, orient, plan
+from surveyapp.api.project import (
+    SOFTWARE,
+    Folder,
+    model,
+    models,
+    new_project,
+    open_project,
+    simulate,
+)
+from surveyapp.api.unfinished import unfinished, without_unfinished
+from surveyapp.domain.adjustment import AdjustmentResult
+from surveyapp.domain.instrument import InstrumentCard
+from surveyapp.domain.project import Project
+from surveyapp.domain.results import Check, OrientationResult
+from surveyapp.domain.traverse import Network
+from surveyapp.errors import Problem, SurveyError
+
+__all__ = [
+    "Folder",
+    "SOFTWARE",
+    "open_project",
+    "new_project",
+    "simulate",
+    "models",
+    "model",
+    "unfinished",
+    "without_unfinished",
+    "plan",
+    "orient",
+    "demo",
+    "generator_of",
+    "network",
+    "adjust",
+    "adjust_network",
+    "compass_rule",
+    "variance_components",
+    "SubjectKeyword",
+    "subjects",
+    "check",
+    "diagnose",
+    "batch",
+    "batch_rows",
+    "report",
+    "report_text",
+    "blank_form",
+    "close",
+    "reopen",
+    "compare",
+    "export_csv",
+    "export_gkf",
+    "export_json",
+    "export_zip",
+    "AdjustmentResult",
+    "InstrumentCard",
+    "Project",
+    "Check",
+    "OrientationResult",
+    "Network",
+    "Problem",
+    "SurveyError",
+]

@@ -1,0 +1,81 @@
+"""Traverses and networks for scripts, re-exported by ``surveyapp.api``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from surveyapp.api.orientation import oriented
+from surveyapp.api.project import Folder, open_project
+from surveyapp.api.unfinished import without_unfinished
+from surveyapp.domain.adjustment import AdjustmentResult
+from surveyapp.domain.project import Project
+from surveyapp.domain.traverse import Network
+
+if TYPE_CHECKING:
+    from surveyapp.core.network.bowditch import CompassResult
+    from surveyapp.core.network.variance_components import VarianceComponent
+
+
+def adjust(
+    source: Project | Folder, *, traverse: str | None = None, family_level: float = 0.05
+) -> AdjustmentResult:
+    """Adjust the traverses of a project, gyro sides included, or a GNU Gama file.
+
+    Parameters
+    ----------
+    source : Project or path
+        A project, its folder, or a ``.gkf`` file.
+    traverse : str or None
+        One traverse; all of them together without it.
+    family_level : float
+        Level of data snooping for all observations together.
+
+    Raises
+    ------
+    SurveyError
+        If something cannot be read, has no datum, is not determined or does not converge.
+    """
+    return adjust_network(network(source, traverse=traverse), family_level=family_level)
+
+
+def adjust_network(network: Network, *, family_level: float = 0.05) -> AdjustmentResult:
+    """Adjust a network as ``network`` returns it; see ``adjust``."""
+    from surveyapp.core.network import adjust as adjusted
+
+    return adjusted(network, family_level=family_level)
+
+
+def compass_rule(network: Network) -> tuple[CompassResult, ...]:
+    """Every route of a network by the compass (Bowditch) rule, for those who must file it."""
+    from surveyapp.core.network.bowditch import compass_adjust
+
+    return compass_adjust(network)
+
+
+def variance_components(network: Network) -> tuple[VarianceComponent, ...]:
+    """Factors of the stated sigmas of each group of observations (Helmert)."""
+    from surveyapp.core.network.variance_components import variance_components as components
+
+    return components(network)[0]
+
+
+def network(source: Project | Folder, *, traverse: str | None = None) -> Network:
+    """Network of a project's traverses or of a ``.gkf`` file, as ``adjust`` takes it."""
+    from dataclasses import replace
+
+    from surveyapp.core.network.oriented import oriented_lines
+    from surveyapp.core.orientation.unfinished import waiting_sides
+    from surveyapp.io.importers.gkf import read_gkf
+    from surveyapp.io.traverse.book import network_of
+
+    if not isinstance(source, Project):
+        path = Path(source)
+        if path.suffix.lower() in (".gkf", ".xml") or path.is_file():
+            return read_gkf(path)
+        source = open_project(path)
+    kept = without_unfinished(source)
+    left_out = kept.warnings[len(source.warnings) :]
+    lines, constants, warnings = oriented_lines(oriented(kept).lines if kept.sessions else ())
+    found = network_of(source, traverse, lines, constants, waiting_sides(source, kept))
+    return replace(found, warnings=(*found.warnings, *warnings, *left_out))

@@ -1,0 +1,289 @@
+"""What scripts call for the office, re-exported by ``surveyapp.api``: records, closing, exports.
+
+A module of its own, because the reduction is one subject and what is filed another.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from surveyapp.api.judgement import diagnose, subjects
+from surveyapp.api.network import adjust, network
+from surveyapp.api.orientation import orient
+from surveyapp.api.project import SOFTWARE, Folder, opened
+from surveyapp.domain.project import Project
+
+if TYPE_CHECKING:
+    from surveyapp.core.differences import Snapshot
+    from surveyapp.domain.filing import ClosingResult, ComparisonResult, ExportResult
+    from surveyapp.report.blocks import Document
+    from surveyapp.report.record import Extra
+    from surveyapp.report.written import ReportResult
+
+
+def _local_now() -> datetime:
+    return datetime.now().astimezone()
+
+
+def report(
+    project: Project | Folder,
+    output: Folder,
+    *,
+    font: Folder | None = None,
+    extras: tuple[Extra, ...] = (),
+    diagnosis: bool = False,
+) -> ReportResult:
+    """Write the survey record as PDF; the same input gives the same bytes.
+
+    Parameters
+    ----------
+    project : Project or path
+    output : path
+        PDF to be written, whole or not at all.
+    font : path or None
+        TrueType face for Chinese, Japanese and Korean; None: one found on the system, else the
+        faces that PDF viewers bring.
+    extras : tuple of surveyapp.report.record.Extra
+        Sections from elsewhere, before the checks.
+    diagnosis : bool
+        Diagnose every run and campaign of the project and show what was found.
+
+    Raises
+    ------
+    SurveyError
+        If the project cannot be used, the face cannot be embedded or the file not be written.
+    """
+    if diagnosis:
+        extras = (*extras, *_diagnoses(project))
+    document, sections = _record(project, extras)
+    return _write_document(document, sections, Path(output), font)
+
+
+def _traverses(project: Project) -> tuple[Extra, ...]:
+    """A section for every traverse; one that cannot be adjusted says why."""
+    from surveyapp.errors import SurveyError
+    from surveyapp.report.blocks import Heading, Paragraph
+    from surveyapp.report.record import Extra
+    from surveyapp.report.sections import traverse as section
+
+    if not project.tables.get("traverse"):
+        return ()
+    from surveyapp.io.traverse.header import traverse_headers
+
+    found = []
+    for header in traverse_headers(project):
+        identity = f"traverse {header.name}"
+        try:
+            result = adjust(project, traverse=header.name)
+        except SurveyError as error:
+            reasons = [Paragraph(str(problem), "warning") for problem in error.problems]
+            found.append(Extra(identity, (Heading(f"Traverse {header.name}"), *reasons)))
+            continue
+        made = section.blocks(header.name, result, unit=project.angle_unit)
+        found.append(Extra(identity, made))
+    return tuple(found)
+
+
+def _diagnoses(project: Project | Folder) -> tuple[Extra, ...]:
+    """A section for every subject that can be diagnosed; too few observations are passed over."""
+    from surveyapp.errors import SurveyError
+    from surveyapp.report.record import Extra
+    from surveyapp.report.sections import diagnosis as section
+
+    project = opened(project)
+    found = []
+    for option, identity in subjects(project):
+        try:
+            if option == "session":
+                made = diagnose(project, session=identity, log=False)
+            elif option == "traverse":
+                made = diagnose(project, traverse=identity, log=False)
+            else:
+                made = diagnose(project, campaign=identity, log=False)
+        except SurveyError:
+            continue
+        if made.diagnosis is None:
+            continue
+        shown = {name: (before, after) for name, before, after in made.channels}
+        made_blocks = section.blocks(made.diagnosis, made.words, shown, unit=project.angle_unit)
+        found.append(Extra(f"diagnosis of {identity}", made_blocks))
+    return tuple(found)
+
+
+def report_text(project: Project | Folder) -> str:
+    """The survey record as text for a terminal."""
+    from surveyapp.report.text import document_text
+
+    return document_text(_record(project, ())[0])
+
+
+def blank_form(method: str, output: Folder, *, font: Folder | None = None) -> ReportResult:
+    """Write a blank field-book form (tracking, amplitude, transit, automatic) as PDF.
+
+    Raises
+    ------
+    SurveyError
+        If there is no such method, or the file cannot be written.
+    """
+    from surveyapp.report.forms import blank_form as form
+
+    return _write_document(form(method, software=SOFTWARE), (method,), Path(output), font)
+
+
+def _record(
+    project: Project | Folder, extras: tuple[Extra, ...]
+) -> tuple[Document, tuple[str, ...]]:
+    from surveyapp.io.filing.ledger import read_ledger
+    from surveyapp.io.filing.seals import closings_in_force
+    from surveyapp.io.project_checks import project_rule_book
+    from surveyapp.report.record import Record, SealShown, record_document
+
+    project = opened(project)
+    result = orient(project)
+    extras = (*_traverses(project), *extras)
+    closing = closings_in_force(read_ledger(Path(project.path))).get("")
+    seal = None
+    if closing is not None:
+        values = [str(closing.data.get(key, "")) for key in ("by", "seal")]
+        seal = SealShown(closing.at, *values)
+    return record_document(Record(project, result, project_rule_book(project), seal, extras))
+
+
+def _write_document(
+    document: Document, sections: tuple[str, ...], output: Path, font: Folder | None
+) -> ReportResult:
+    from surveyapp.io.tomltext import atomic_write
+    from surveyapp.report.pdf import write_pdf
+    from surveyapp.report.written import ReportResult
+
+    written = write_pdf(document, face=None if font is None else Path(font))
+    atomic_write(output, written.data)
+    digest = hashlib.sha256(written.data).hexdigest()
+    return ReportResult(str(output), written.pages, sections, digest)
+
+
+def close(
+    folder: Folder,
+    *,
+    session: str | None = None,
+    by: str = "",
+    note: str = "",
+    now: Callable[[], datetime] = _local_now,
+) -> ClosingResult:
+    """Close a project, or one session of it: files and ledger are sealed by a hash chain.
+
+    Raises
+    ------
+    SurveyError
+        If it cannot be read, is closed already, is open elsewhere, or cannot be written.
+    """
+    from surveyapp.io.filing.closing import close_project
+
+    at = now().isoformat(timespec="seconds")
+    return close_project(Path(folder), session=session, by=by, note=note, at=at, software=SOFTWARE)
+
+
+def reopen(
+    folder: Folder,
+    *,
+    reason: str,
+    session: str | None = None,
+    by: str = "",
+    now: Callable[[], datetime] = _local_now,
+) -> ClosingResult:
+    """Reopen a closed project or session; reason and what was changed go into the ledger.
+
+    Raises
+    ------
+    SurveyError
+        If it is not closed, or no reason is given.
+    """
+    from surveyapp.io.filing.closing import reopen_project
+
+    at = now().isoformat(timespec="seconds")
+    return reopen_project(
+        Path(folder), session=session, by=by, reason=reason, at=at, software=SOFTWARE
+    )
+
+
+def export_zip(folder: Folder, output: Folder) -> ExportResult:
+    """Write a project as one zip file for hand-over: same project, same bytes."""
+    from surveyapp.io.exporters.archive import archive
+
+    data, count = archive(Path(folder))
+    return _write_export("zip", data, Path(output), count)
+
+
+def export_csv(project: Project | Folder, output: Folder, *, table: str = "lines") -> ExportResult:
+    """Write a table of the results as CSV (lines, sessions, constants, checks, all)."""
+    from surveyapp.io.exporters.results_csv import results_csv
+
+    text, count = results_csv(orient(project), table)
+    return _write_export("csv", text.encode("utf-8"), Path(output), count)
+
+
+def export_gkf(project: Project | Folder, output: Folder) -> ExportResult:
+    """Write the traverses of a project, gyro sides included, as a GNU Gama file.
+
+    Raises
+    ------
+    SurveyError
+        If there is no traverse, or the format has no words for something in it.
+    """
+    from surveyapp.io.exporters.gkf import gkf_text
+
+    found = network(project)
+    data = gkf_text(found).encode("utf-8")
+    return _write_export("gkf", data, Path(output), len(found.observations))
+
+
+def export_json(project: Project | Folder, output: Folder) -> ExportResult:
+    """Write the result with its files, cards and rule book, for a later ``compare``."""
+    snapshot = _snapshot(project)
+    data = json.dumps(snapshot.to_dict(), ensure_ascii=False, indent=1, allow_nan=False) + "\n"
+    return _write_export("json", data.encode("utf-8"), Path(output), len(snapshot.files or ()))
+
+
+def _write_export(name: str, data: bytes, output: Path, items: int) -> ExportResult:
+    from surveyapp.domain.filing import ExportResult
+    from surveyapp.io.tomltext import atomic_write
+
+    atomic_write(output, data)
+    return ExportResult(name, str(output), items, hashlib.sha256(data).hexdigest())
+
+
+def compare(a: Folder, b: Folder) -> ComparisonResult:
+    """Tell what changed between two results: input, software, card, rule book, numbers.
+
+    Parameters
+    ----------
+    a, b : path
+        Project folders, or files of ``orient --json`` and ``export json``.
+
+    Raises
+    ------
+    SurveyError
+        If one of them cannot be used.
+    """
+    from surveyapp.core.differences import compare_snapshots
+
+    return compare_snapshots(_side(Path(a)), _side(Path(b)))
+
+
+def _side(path: Path) -> Snapshot:
+    from surveyapp.io.filing.snapshots import read_snapshot
+
+    return read_snapshot(path) if path.is_file() else _snapshot(path)
+
+
+def _snapshot(project: Project | Folder) -> Snapshot:
+    from surveyapp.io.filing.snapshots import folder_snapshot
+    from surveyapp.io.project_checks import project_rule_book
+
+    project = opened(project)
+    return folder_snapshot(project, orient(project), project_rule_book(project))

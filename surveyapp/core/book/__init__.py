@@ -1,0 +1,1 @@
+"""Rules of the field book: sides of turning points, strikes, and how finely it was read."""

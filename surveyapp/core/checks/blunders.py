@@ -1,0 +1,119 @@
+"""Blunders that no statistic notices: a face typed wrongly, exchanged coordinates, one mark twice.
+
+Each would give an azimuth with a fine sigma that is wrong by degrees. What cannot be meant is
+refused, what is merely odd is a warning; nothing is corrected here.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Final
+
+from surveyapp.core.geodesy import Grid
+from surveyapp.core.orientation.lines import LineGeometry
+from surveyapp.core.swing.sights import SightSet
+from surveyapp.domain.project import OrientationSession, ResultWarning
+from surveyapp.domain.results import LineResult
+from surveyapp.errors import Problem, SurveyError
+from surveyapp_models.angles import wrap_pi
+
+MAX_COLLIMATION: Final = math.radians(0.2)
+"""No theodolite is as badly adjusted; a slip of one degree in one of four sights makes 0.25. A
+bound of reason: no source states one."""
+SHORTEST_LINE_M: Final = 1.0
+"""Below it lies the shortest focusing distance: two stations at one place."""
+LARGEST_CONSTANT: Final = math.radians(1.0)
+"""Printed constants are minutes of arc (10'51" at Johannesburg); more is more likely a slip."""
+LONGEST_LINE_M: Final = 50_000.0
+"""Nobody sights further with a gyro-theodolite: coordinates in the wrong order or grid do."""
+
+
+def refuse_wrong_faces(session: OrientationSession, sights: SightSet) -> None:
+    """Refuse sights whose two faces do not lie half a circle apart.
+
+    Raises
+    ------
+    SurveyError
+        If the collimation would be above ``MAX_COLLIMATION``.
+    """
+    if sights.collimation is None or abs(sights.collimation) <= MAX_COLLIMATION:
+        return
+    apart = 180.0 - 2.0 * math.degrees(sights.collimation)
+    raise SurveyError(
+        Problem(
+            what=f"the two faces of the sights of {sights.target} do not lie half a circle apart",
+            where=f"session {session.id}, {session.book_path}",
+            found=f"{apart % 360.0:.4f} degrees apart",
+            expected=f"180 degrees, within {2.0 * math.degrees(MAX_COLLIMATION):g}",
+            hint="A face (L, R) or a reading is typed wrongly: strike it and enter it anew.",
+        )
+    )
+
+
+def refuse_one_place(geometry: Mapping[tuple[str, str], LineGeometry]) -> None:
+    """Refuse lines whose two stations have one position: such a line has no azimuth.
+
+    Raises
+    ------
+    SurveyError
+        With all such lines together.
+    """
+    problems = {
+        (line.start.name, line.end.name): Problem(
+            what=f"{line.start.name} and {line.end.name} stand at one place",
+            where=f"session {session}",
+            found=f"{line.distance_m:.3f} m apart",
+            expected=f"at least {SHORTEST_LINE_M:g} m",
+            hint="Correct the coordinates of one of them, or leave them out.",
+        )
+        for (session, _), line in geometry.items()
+        if line.distance_m is not None and line.distance_m < SHORTEST_LINE_M
+    }
+    if problems:
+        raise SurveyError(problems.values())
+
+
+def place_warnings(lines: Sequence[LineGeometry], grid: Grid | None) -> list[ResultWarning]:
+    """Warn of lines too long to be sighted, and of stations beside the area of the grid."""
+    warnings: dict[str, ResultWarning] = {}
+    for line in lines:
+        name = f"{line.start.name}-{line.end.name}"
+        if line.distance_m is not None and line.distance_m > LONGEST_LINE_M:
+            text = (
+                f"line {name} is {line.distance_m / 1000.0:.0f} km long by its coordinates: "
+                "are they in the right order, and in this grid?"
+            )
+            warnings[name] = ResultWarning("line_long", text)
+        at = line.position
+        if grid is None or at.latitude is None or at.longitude is None:
+            continue
+        if grid.is_beside(latitude=at.latitude, longitude=at.longitude):
+            text = (
+                f"station {line.start.name} (latitude {math.degrees(at.latitude):.2f}, longitude "
+                f"{math.degrees(at.longitude):.2f}) lies beside the area of {grid.name}: are the "
+                "coordinates in the right order, and is it the right crs?"
+            )
+            warnings[f"{line.start.name} of {name}"] = ResultWarning("outside_grid", text)
+    return list({warning.text: warning for warning in warnings.values()}.values())
+
+
+def azimuth_warnings(line: LineResult) -> list[ResultWarning]:
+    """Warn of a constant of degrees, and of an azimuth degrees away from the coordinates."""
+    name = f"line {line.station}-{line.target}"
+    warnings = []
+    if line.constant is not None and abs(line.constant) > LARGEST_CONSTANT:
+        text = (
+            f"{name}: the instrument constant is {math.degrees(line.constant):+.4f} degrees: is "
+            "the known azimuth right, and were sight and target the right ones?"
+        )
+        warnings.append(ResultWarning("constant_large", text))
+    if line.grid_azimuth is not None and line.existing_azimuth is not None:
+        apart = wrap_pi(line.grid_azimuth.value - line.existing_azimuth)
+        if abs(apart) > LARGEST_CONSTANT:
+            text = (
+                f"{name}: the grid azimuth lies {math.degrees(apart):+.4f} degrees off the "
+                "coordinates: was this the target, and are the coordinates in the right order?"
+            )
+            warnings.append(ResultWarning("far_from_coordinates", text))
+    return warnings

@@ -1,0 +1,230 @@
+"""Statistical tests of sessions, constants and lines, with the card's own limits.
+
+The limits of a rule book are applied elsewhere; here stand the tests that need no rule book
+because they compare the data with themselves. Each alarms by chance in 1 % of clean cases.
+"""
+
+from __future__ import annotations
+
+import math
+
+from surveyapp.core.orientation.instrument_constant import InstrumentConstant, agreement_text
+from surveyapp.core.orientation.lines import OrientedLine
+from surveyapp.core.orientation.whole_project import Orientation
+from surveyapp.core.statistics.distributions import student_quantile
+from surveyapp.core.swing.goodness import FitTest
+from surveyapp.core.swing.session import ReducedSession, SightSigma
+from surveyapp.core.swing.sights import drift_probability
+from surveyapp.core.uncertain import Uncertain
+from surveyapp.domain.results import Check
+from surveyapp_models.angles import RHO_ARCSEC, wrap_pi
+
+SIGNIFICANCE = 0.01
+
+_FIT_WORDS = {
+    "chi_square": "residuals against the card's reading sigma (v'v / sigma^2)",
+    "lag1_correlation": "lag-1 correlation of the residuals",
+    "runs": "number of runs of equal sign in the residuals",
+}
+_TEST_CLAUSE = "statistical test, 1 %"
+
+
+def statistical_checks(orientation: Orientation) -> list[Check]:
+    """All tests that the data of a project answer by themselves."""
+    checks: list[Check] = []
+    for item in orientation.sessions:
+        checks += _fit_checks(item)
+        checks += _tape_zero_checks(orientation, item)
+        sigma = orientation.sight_sigmas[item.session.instrument]
+        checks += _sight_checks(item, sigma, SIGNIFICANCE / len(orientation.sessions))
+    for constant in orientation.constants:
+        checks += _constant_checks(constant)
+    for line in orientation.lines:
+        checks += _line_checks(line)
+    checks += _forward_back(orientation)
+    return checks
+
+
+def _fit_checks(item: ReducedSession) -> list[Check]:
+    checks = _fit_summary(item)
+    for test in item.reduction.tests:
+        words = _FIT_WORDS[test.name]
+        verdict = "fits" if test.passed else "does NOT fit the damped swing"
+        checks.append(
+            Check(
+                rule=f"fit.{test.name}",
+                clause=_TEST_CLAUSE,
+                value=test.value,
+                limit=_violated_bound(test),
+                confirmed=True,
+                passed=test.passed,
+                where=item.session.id,
+                text=f"{words}: the run {verdict}",
+            )
+        )
+    return checks
+
+
+def _fit_summary(item: ReducedSession) -> list[Check]:
+    """One line for the whole run: its rms, and whether every test of fit is met."""
+    reduction = item.reduction
+    if not reduction.tests or reduction.residual_rms is None:
+        return []
+    failed = [_FIT_WORDS[test.name] for test in reduction.tests if not test.passed]
+    rms = reduction.residual_rms * RHO_ARCSEC
+    limit = None
+    for test in reduction.tests:
+        if test.name == "chi_square" and test.high is not None and test.value > 0.0:
+            limit = rms * math.sqrt(test.high / test.value)
+    if failed:
+        text = f'rms {rms:.1f}": the damped swing does NOT fit this run ({"; ".join(failed)})'
+    else:
+        text = f'rms {rms:.1f}": the damped swing fits'
+    return [
+        Check(
+            rule="fit",
+            clause=_TEST_CLAUSE,
+            value=rms,
+            limit=limit,
+            confirmed=True,
+            passed=not failed,
+            unit="arcsec",
+            where=item.session.id,
+            text=text,
+        )
+    ]
+
+
+def _violated_bound(test: FitTest) -> float | None:
+    if test.low is not None and test.value < test.low:
+        return test.low
+    return test.high
+
+
+def _tape_zero_checks(orientation: Orientation, item: ReducedSession) -> list[Check]:
+    card = orientation.project.instrument(item.session.instrument).card
+    zero, limit = item.reduction.tape_zero, card.tape_zero.limit_div
+    if zero is None or limit is None:
+        return []
+    checks = []
+    for name, rest in (("before", zero.before), ("after", zero.after)):
+        if rest is not None:
+            checks.append(
+                Check(
+                    rule="tape_zero.limit",
+                    clause=f"card {card.id}",
+                    value=abs(rest.value_div),
+                    limit=limit,
+                    confirmed=True,
+                    passed=abs(rest.value_div) <= limit,
+                    unit="div",
+                    where=f"{item.session.id} {name}",
+                    text=f"tape zero {name} {rest.value_div:+.3f} div",
+                )
+            )
+    return checks
+
+
+def _sight_checks(item: ReducedSession, sigma: SightSigma, level: float) -> list[Check]:
+    checks = []
+    for target in item.targets:
+        sights = target.sights
+        if sights is None or sights.drift is None:
+            continue
+        probability = drift_probability(sights, sigma=sigma.value, dof=sigma.dof)
+        if probability is None:
+            continue
+        limit = student_quantile(1.0 - 0.5 * level, sigma.dof) * sigma.value
+        limit *= math.sqrt(sights.drift_cofactor)
+        checks.append(
+            Check(
+                rule="sights.drift",
+                clause=_TEST_CLAUSE,
+                value=abs(sights.drift) * RHO_ARCSEC,
+                limit=limit * RHO_ARCSEC,
+                confirmed=True,
+                passed=probability >= level,
+                unit="arcsec",
+                where=f"{item.session.id} to {target.target}",
+                text="sights after minus before: the tripod may have turned; it is taken out",
+            )
+        )
+    return checks
+
+
+def _constant_checks(constant: InstrumentConstant) -> list[Check]:
+    checks = []
+    for rule, what, test in (
+        ("constant.lines", "lines", constant.line_agreement),
+        ("constant.before_after", "epochs", constant.phase_agreement),
+    ):
+        if test is not None:
+            checks.append(
+                Check(
+                    rule=rule,
+                    clause="physics of the constant, statistical test, 5 %",
+                    value=test.difference * RHO_ARCSEC,
+                    limit=test.limit * RHO_ARCSEC,
+                    confirmed=True,
+                    passed=test.agree,
+                    unit="arcsec",
+                    where=constant.instrument.id,
+                    text=agreement_text(test, what),
+                )
+            )
+    pooled = constant.pooled
+    if pooled is not None and constant.known is not None:
+        checks.append(_compare("constant.known", pooled - constant.known, constant.instrument.id))
+    return checks
+
+
+def _compare(rule: str, difference: Uncertain, where: str) -> Check:
+    limit = student_quantile(1.0 - 0.5 * SIGNIFICANCE, max(difference.dof, 1.0)) * difference.sigma
+    value = abs(wrap_pi(difference.value))
+    return Check(
+        rule=rule,
+        clause=_TEST_CLAUSE,
+        value=value * RHO_ARCSEC,
+        limit=limit * RHO_ARCSEC if math.isfinite(limit) else None,
+        confirmed=True,
+        passed=value <= limit if math.isfinite(limit) else None,
+        unit="arcsec",
+        where=where,
+        text="determined now against known beforehand"
+        if rule == "constant.known"
+        else "forward against back, the two ends of one line",
+    )
+
+
+def _line_checks(line: OrientedLine) -> list[Check]:
+    test = line.agreement
+    if test is None:
+        return []
+    return [
+        Check(
+            rule="line.rounds_agree",
+            clause=_TEST_CLAUSE,
+            value=test.statistic,
+            limit=None,
+            confirmed=True,
+            passed=test.probability >= SIGNIFICANCE,
+            where=f"{line.result.station}-{line.result.target}",
+            text=(
+                f"{len(line.result.sessions)} sessions of one line, scatter against their own "
+                f"sigmas (p = {test.probability:.3g})"
+            ),
+        )
+    ]
+
+
+def _forward_back(orientation: Orientation) -> list[Check]:
+    """A-B against B-A: the grid azimuths differ by half a circle but for arc-to-chord in both."""
+    checks = []
+    by_name = {(line.result.station, line.result.target): line for line in orientation.lines}
+    for (station, target), line in by_name.items():
+        back = by_name.get((target, station))
+        if back is None or station > target or line.grid is None or back.grid is None:
+            continue
+        difference = (line.grid - back.grid).shifted(math.pi)
+        checks.append(_compare("line.forward_back", difference, f"{station}-{target}"))
+    return checks

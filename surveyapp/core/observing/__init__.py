@@ -1,0 +1,1 @@
+"""What is shown, forecast and asked while a surveyor stands at the instrument."""

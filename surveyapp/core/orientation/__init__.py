@@ -1,0 +1,1 @@
+"""Sessions to instrument constants to oriented lines."""

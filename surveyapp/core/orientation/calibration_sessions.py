@@ -1,0 +1,118 @@
+"""Calibration sessions to determinations of the instrument constant."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from surveyapp.core.orientation.instrument_constant import Calibration
+from surveyapp.core.orientation.lines import LineGeometry, known_astronomic
+from surveyapp.core.orientation.sequence import phase_of, session_moments, surveys_before
+from surveyapp.core.statistics.repeated import RunScatter
+from surveyapp.core.swing.automatic import stated_rounds
+from surveyapp.core.swing.session import ReducedSession
+from surveyapp.domain.project import (
+    Centring,
+    OrientationSession,
+    Project,
+    ResultWarning,
+    grid_bearing,
+)
+from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, wrap_pi
+
+LARGEST_SHIFT_M = 0.1
+"""Coordinates of mine stations are wrong by less [m]: beyond, one of the two is mistyped."""
+
+
+def calibrations_of(
+    project: Project,
+    reduced: Sequence[ReducedSession],
+    instrument: str,
+    geometry: Mapping[tuple[str, str], LineGeometry],
+    scatter: RunScatter,
+) -> tuple[list[Calibration], list[ResultWarning]]:
+    """Every determination of the constant of one instrument.
+
+    A session is unusable, and a warning says so, where the grid azimuth of its line is not known,
+    where there is no grid to form astronomic terms, or where it yields no gyro azimuth.
+    """
+    keys = session_moments(project, instrument)
+    surveys = [
+        keys[s.id] for s in project.sessions if s.instrument == instrument and s.purpose == "survey"
+    ]
+    distinct = len({key[0] for key in keys.values()}) > 1
+    found: list[Calibration] = []
+    warnings: list[ResultWarning] = []
+    for item in reduced:
+        session = item.session
+        if session.instrument != instrument or session.purpose != "calibration":
+            continue
+        for target in item.targets:
+            line = geometry[session.id, target.target]
+            bearing = grid_bearing(line.start, line.end)
+            own = session.azimuth_known if target.target == session.target else None
+            grid_azimuth = own if own is not None else bearing
+            if grid_azimuth is None or target.gyro_azimuth is None:
+                warnings.append(_unusable(session, target.target, "its azimuth is not known"))
+                continue
+            true = known_astronomic(line, grid_azimuth, known_azimuth_sigma(session))
+            if true is None:
+                warnings.append(_unusable(session, target.target, "no crs gives its convergence"))
+                continue
+            if own is not None and bearing is not None:
+                warnings += _contradiction(session, line, wrap_pi(own - bearing))
+            gyro = scatter.applied(target.gyro_azimuth, session.id)
+            value = true - gyro + line.centring(centring_of(project, session))
+            found.append(
+                Calibration(
+                    session=session.id,
+                    station=session.station,
+                    target=target.target,
+                    value=value.shifted(wrap_pi(value.value) - value.value),
+                    phase=phase_of(keys[session.id], surveys),
+                    block=surveys_before(keys[session.id], surveys),
+                    moment=keys[session.id][0] if distinct else None,
+                    rounds=rounds_of(item),
+                    known_azimuth=grid_azimuth,
+                    from_coordinates=bearing,
+                    distance_m=line.distance_m,
+                )
+            )
+    return found, warnings
+
+
+def _unusable(session: OrientationSession, target: str, why: str) -> ResultWarning:
+    text = f"session {session.id}, line {session.station}-{target}: no constant from it: {why}"
+    return ResultWarning("calibration_unusable", text)
+
+
+def _contradiction(
+    session: OrientationSession, line: LineGeometry, apart: float
+) -> list[ResultWarning]:
+    """Tell of a known azimuth that no error of the coordinates explains."""
+    if not line.distance_m or abs(apart) * line.distance_m <= LARGEST_SHIFT_M:
+        return []
+    text = (
+        f"session {session.id}: the known azimuth of {session.station}-{session.target} wins over "
+        f'the coordinates, which give {-apart * RHO_ARCSEC:+.1f}": '
+        f"{abs(apart) * line.distance_m:.2f} m at the target"
+    )
+    return [ResultWarning("azimuth_known_differs", text)]
+
+
+def rounds_of(item: ReducedSession) -> int:
+    """Rounds that a session stands for: delivered rounds, else the run itself."""
+    if item.session.method != "automatic":
+        return 1
+    return stated_rounds(item.session) or item.reduction.points_used
+
+
+def known_azimuth_sigma(session: OrientationSession) -> float:
+    """Sigma [rad] of the known azimuth, 0 where the project states none."""
+    value = dict(session.override).get("azimuth_known_sigma_arcsec")
+    return float(value) * ARCSEC if isinstance(value, int | float) else 0.0
+
+
+def centring_of(project: Project, session: OrientationSession) -> Centring:
+    """Centring of a session: its own where it states one, else the project's."""
+    own = dict(session.override).get("centring")
+    return own if isinstance(own, Centring) else project.centring

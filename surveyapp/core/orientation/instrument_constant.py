@@ -1,0 +1,355 @@
+"""The instrument constant: true minus gyro azimuth, in astronomic terms.
+
+Determinations on known lines before and after the survey (any n-m-k programme) are pooled,
+interpolated in time, taken from one line, or compared with a value known beforehand. Where they
+disagree, nothing is averaged silently: the disagreement enters the sigma, and the result says so.
+
+Source: physics.md 3.1 and 3.2; Regulation for coal-mine surveying (1989), articles 62 and 63.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from surveyapp.core.statistics.distributions import f_tail, student_quantile
+from surveyapp.core.statistics.repeated import SHARED, weighted_mean
+from surveyapp.core.uncertain import Source, Uncertain, combine
+from surveyapp.domain.instrument import Instrument
+from surveyapp.domain.project import ResultWarning
+from surveyapp.errors import Problem, SurveyError
+from surveyapp_models.angles import RHO_ARCSEC
+
+Phase = Literal["before", "between", "after"]
+
+SIGNIFICANCE = 0.05
+"""Of the stability tests: a constant that may have moved must be looked at."""
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """One determination of the constant.
+
+    Parameters
+    ----------
+    session, station, target : str
+    value : Uncertain
+        True minus gyro [rad], wrapped to (-pi, pi].
+    phase : str
+        before, between or after the survey sessions.
+    block : int
+        Number of survey sessions before it: one block of calibrations has no survey in it.
+    moment : float or None
+        Abscissa for interpolation: seconds, or the stated order.
+    rounds : int
+    known_azimuth, from_coordinates : float or None
+        Grid azimuth used, and the one from the coordinates [rad].
+    distance_m : float or None
+        Length of the line.
+    """
+
+    session: str
+    station: str
+    target: str
+    value: Uncertain
+    phase: Phase
+    moment: float | None
+    rounds: int
+    known_azimuth: float
+    from_coordinates: float | None
+    distance_m: float | None
+    block: int = 0
+
+    @property
+    def line(self) -> str:
+        """Name of the line as ``constant_choice`` writes it."""
+        return f"{self.station}-{self.target}"
+
+
+@dataclass(frozen=True, slots=True)
+class Agreement:
+    """Comparison of group means.
+
+    Parameters
+    ----------
+    difference : float
+        Largest difference between two groups [rad].
+    limit : float
+        What chance makes at the 5 % level [rad] (two groups), else NaN-free 0.
+    agree : bool
+    scatter : float
+        Standard deviation to be added to the pooled mean where they do not agree [rad].
+    dof : int
+    probability : float
+    names : tuple of str
+    """
+
+    difference: float
+    limit: float
+    agree: bool
+    scatter: float
+    dof: int
+    probability: float
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class InstrumentConstant:
+    """Everything known of the constant of one instrument."""
+
+    instrument: Instrument
+    calibrations: tuple[Calibration, ...]
+    lines: tuple[tuple[str, Uncertain], ...]
+    line_agreement: Agreement | None
+    phase_agreement: Agreement | None
+    known: Uncertain | None
+
+    @property
+    def stable(self) -> bool | None:
+        """False where lines or epochs disagree; None where nothing can tell."""
+        tests = [test for test in (self.line_agreement, self.phase_agreement) if test is not None]
+        return all(test.agree for test in tests) if tests else None
+
+    @property
+    def pooled(self) -> Uncertain | None:
+        """Mean of all determinations; a disagreement enters its sigma."""
+        if not self.calibrations:
+            return None
+        mean = weighted_mean([item.value for item in self.calibrations])
+        return self._with_disagreement(mean)
+
+    def _with_disagreement(self, mean: Uncertain) -> Uncertain:
+        for name, test in (("lines", self.line_agreement), ("epochs", self.phase_agreement)):
+            if test is not None and not test.agree and test.scatter > 0.0:
+                source = Source("constant instability", self.instrument.id, float(test.dof), name)
+                mean = mean.with_part(source, test.scatter)
+        return mean
+
+
+def compare_groups(groups: Sequence[tuple[str, Uncertain]]) -> Agreement | None:
+    """Compare means of two or more groups; None for fewer, or without a sigma.
+
+    The unknown deflection is left out of the comparison: it differs little between neighbouring
+    lines, and whoever chooses a line must know of the difference whatever its cause.
+    """
+    usable = [
+        (name, item.without("deflection", "known azimuth", "torsion ratio"))
+        for name, item in groups
+    ]
+    usable = [(name, item) for name, item in usable if 0.0 < item.variance < math.inf]
+    if len(usable) < 2:
+        return None
+    weights = [1.0 / item.variance for _, item in usable]
+    total = math.fsum(weights)
+    values = [item.value for _, item in usable]
+    mean = math.fsum(w * v for w, v in zip(weights, values, strict=True)) / total
+    squares = math.fsum(w * (v - mean) ** 2 for w, v in zip(weights, values, strict=True))
+    dof = len(usable) - 1
+    pooled = combine((1.0, item) for _, item in usable)
+    probability = f_tail(squares / dof, dof_numerator=dof, dof_denominator=max(pooled.dof, 1.0))
+    external = squares / dof / total
+    widest = max(range(len(values)), key=values.__getitem__)
+    lowest = min(range(len(values)), key=values.__getitem__)
+    spread = usable[widest][1] - usable[lowest][1]
+    return Agreement(
+        difference=spread.value,
+        limit=student_quantile(1.0 - 0.5 * SIGNIFICANCE / dof, max(spread.dof, 1.0)) * spread.sigma,
+        agree=probability >= SIGNIFICANCE,
+        scatter=math.sqrt(max(external - 1.0 / total, 0.0)),
+        dof=dof,
+        probability=probability,
+        names=tuple(name for name, _ in usable),
+    )
+
+
+def determine(instrument: Instrument, calibrations: Sequence[Calibration]) -> InstrumentConstant:
+    """Group the determinations by line and by epoch and test their agreement."""
+    by_line: dict[str, list[Uncertain]] = {}
+    by_block: dict[int, list[Calibration]] = {}
+    for item in calibrations:
+        by_line.setdefault(item.line, []).append(item.value)
+        by_block.setdefault(item.block, []).append(item)
+    lines = tuple((name, weighted_mean(items)) for name, items in by_line.items())
+    epochs = [
+        (_epoch_name(number, by_block), weighted_mean([item.value for item in by_block[number]]))
+        for number in sorted(by_block)
+    ]
+    same_lines = all({item.line for item in items} == set(by_line) for items in by_block.values())
+    known = None
+    if instrument.known_constant is not None:
+        value, sigma = instrument.known_constant
+        known = Uncertain(value, {Source("known constant", instrument.id): sigma})
+    return InstrumentConstant(
+        instrument=instrument,
+        calibrations=tuple(calibrations),
+        lines=lines,
+        line_agreement=compare_groups(lines),
+        phase_agreement=compare_groups(epochs) if same_lines else None,
+        known=known,
+    )
+
+
+def _epoch_name(number: int, blocks: Mapping[int, Sequence[Calibration]]) -> str:
+    """before, after, or the place of a block between surveys."""
+    phase = blocks[number][0].phase
+    between = [n for n in sorted(blocks) if blocks[n][0].phase == "between"]
+    return f"between {between.index(number) + 1}" if phase == "between" else phase
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """The constant for one survey session: value, the choice in words, warnings."""
+
+    value: Uncertain | None
+    choice: str | None
+    warnings: tuple[ResultWarning, ...] = ()
+
+
+def choose(
+    constant: InstrumentConstant,
+    choice: str,
+    *,
+    moment: float | None,
+    block: int,
+    distance_to: Callable[[str], float | None],
+    where: str,
+) -> Chosen:
+    """The constant that a survey session uses.
+
+    Parameters
+    ----------
+    constant : InstrumentConstant
+    choice : str
+        pooled | interpolated | nearest | line:A-B | known.
+    moment : float or None
+        When the survey session took place.
+    block : int
+        Number of survey sessions before it.
+    distance_to : callable
+        Distance [m] from the survey station to the station of a name.
+    where : str
+        The session, for messages.
+
+    Raises
+    ------
+    SurveyError
+        If the choice names a line on which the instrument was not calibrated, or is no choice.
+    """
+    if choice.startswith("line:"):
+        return Chosen(_named_line(constant, choice, where), choice)
+    if choice == "known" or (not constant.calibrations and constant.known is not None):
+        if constant.known is None:
+            raise SurveyError(_unknown_choice(constant, choice, where))
+        return Chosen(constant.known, "known")
+    if choice not in ("pooled", "interpolated", "nearest"):
+        raise SurveyError(_unknown_choice(constant, choice, where))
+    if not constant.calibrations:
+        return Chosen(None, None)
+    if choice == "interpolated":
+        return _interpolated(constant, moment, where, block=block)
+    if choice == "nearest":
+        return _nearest(constant, distance_to, where)
+    return Chosen(constant.pooled, "pooled")
+
+
+def _named_line(constant: InstrumentConstant, choice: str, where: str) -> Uncertain:
+    for name, value in constant.lines:
+        if name == choice.removeprefix("line:"):
+            return value
+    raise SurveyError(_unknown_choice(constant, choice, where))
+
+
+def _unknown_choice(constant: InstrumentConstant, choice: str, where: str) -> Problem:
+    known = [f"line:{name}" for name, _ in constant.lines]
+    if constant.known is not None:
+        known.append("known")
+    return Problem(
+        what="the constant asked for does not exist",
+        where=f"{where}, instrument {constant.instrument.id}, constant_choice",
+        found=choice,
+        expected=", ".join(["pooled", "interpolated", "nearest", *known]),
+        hint="Name a line with a calibration session, written station-target.",
+    )
+
+
+def _nearest(
+    constant: InstrumentConstant, distance_to: Callable[[str], float | None], where: str
+) -> Chosen:
+    distances = {
+        item.line: distance
+        for item in constant.calibrations
+        if (distance := distance_to(item.station)) is not None
+    }
+    if not distances:
+        text = f"{where}: no positions tell which calibration line is nearest: all are pooled"
+        warning = ResultWarning("nearest_unknown", text)
+        return Chosen(constant.pooled, "pooled", (warning,))
+    nearest = min(distances, key=distances.__getitem__)
+    return Chosen(dict(constant.lines)[nearest], f"nearest (line:{nearest})")
+
+
+def _interpolated(
+    constant: InstrumentConstant, moment: float | None, where: str, *, block: int
+) -> Chosen:
+    """Linear in time between the nearest calibrations before and after (physics.md 3.2)."""
+    numbers = {item.block for item in constant.calibrations}
+    nearest = {
+        "before": max((n for n in numbers if n <= block), default=None),
+        "after": min((n for n in numbers if n > block), default=None),
+    }
+    groups = {
+        phase: [item for item in constant.calibrations if item.block == number]
+        for phase, number in nearest.items()
+    }
+    if moment is None or not all(groups.values()):
+        return _not_interpolated(constant, where)
+    means, moments = {}, {}
+    for phase, items in groups.items():
+        stamps = [item.moment for item in items if item.moment is not None]
+        if len(stamps) != len(items):
+            return _not_interpolated(constant, where)
+        means[phase] = weighted_mean([item.value for item in items])
+        moments[phase] = math.fsum(stamps) / len(stamps)
+    span = moments["after"] - moments["before"]
+    if span <= 0.0:
+        return _not_interpolated(constant, where)
+    fraction = (moment - moments["before"]) / span
+    value = combine([(1.0 - fraction, means["before"]), (fraction, means["after"])])
+    test = constant.line_agreement
+    if test is not None and not test.agree and test.scatter > 0.0:
+        source = Source("constant instability", constant.instrument.id, float(test.dof), "lines")
+        value = value.with_part(source, test.scatter)
+    return Chosen(value, "interpolated")
+
+
+def _not_interpolated(constant: InstrumentConstant, where: str) -> Chosen:
+    text = (
+        f"{where}: the constant cannot be interpolated: it needs calibrations before and after, "
+        "and times, dates or order on every session; all determinations are pooled"
+    )
+    return Chosen(constant.pooled, "pooled", (ResultWarning("interpolation_impossible", text),))
+
+
+def agreement_text(test: Agreement, what: str) -> str:
+    """Tell an agreement or disagreement in one sentence."""
+    verdict = "agree" if test.agree else "disagree"
+    names = " and ".join(test.names) if len(test.names) < 4 else f"{len(test.names)} {what}"
+    return (
+        f'constants of {names} {verdict}: {test.difference * RHO_ARCSEC:.2f}" apart, '
+        f'chance makes {test.limit * RHO_ARCSEC:.2f}" (p = {test.probability:.3g})'
+    )
+
+
+__all__ = [
+    "SHARED",
+    "Agreement",
+    "Calibration",
+    "Chosen",
+    "InstrumentConstant",
+    "agreement_text",
+    "choose",
+    "compare_groups",
+    "determine",
+]

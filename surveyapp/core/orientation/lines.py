@@ -1,0 +1,264 @@
+"""From the gyro azimuths of a line to its grid azimuth, with the budget by source.
+
+grid = gyro azimuth + constant - deflection - convergence - arc_to_chord (design.md section 2).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from surveyapp.core.geodesy import (
+    Azimuth,
+    DeflectionTerm,
+    Grid,
+    Position,
+    arc_to_chord,
+    deflection_term,
+)
+from surveyapp.core.orientation.instrument_constant import Chosen
+from surveyapp.core.statistics.repeated import Consistency, consistency, weights_of
+from surveyapp.core.uncertain import Source, Uncertain, aligned, combine
+from surveyapp.domain.project import Centring, Station, grid_bearing, grid_distance_m
+from surveyapp.domain.results import AngleResult, BudgetLine, LineResult, Reference
+from surveyapp_models.angles import wrap_two_pi
+
+NOTHING = 1e-18
+"""Share of a variance that is rounding of the arithmetic and no source of error."""
+
+
+@dataclass(frozen=True, slots=True)
+class LineGeometry:
+    """What the Earth and the grid do to the azimuth of one line.
+
+    Parameters
+    ----------
+    start, end : Station
+    position : Position
+        Of the occupied station.
+    zenith : float
+        Zenith angle of the target [rad].
+    convergence, arc_to_chord : float or None
+        [rad]; None without a grid (or, for the chord, without the target's position).
+    distance_m : float or None
+    from_south : bool
+    """
+
+    start: Station
+    end: Station
+    position: Position
+    zenith: float
+    convergence: float | None
+    arc_to_chord: float | None
+    distance_m: float | None
+    from_south: bool
+
+    def deflection(self, azimuth: float) -> DeflectionTerm | None:
+        """Deflection term at an azimuth [rad], None without a latitude."""
+        if self.position.latitude is None:
+            return None
+        return deflection_term(
+            self.start.deflection,
+            latitude=self.position.latitude,
+            azimuth=azimuth,
+            zenith=self.zenith,
+        )
+
+    def deflection_parts(self, azimuth: float) -> Uncertain:
+        """The deflection correction with the uncertainty of the deflection itself [rad]."""
+        term = self.deflection(azimuth)
+        if term is None:
+            return Uncertain(0.0)
+        sigma = self.start.deflection.sigma
+        return Uncertain(
+            term.value,
+            {
+                Source("deflection", self.start.name, detail="xi"): term.by_xi * sigma,
+                Source("deflection", self.start.name, detail="eta"): term.by_eta * sigma,
+            },
+        )
+
+    def centring(self, centring: Centring) -> Uncertain:
+        """Zero with the uncertainty of centring; sets on one line share their marks."""
+        if not self.distance_m:
+            return Uncertain(0.0)
+        sigma = math.hypot(centring.instrument_m, centring.target_m) / self.distance_m
+        return Uncertain(0.0, {Source("centring", f"{self.start.name}-{self.end.name}"): sigma})
+
+
+def line_geometry(
+    start: Station,
+    end: Station,
+    *,
+    grid: Grid | None,
+    positions: Mapping[str, Position],
+    zenith: float | None,
+) -> LineGeometry:
+    """Collect what position and grid say of a line.
+
+    The zenith angle is the one read, else from the station heights, else 90 degrees.
+    """
+    at, to = positions[start.name], positions[end.name]
+    convergence = chord = None
+    if grid is not None and at.latitude is not None and at.longitude is not None:
+        convergence = grid.convergence(latitude=at.latitude, longitude=at.longitude)
+        chord = arc_to_chord(grid, at, to)
+    distance = grid_distance_m(
+        Station(start.name, e=at.e, n=at.n), Station(end.name, e=to.e, n=to.n)
+    )
+    if zenith is None:
+        zenith = 0.5 * math.pi
+        if distance and start.h is not None and end.h is not None:
+            zenith = math.atan2(distance, end.h - start.h)
+    return LineGeometry(
+        start=start,
+        end=end,
+        position=at,
+        zenith=zenith,
+        convergence=convergence,
+        arc_to_chord=chord,
+        distance_m=distance,
+        from_south=grid is not None and grid.directions_from_south,
+    )
+
+
+def known_astronomic(geometry: LineGeometry, grid_azimuth: float, sigma: float) -> Uncertain | None:
+    """Astronomic azimuth [rad] of a line of known grid azimuth, None without a convergence."""
+    if geometry.convergence is None:
+        return None
+    geodetic = grid_azimuth + geometry.convergence + (geometry.arc_to_chord or 0.0)
+    value = Uncertain(geodetic) + geometry.deflection_parts(geodetic)
+    if sigma > 0.0:
+        line = f"{geometry.start.name}-{geometry.end.name}"
+        value = value.with_part(Source("known azimuth", line), sigma)
+    return value
+
+
+@dataclass(frozen=True, slots=True)
+class Round:
+    """One survey session of a line, ready to be combined."""
+
+    session: str
+    azimuth: Uncertain
+    chosen: Chosen
+    rounds: int
+
+
+@dataclass(frozen=True, slots=True)
+class OrientedLine:
+    """A line with its error contributions still apart: for checks and for adjustment."""
+
+    result: LineResult
+    gyro: Uncertain
+    true: Uncertain | None
+    grid: Uncertain | None
+    agreement: Consistency | None
+
+
+def angle_result(item: Uncertain, reference: Reference | None = None) -> AngleResult:
+    """A direction as it is reported."""
+    return AngleResult(wrap_two_pi(item.value), item.sigma, item.interval95, item.dof, reference)
+
+
+def orient_line(
+    geometry: LineGeometry,
+    rounds: Sequence[Round],
+    *,
+    instrument: str,
+    centring: Centring,
+    calibration_sessions: frozenset[str],
+    agreement_of: Sequence[Uncertain],
+) -> OrientedLine:
+    """Combine all survey sessions of one line and carry them to the grid.
+
+    Parameters
+    ----------
+    geometry : LineGeometry
+    rounds : sequence of Round
+        At least one; weights by the inverse variance of what is independent in each.
+    instrument : str
+    centring : Centring
+    calibration_sessions : frozenset of str
+        Ids whose contributions the budget counts as the constant's.
+    agreement_of : sequence of Uncertain
+        The rounds before any run-to-run scatter was added: for the test of their agreement.
+    """
+    azimuths = aligned([item.azimuth for item in rounds])
+    weights = weights_of(azimuths)
+    gyro = combine(zip(weights, azimuths, strict=True)) + geometry.centring(centring)
+    constant = _constant(rounds, weights)
+    true = None if constant is None else gyro + constant
+    deflection = geometry.deflection_parts((true or gyro).value)
+    grid = None if true is None else _on_grid(geometry, gyro, true, deflection)
+    existing = grid_bearing(geometry.start, geometry.end)
+    result = LineResult(
+        station=geometry.start.name,
+        target=geometry.end.name,
+        instrument=instrument,
+        rounds=sum(item.rounds for item in rounds),
+        sessions=tuple(item.session for item in rounds),
+        gyro_azimuth=angle_result(gyro, "GYRO"),
+        constant=None if constant is None else constant.value,
+        constant_sigma=None if constant is None else constant.sigma,
+        constant_choice=_choices(rounds),
+        true_azimuth=None if true is None else angle_result(true, "ASTRONOMIC"),
+        deflection=deflection.value,
+        convergence=geometry.convergence,
+        arc_to_chord=geometry.arc_to_chord,
+        grid_azimuth=None if grid is None else angle_result(grid),
+        direction_from_south=(
+            wrap_two_pi(grid.value + math.pi) if grid is not None and geometry.from_south else None
+        ),
+        budget=budget(grid or true or gyro, calibration_sessions),
+        existing_azimuth=None if existing is None else wrap_two_pi(existing),
+        distance_m=geometry.distance_m,
+    )
+    return OrientedLine(result, gyro, true, grid, consistency([aligned(agreement_of)]))
+
+
+def _constant(rounds: Sequence[Round], weights: Sequence[float]) -> Uncertain | None:
+    """Constant of all rounds together, None where one of them has none."""
+    constants = [item.chosen.value for item in rounds if item.chosen.value is not None]
+    if len(constants) < len(rounds):
+        return None
+    return combine(zip(weights, constants, strict=True))
+
+
+def _choices(rounds: Sequence[Round]) -> str | None:
+    names = dict.fromkeys(item.chosen.choice for item in rounds if item.chosen.choice)
+    return " + ".join(names) or None
+
+
+def _on_grid(
+    geometry: LineGeometry, gyro: Uncertain, true: Uncertain, deflection: Uncertain
+) -> Uncertain | None:
+    """Carry the gyro azimuth of a line to the grid, None without one."""
+    if geometry.convergence is None:
+        return None
+    moved = (
+        Azimuth(gyro.value, "GYRO")
+        .with_constant(true.value - gyro.value)
+        .without_deflection(deflection.value)
+        .to_grid(convergence=geometry.convergence, arc_to_chord=geometry.arc_to_chord or 0.0)
+    )
+    return Uncertain(moved.value, (true - deflection).parts)
+
+
+def budget(item: Uncertain, calibration_sessions: frozenset[str]) -> tuple[BudgetLine, ...]:
+    """Variance of an azimuth by source, the largest first; shares sum to 1."""
+    by_source: dict[str, float] = {}
+    for source, part in item.parts.items():
+        name = source.name
+        if source.entity in calibration_sessions:
+            name = f"constant: {name}"
+        by_source[name] = by_source.get(name, 0.0) + part * part
+    total = math.fsum(by_source.values())
+    if not 0.0 < total < math.inf:
+        return ()
+    ordered = sorted(by_source.items(), key=lambda entry: -entry[1])
+    return tuple(
+        BudgetLine(name, math.sqrt(value), value / total)
+        for name, value in ordered
+        if value > NOTHING * total
+    )

@@ -1,0 +1,89 @@
+"""Weights of runs from what all runs of an instrument tell of its readings together.
+
+The sigma of a run comes from its own residuals, of which there are few. As a sigma it is honest
+with its degrees of freedom; as a weight it is not: runs whose residuals are small by chance would
+draw the mean to themselves, and the sigma of the mean would be too small. Weights are therefore
+made with the pooled sigma of the readings, unless a run differs from the others by more than
+chance. No sigma and no interval is changed here.
+
+Source: Meier, P. (1953), Variance of a weighted mean, Biometrics 9, 59-73 (the loss that estimated
+weights cause).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from surveyapp.core.statistics.distributions import f_tail
+from surveyapp.core.swing.session import ReducedSession
+from surveyapp.core.uncertain import Source, Uncertain
+
+SIGNIFICANCE = 0.01
+"""Two-sided: a run whose readings scatter otherwise keeps its own weight."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Scatter:
+    """What the residuals of one run tell of one reading."""
+
+    session: str
+    variance: float
+    dof: float
+
+
+def with_pooled_weights(reduced: Sequence[ReducedSession]) -> tuple[ReducedSession, ...]:
+    """Give the error source of every run's readings the ratio that its weight is made with."""
+    groups: dict[tuple[str, str], list[_Scatter]] = {}
+    for item in reduced:
+        unit = item.reduction.unit
+        if unit is not None and unit.sigma > 0.0 and math.isfinite(unit.dof):
+            found = _Scatter(item.session.id, unit.sigma**2, unit.dof)
+            groups.setdefault((item.session.instrument, unit.source), []).append(found)
+    ratios = {
+        (scatter.session, source): _ratio(scatter, group)
+        for (_, source), group in groups.items()
+        for scatter in group
+        if len(group) > 1
+    }
+    return tuple(_weighted(item, ratios) for item in reduced)
+
+
+def _ratio(own: _Scatter, group: Sequence[_Scatter]) -> float:
+    """Pooled sigma divided by one's own; 1 where the run differs from the others significantly."""
+    others = [item for item in group if item is not own]
+    dof = math.fsum(item.dof for item in others)
+    rest = math.fsum(item.dof * item.variance for item in others) / dof
+    larger = own.variance > rest
+    numerator, denominator = (own.dof, dof) if larger else (dof, own.dof)
+    quotient = own.variance / rest if larger else rest / own.variance
+    tail = f_tail(quotient, dof_numerator=numerator, dof_denominator=denominator)
+    if tail < 0.5 * SIGNIFICANCE:
+        return 1.0
+    pooled = (rest * dof + own.variance * own.dof) / (dof + own.dof)
+    return math.sqrt(pooled / own.variance)
+
+
+def _weighted(item: ReducedSession, ratios: Mapping[tuple[str, str], float]) -> ReducedSession:
+    unit = item.reduction.unit
+    ratio = 1.0 if unit is None else ratios.get((item.session.id, unit.source), 1.0)
+    if unit is None or ratio == 1.0:
+        return item
+    targets = tuple(
+        target
+        if target.gyro_azimuth is None
+        else replace(
+            target, gyro_azimuth=_marked(target.gyro_azimuth, unit.source, item.session.id, ratio)
+        )
+        for target in item.targets
+    )
+    return replace(item, targets=targets)
+
+
+def _marked(value: Uncertain, name: str, session: str, ratio: float) -> Uncertain:
+    parts: dict[Source, float] = {}
+    for source, part in value.parts.items():
+        own = source.name == name and source.entity == session
+        parts[replace(source, weight_ratio=ratio) if own else source] = part
+    return Uncertain(value.value, parts)

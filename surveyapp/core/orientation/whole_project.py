@@ -1,0 +1,312 @@
+"""A whole project: sessions, constants, oriented lines. The order of the computation, no formula.
+
+Problems of all sessions are collected before anything is raised.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from surveyapp.core.checks.adopted_checks import check_adopted
+from surveyapp.core.checks.blunders import place_warnings, refuse_one_place
+from surveyapp.core.geodesy import (
+    MAX_LATITUDE_DEG,
+    WARN_LATITUDE_DEG,
+    Grid,
+    Position,
+    latitude_problem,
+    open_grid,
+    position_of,
+)
+from surveyapp.core.orientation.adopted import apply_adopted
+from surveyapp.core.orientation.calibration_sessions import calibrations_of
+from surveyapp.core.orientation.instrument_constant import (
+    InstrumentConstant,
+    determine,
+)
+from surveyapp.core.orientation.lines import (
+    LineGeometry,
+    OrientedLine,
+    line_geometry,
+)
+from surveyapp.core.orientation.pooled_weights import with_pooled_weights
+from surveyapp.core.orientation.sequence import session_moments, surveys_before
+from surveyapp.core.orientation.survey_lines import oriented_lines
+from surveyapp.core.statistics.repeated import RunScatter, run_scatter
+from surveyapp.core.swing.goodness import Judge
+from surveyapp.core.swing.run_model import RunModel
+from surveyapp.core.swing.session import (
+    ReducedSession,
+    SightSigma,
+    collect_sights,
+    known_target,
+    pooled_sight_sigma,
+    reduce_swing,
+    reduce_targets,
+    sight_resolution,
+)
+from surveyapp.core.swing.sights import SightSet, tripod_twist, zenith_angle
+from surveyapp.core.uncertain import Uncertain, aligned
+from surveyapp.domain.project import (
+    OrientationSession,
+    Project,
+    ResultWarning,
+    Station,
+)
+from surveyapp.errors import Problem, SurveyError
+
+
+@dataclass(frozen=True, slots=True)
+class Orientation:
+    """A computed project, contributions still apart: results and checks are made from it."""
+
+    project: Project
+    grid: Grid | None
+    positions: Mapping[str, Position]
+    sessions: tuple[ReducedSession, ...]
+    sight_sigmas: Mapping[str, SightSigma]
+    scatters: Mapping[str, RunScatter]
+    constants: tuple[InstrumentConstant, ...]
+    lines: tuple[OrientedLine, ...]
+    warnings: tuple[ResultWarning, ...]
+
+
+def orient_project(
+    project: Project,
+    rng: np.random.Generator,
+    *,
+    estimator: str | None = None,
+    only: str | None = None,
+    run_model: RunModel | None = None,
+) -> Orientation:
+    """Reduce every session, determine the constants, orient every line.
+
+    Parameters
+    ----------
+    project : Project
+    rng : numpy.random.Generator
+        For the null distributions of the tests of fit.
+    estimator : str or None
+        For all sessions; None for the default of each method.
+    only : str or None
+        Orient lines with this survey session alone; the constants come from all calibrations.
+    run_model : callable or None
+        Estimates runs with adopted effects.
+
+    Raises
+    ------
+    SurveyError
+        With the problems of all sessions together.
+    """
+    grid = open_grid(project.crs) if project.crs is not None else None
+    positions = {station.name: position_of(station, grid) for station in project.stations}
+    stations = {
+        station.name: _with_position(station, positions[station.name])
+        for station in project.stations
+    }
+    warnings = [*project.warnings, *check_adopted(project)]
+    tested = sum(session.method != "automatic" for session in project.sessions)
+    judge = Judge(rng, tested)
+    setting = _Setting(project, positions, stations, judge, estimator, run_model)
+    reduced, sigmas = _reduce_all(setting)
+    measured = reduced = with_pooled_weights(reduced)
+    for instrument in project.instruments:
+        reduced, found = apply_adopted(instrument, reduced, positions)
+        warnings += found
+    scatters = {
+        instrument.id: _scatter_of(project, reduced, instrument.id)
+        for instrument in project.instruments
+    }
+    geometry = _geometries(reduced, stations, grid, positions)
+    refuse_one_place(geometry)
+    warnings += place_warnings(list(geometry.values()), grid)
+    constants = []
+    for instrument in project.instruments:
+        calibrations, more = calibrations_of(
+            project, reduced, instrument.id, geometry, scatters[instrument.id]
+        )
+        warnings += more
+        constants.append(determine(instrument, calibrations))
+    lines, more = oriented_lines(project, reduced, constants, geometry, scatters, stations, only)
+    warnings += more
+    return Orientation(
+        project,
+        grid,
+        positions,
+        measured,
+        sigmas,
+        scatters,
+        tuple(constants),
+        lines,
+        tuple(warnings),
+    )
+
+
+def _with_position(station: Station, at: Position) -> Station:
+    return replace(station, e=at.e, n=at.n, latitude=at.latitude, longitude=at.longitude)
+
+
+@dataclass(frozen=True, slots=True)
+class _Setting:
+    """What the reduction of every session needs."""
+
+    project: Project
+    positions: Mapping[str, Position]
+    stations: Mapping[str, Station]
+    judge: Judge
+    estimator: str | None
+    run_model: RunModel | None
+
+
+def _reduce_all(setting: _Setting) -> tuple[tuple[ReducedSession, ...], dict[str, SightSigma]]:
+    problems: list[Problem] = []
+    sights: dict[str, dict[str, SightSet]] = {}
+    for session in setting.project.sessions:
+        try:
+            known_target(session, setting.stations)
+            sights[session.id] = collect_sights(session)
+        except SurveyError as error:
+            problems += error.problems
+    sigmas = _sight_sigmas(setting.project, sights)
+    reduced = []
+    for session in setting.project.sessions:
+        if session.id not in sights:
+            continue
+        try:
+            sigma = sigmas[session.instrument]
+            reduced.append(_reduce_one(setting, session, sights[session.id], sigma))
+        except SurveyError as error:
+            problems += error.problems
+    if problems:
+        raise SurveyError(problems)
+    return tuple(reduced), sigmas
+
+
+def _sight_sigmas(
+    project: Project, sights: Mapping[str, Mapping[str, SightSet]]
+) -> dict[str, SightSigma]:
+    result = {}
+    for instrument in project.instruments:
+        own = [s for s in project.sessions if s.instrument == instrument.id and s.id in sights]
+        result[instrument.id] = pooled_sight_sigma(
+            [item for session in own for item in sights[session.id].values()],
+            resolution=min(
+                (sight_resolution(session) for session in own if sights[session.id]), default=0.0
+            ),
+            fallback=instrument.card.sigma.reversal,
+        )
+    return result
+
+
+def _reduce_one(
+    setting: _Setting,
+    session: OrientationSession,
+    sights: Mapping[str, SightSet],
+    sigma: SightSigma,
+) -> ReducedSession:
+    card = setting.project.instrument(session.instrument).card
+    latitude = setting.positions[session.station].latitude
+    warnings = _latitude_warnings(session, latitude, card.valid.latitude_max)
+    reduction = reduce_swing(
+        session,
+        card,
+        setting.judge,
+        latitude=latitude,
+        estimator=setting.estimator,
+        run_model=setting.run_model,
+        twist=tripod_twist(list(sights.values())),
+    )
+    targets = reduce_targets(
+        session, reduction, sights, sigma=sigma, stations=setting.stations, card=card
+    )
+    if not targets:
+        text = f"session {session.id}: no sight of a target: gyro north only, no line"
+        warnings.append(ResultWarning("no_line", text))
+    for target in targets:
+        if target.sights is not None and target.sights.collimation is None:
+            text = (
+                f"session {session.id}: {target.target} was sighted in one face only: "
+                "the collimation error stays in the line"
+            )
+            warnings.append(ResultWarning("one_face", text))
+    return ReducedSession(session, reduction, targets, (*reduction.warnings, *warnings))
+
+
+def _latitude_warnings(
+    session: OrientationSession, latitude: float | None, allowed: float | None
+) -> list[ResultWarning]:
+    """Refuse or warn of a latitude; the card's own limit replaces the general 75 degrees."""
+    if latitude is None:
+        text = (
+            f"session {session.id}: the latitude of {session.station} is not known: "
+            "card values hold for their own latitude"
+        )
+        return [ResultWarning("latitude_unknown", text)]
+    degrees = abs(math.degrees(latitude))
+    limit = MAX_LATITUDE_DEG if allowed is None else math.degrees(allowed)
+    if degrees > limit:
+        problem = latitude_problem(latitude, f"session {session.id}, station {session.station}")
+        if problem is None:
+            problem = Problem(
+                what="the station lies beyond the latitude for which the instrument is made",
+                where=f"session {session.id}, station {session.station}",
+                found=f"latitude {math.degrees(latitude):.4f} degrees",
+                expected=f"at most {limit:g} degrees (the instrument's [range])",
+                hint="Check the coordinates or the instrument's latitude_max_deg.",
+            )
+        raise SurveyError(problem)
+    if degrees > WARN_LATITUDE_DEG:
+        text = (
+            f"session {session.id}: latitude {math.degrees(latitude):.2f} degrees: the "
+            f"meridian-seeking moment is {math.cos(latitude):.0%} of that at the equator"
+        )
+        return [ResultWarning("latitude_high", text)]
+    return []
+
+
+def _scatter_of(project: Project, reduced: Sequence[ReducedSession], instrument: str) -> RunScatter:
+    """Scatter between the runs of one line and epoch: a drift between epochs is not scatter."""
+    keys = session_moments(project, instrument)
+    surveys = [
+        keys[session.id]
+        for session in project.sessions
+        if session.instrument == instrument and session.purpose == "survey"
+    ]
+    groups: dict[tuple[str, str, str], list[Uncertain]] = {}
+    for item in reduced:
+        if item.session.instrument != instrument:
+            continue
+        for target in item.targets:
+            if target.gyro_azimuth is not None:
+                phase: str = item.session.purpose
+                if phase == "calibration":
+                    phase = f"block {surveys_before(keys[item.session.id], surveys)}"
+                key = (item.session.station, target.target, phase)
+                groups.setdefault(key, []).append(target.gyro_azimuth)
+    return run_scatter([aligned(group) for group in groups.values()])
+
+
+def _geometries(
+    reduced: Sequence[ReducedSession],
+    stations: Mapping[str, Station],
+    grid: Grid | None,
+    positions: Mapping[str, Position],
+) -> dict[tuple[str, str], LineGeometry]:
+    """Geometry of every sighted line by (session, target)."""
+    result = {}
+    for item in reduced:
+        session = item.session
+        for target in item.targets:
+            zenith = zenith_angle(session.book, target.target, default_target=session.target)
+            result[session.id, target.target] = line_geometry(
+                stations[session.station],
+                stations[target.target],
+                grid=grid,
+                positions=positions,
+                zenith=zenith,
+            )
+    return result

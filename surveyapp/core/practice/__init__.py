@@ -1,0 +1,1 @@
+"""The simulated instrument of the practice mode."""

@@ -1,0 +1,316 @@
+"""One occupation of a station: method, sights, set-up, to the gyro azimuth of each target."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from surveyapp.core.book.resolution import reading_resolution, rounding_sigma
+from surveyapp.core.checks.blunders import refuse_wrong_faces
+from surveyapp.core.swing.automatic import azimuth_targets, reduce_automatic
+from surveyapp.core.swing.clamped_north import reduce_nontracking
+from surveyapp.core.swing.goodness import Judge
+from surveyapp.core.swing.reduction import Reduction
+from surveyapp.core.swing.run_model import RunModel
+from surveyapp.core.swing.sights import (
+    SightSet,
+    TripodTwist,
+    eccentric_correction,
+    reduce_sights,
+)
+from surveyapp.core.swing.tracking import reduce_tracking
+from surveyapp.core.uncertain import Source, Uncertain
+from surveyapp.domain.instrument import InstrumentCard
+from surveyapp.domain.project import OrientationSession, ResultWarning, Station, grid_distance_m
+from surveyapp.domain.readings import ReadingKind
+from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp_models.angles import wrap_two_pi
+
+ESTIMATORS: Mapping[str, tuple[str, ...]] = {
+    "tracking": ("least-squares", "schuler"),
+    "amplitude": ("least-squares", "amplitude"),
+    "transit": ("least-squares", "transit"),
+    "automatic": ("mean",),
+}
+"""Estimators by method; the first is the default (tracking: from six turning points on)."""
+LEAST_COLLIMATIONS = 4
+"""Set-ups from which the scatter of the collimation has three degrees of freedom."""
+
+
+@dataclass(frozen=True, slots=True)
+class SightSigma:
+    """Standard deviation of one pointing [rad], its degrees of freedom and its origin."""
+
+    value: float
+    dof: float
+    origin: str
+
+
+@dataclass(frozen=True, slots=True)
+class TargetReduction:
+    """One target of a reduced session.
+
+    Parameters
+    ----------
+    target : str
+    sights : SightSet or None
+        None where the instrument delivered the azimuth.
+    line_reading : Uncertain or None
+        B with the eccentric correction in it [rad].
+    eccentric : float
+        That correction [rad].
+    gyro_azimuth : Uncertain or None
+        A_g = B - N [rad]; None without gyro north.
+    """
+
+    target: str
+    sights: SightSet | None
+    line_reading: Uncertain | None
+    eccentric: float
+    gyro_azimuth: Uncertain | None
+
+
+@dataclass(frozen=True, slots=True)
+class ReducedSession:
+    """A session after everything that needs no other session."""
+
+    session: OrientationSession
+    reduction: Reduction
+    targets: tuple[TargetReduction, ...]
+    warnings: tuple[ResultWarning, ...]
+
+
+def estimator_for(session: OrientationSession, estimator: str | None) -> str | None:
+    """Check that an estimator asked for suits the session's method.
+
+    Raises
+    ------
+    SurveyError
+        If it does not; an automatic gyro knows no estimator and takes none.
+    """
+    if estimator is None or session.method == "automatic":
+        return None
+    allowed = ESTIMATORS[session.method]
+    if estimator in allowed:
+        return estimator
+    raise SurveyError(
+        Problem(
+            what=f"the estimator {estimator} does not suit the method {session.method}",
+            where=f"session {session.id}",
+            found=estimator,
+            expected=" or ".join(allowed),
+            hint="Choose another estimator, or name the session with --session.",
+        )
+    )
+
+
+def reduce_swing(
+    session: OrientationSession,
+    card: InstrumentCard,
+    judge: Judge,
+    *,
+    latitude: float | None,
+    estimator: str | None,
+    run_model: RunModel | None = None,
+    twist: TripodTwist | None = None,
+) -> Reduction:
+    """Reduce the observation itself by the session's method, a turning tripod taken out of it."""
+    chosen = estimator_for(session, estimator)
+    if session.method == "automatic":
+        return reduce_automatic(session, card)
+    if session.method != "tracking":
+        return reduce_nontracking(
+            session, card, judge, latitude=latitude, estimator=chosen, twist=twist
+        )
+    return reduce_tracking(
+        session,
+        card,
+        judge,
+        latitude=latitude,
+        estimator=chosen,
+        run_model=run_model,
+        twist=twist,
+    )
+
+
+def sight_targets(session: OrientationSession) -> tuple[str, ...]:
+    """Names of all targets of a session, its own first."""
+    names = [session.target] if session.target else []
+    kinds = (ReadingKind.BACKSIGHT, ReadingKind.AZIMUTH)
+    names += [row.target for row in session.book.of_kind(*kinds) if row.target]
+    return tuple(dict.fromkeys(names))
+
+
+def collect_sights(session: OrientationSession) -> dict[str, SightSet]:
+    """Reduced sights of every target that was sighted."""
+    found = {}
+    for target in sight_targets(session):
+        sights = reduce_sights(session.book, target, default_target=session.target)
+        if sights is not None:
+            refuse_wrong_faces(session, sights)
+            found[target] = sights
+    return found
+
+
+def pooled_sight_sigma(
+    sights: Sequence[SightSet], *, resolution: float, fallback: float | None
+) -> SightSigma:
+    """Standard deviation of one pointing from all sights of one instrument.
+
+    Parameters
+    ----------
+    sights : sequence of SightSet
+        Of every session of the instrument: collimation and tripod drift differ from set-up to
+        set-up and are taken out, the pointing error is one.
+    resolution : float
+        Reading resolution [rad]; rounding is the floor.
+    fallback : float or None
+        The card's sigma of a turning point, which contains a circle reading: an upper bound, used
+        where the sights have no redundancy. The scatter of the collimation over several set-ups
+        is an upper bound as well; the smaller of the two is taken.
+    """
+    dof = sum(item.dof for item in sights)
+    floor = rounding_sigma(resolution)
+    if dof > 0:
+        sigma = math.sqrt(math.fsum(item.sum_of_squares for item in sights) / dof)
+        return SightSigma(max(sigma, floor), float(dof), "residuals of the sights")
+    scatter = _collimation_scatter(sights)
+    if scatter is not None and (fallback is None or scatter.value < fallback):
+        return replace(scatter, value=max(scatter.value, floor))
+    if fallback is not None:
+        return SightSigma(max(fallback, floor), math.inf, "the card's reading sigma")
+    return SightSigma(floor, math.inf, "rounding alone")
+
+
+def _collimation_scatter(sights: Sequence[SightSet]) -> SightSigma | None:
+    """Sigma of one pointing from what the collimation changes from set-up to set-up."""
+    found = [
+        (item.collimation, item.collimation_cofactor)
+        for item in sights
+        if item.collimation is not None
+    ]
+    if len(found) < LEAST_COLLIMATIONS:
+        return None
+    weights = [1.0 / cofactor for _, cofactor in found]
+    mean = math.fsum(w * c for w, (c, _) in zip(weights, found, strict=True)) / math.fsum(weights)
+    squares = math.fsum(w * (c - mean) ** 2 for w, (c, _) in zip(weights, found, strict=True))
+    dof = len(found) - 1
+    return SightSigma(math.sqrt(squares / dof), float(dof), "scatter of the collimation")
+
+
+def sight_resolution(session: OrientationSession) -> float:
+    """Resolution of the sights of a session [rad]."""
+    if session.resolution is not None:
+        return session.resolution
+    return reading_resolution(session.book.of_kind(ReadingKind.BACKSIGHT))
+
+
+def eccentric_of(
+    session: OrientationSession, target: str, line_reading: float, stations: Mapping[str, Station]
+) -> tuple[float, float]:
+    """Eccentric correction of a line reading and the 1-sigma of it [rad].
+
+    Raises
+    ------
+    SurveyError
+        If the distance of the marks is not known, or not longer than the offset.
+    """
+    eccentric = session.eccentric
+    if eccentric is None or eccentric.distance_m == 0.0:
+        return 0.0, 0.0
+    if eccentric.at == "target" and target != session.target:
+        return 0.0, 0.0
+    distance = None
+    if target in stations:
+        distance = grid_distance_m(stations[session.station], stations[target])
+    if distance is None or distance <= eccentric.distance_m:
+        raise SurveyError(
+            Problem(
+                what="an eccentric set-up needs the distance of the two marks",
+                where=f"session {session.id}, line {session.station}-{target}",
+                found="no grid positions of both" if distance is None else f"{distance:.3f} m",
+                expected=f"a distance above {eccentric.distance_m:g} m",
+                hint="Give e and n (or lat and lon with a crs) of station and target.",
+            )
+        )
+    ratio = eccentric.distance_m / distance
+    correction = eccentric_correction(
+        line_reading=line_reading, direction=eccentric.direction, ratio=ratio, at=eccentric.at
+    )
+    return correction, (eccentric.sigma_m or 0.0) / distance
+
+
+def reduce_targets(
+    session: OrientationSession,
+    reduction: Reduction,
+    sights: Mapping[str, SightSet],
+    *,
+    sigma: SightSigma,
+    stations: Mapping[str, Station],
+    card: InstrumentCard,
+) -> tuple[TargetReduction, ...]:
+    """Gyro azimuth of every target of a session."""
+    results = []
+    if reduction.azimuth is not None:
+        for target in azimuth_targets(session):
+            own = reduce_automatic(session, card, target=target).azimuth
+            correction, spread = _delivered_eccentric(session, target, sights, stations)
+            if own is not None:
+                own = own.shifted(correction)
+                if spread > 0.0:
+                    own = own.with_part(Source("eccentricity", session.id), spread)
+            results.append(TargetReduction(target, None, None, correction, own))
+        return tuple(results)
+    for target, item in sights.items():
+        correction, spread = eccentric_of(session, target, item.line_reading, stations)
+        source = Source("sights", session.id, sigma.dof, target)
+        reading = Uncertain(
+            wrap_two_pi(item.line_reading + correction),
+            {source: math.sqrt(item.cofactor) * sigma.value},
+        )
+        if spread > 0.0:
+            reading = reading.with_part(Source("eccentricity", session.id), spread)
+        azimuth = None if reduction.north is None else reading - reduction.north
+        results.append(TargetReduction(target, item, reading, correction, azimuth))
+    return tuple(results)
+
+
+def _delivered_eccentric(
+    session: OrientationSession,
+    target: str,
+    sights: Mapping[str, SightSet],
+    stations: Mapping[str, Station],
+) -> tuple[float, float]:
+    """Eccentric correction of a delivered azimuth: it needs the circle reading of the line."""
+    eccentric = session.eccentric
+    if eccentric is None or eccentric.distance_m == 0.0:
+        return 0.0, 0.0
+    if target in sights:
+        return eccentric_of(session, target, sights[target].line_reading, stations)
+    if eccentric.at == "target" and target != session.target:
+        return 0.0, 0.0
+    raise SurveyError(
+        Problem(
+            what="an eccentric set-up of a delivered azimuth needs the circle reading of its line",
+            where=f"session {session.id}, line {session.station}-{target}",
+            found="azimuth rows without a backsight of the target",
+            expected="a backsight on the circle on which the direction to the mark was read",
+            hint="Enter the sights, or the azimuth of the marks itself.",
+        )
+    )
+
+
+def known_target(session: OrientationSession, stations: Mapping[str, Station]) -> None:
+    """Refuse a sight whose target is no station of the project."""
+    for target in sight_targets(session):
+        if target not in stations:
+            raise SurveyError(
+                Problem(
+                    what="a sight whose target is no station",
+                    where=f"session {session.id}",
+                    found=target,
+                    expected="the name of a [[station]]",
+                    hint=nearest_names(target, stations),
+                )
+            )

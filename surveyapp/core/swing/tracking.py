@@ -1,0 +1,372 @@
+"""The reversal-point method: turning points of a tracked swing to gyro north.
+
+Source: physics.md 1.4 (tracking: N = N_obs - lambda mu d) and 2.1.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surveyapp.core.book.resolution import reading_resolution
+from surveyapp.core.swing.clamped import session_problem
+from surveyapp.core.swing.goodness import FitTest, Judge, goodness_of_fit
+from surveyapp.core.swing.gyrofit import (
+    LEAST_SQUARES_FROM,
+    SwingFit,
+    SwingMiddle,
+    fit_swing,
+    fitted_middle,
+    schuler_means,
+    schuler_middle,
+    side_signs,
+    unwrap,
+)
+from surveyapp.core.swing.preorientation import pre_orientation
+from surveyapp.core.swing.reduction import (
+    ReadingSigma,
+    Reduction,
+    need_points,
+    point_results,
+    reading_sigma,
+    tape_zero_parts,
+    unit_scatter,
+)
+from surveyapp.core.swing.run_model import ModelledNorth, RunModel, ShownModel, shown_model
+from surveyapp.core.swing.sights import TripodTwist, moments
+from surveyapp.core.swing.tape_zero import (
+    TapeZero,
+    TapeZeroCoefficient,
+    reduce_tape_zero,
+    tape_zero_coefficient,
+    with_levels,
+)
+from surveyapp.core.uncertain import Source, Uncertain
+from surveyapp.domain.instrument import InstrumentCard
+from surveyapp.domain.project import OrientationSession, ResultWarning
+from surveyapp.domain.readings import Reading, ReadingKind
+from surveyapp.domain.results import PointResult
+from surveyapp.errors import Problem, SurveyError
+from surveyapp_models.angles import RHO_ARCSEC, wrap_pi, wrap_two_pi
+
+Floats = NDArray[np.float64]
+
+MIN_POINTS = 3
+
+
+@dataclass(frozen=True, slots=True)
+class TurningPoints:
+    """Turning points of one run, ready for estimation.
+
+    Parameters
+    ----------
+    rows : tuple of Reading
+    values : ndarray, shape (n,)
+        [rad], unwrapped relative to ``origin``.
+    index : ndarray, shape (n,)
+        Number of each point, missed ones counted.
+    sides : ndarray, shape (n,)
+        +1 right, -1 left.
+    origin : float
+        First reading [rad].
+    resolution : float
+        [rad].
+    """
+
+    rows: tuple[Reading, ...]
+    values: Floats
+    index: Floats
+    sides: Floats
+    origin: float
+    resolution: float
+
+
+def turning_points(
+    session: OrientationSession, kind: ReadingKind = ReadingKind.REVERSAL
+) -> TurningPoints:
+    """Collect the live turning points of one session; missed ones count in the index."""
+    swing = session.book.of_kind(kind, ReadingKind.MISSED)
+    numbered = [(i, row) for i, row in enumerate(swing) if row.kind is kind]
+    rows = tuple(row for _, row in numbered)
+    need_points(session, found=len(rows), needed=MIN_POINTS, kind=kind.value)
+    index = np.array([i for i, _ in numbered], dtype=np.float64)
+    readings = np.array([row.value for row in rows], dtype=np.float64)
+    sides = side_signs(rows)
+    if np.unique(sides).size < 2:
+        raise session_problem(
+            session,
+            "the turning points do not swing: nothing tells left from right",
+            found=f"{len(rows)} points on one side, or all with one reading",
+            expected="points on both sides of north",
+            hint="Was the gyro running, and was it released? Were points left out?",
+        )
+    angular = kind is ReadingKind.REVERSAL
+    stated = session.resolution if angular else None
+    return TurningPoints(
+        rows=rows,
+        values=unwrap(readings) if angular else readings - readings[0],
+        index=index - index[0],
+        sides=sides,
+        origin=float(readings[0]),
+        resolution=stated if stated is not None else reading_resolution(rows),
+    )
+
+
+def without_tape_drift(
+    points: TurningPoints, zero: TapeZero | None, coefficient: TapeZeroCoefficient | None
+) -> TurningPoints:
+    """Refer every turning point to the tape zero at the middle of the run.
+
+    A zero that changes from before to after moves the middle of the swing while it is observed:
+    the known regressor -lambda mu d(t) of physics.md section 4.
+    """
+    times = moments(points.rows)
+    if zero is None or coefficient is None or times is None or zero.drift_div_per_s == 0.0:
+        return points
+    return replace(points, values=points.values + coefficient.value * zero.drift_at(times))
+
+
+def without_twist(points: TurningPoints, twist: TripodTwist | None) -> TurningPoints:
+    """Refer every turning point to the circle as it stood at the middle of the observation."""
+    times = moments(points.rows)
+    if twist is None or times is None:
+        return points
+    return replace(points, values=points.values - twist.at(times))
+
+
+def period_from_times(rows: Sequence[Reading], index: Floats) -> float | None:
+    """Full period [s] from the moments of the turning points, None without them."""
+    times = moments(rows)
+    if times is None or times.size < 2 or index[-1] == index[0]:
+        return None
+    slope = float(np.polyfit(index, times - times[0], 1)[0])
+    return 2.0 * slope if slope > 0.0 else None
+
+
+def reduce_tracking(
+    session: OrientationSession,
+    card: InstrumentCard,
+    judge: Judge,
+    *,
+    latitude: float | None,
+    estimator: str | None,
+    run_model: RunModel | None = None,
+    twist: TripodTwist | None = None,
+) -> Reduction:
+    """Reduce one session of turning points.
+
+    Parameters
+    ----------
+    session : OrientationSession
+    card : InstrumentCard
+    judge : Judge
+        Of the tests of fit.
+    latitude : float or None
+        [rad].
+    estimator : str or None
+        ``least-squares`` or ``schuler``; None chooses least squares from six points on.
+    run_model : callable or None
+        Estimates a run with adopted effects.
+    twist : TripodTwist or None
+        Turning of the tripod that the sights tell: taken out of the turning points.
+
+    Raises
+    ------
+    SurveyError
+        If there are fewer than three turning points, or no three consecutive ones for Schuler, or
+        if the damped fit does not converge.
+    """
+    if len(session.book.of_kind(ReadingKind.REVERSAL)) == 2 and estimator is None:
+        return pre_orientation(session, card)
+    points = turning_points(session)
+    zero, coefficient, correction, warnings = tape_zero_of(session, card, points.rows, latitude)
+    points = without_twist(without_tape_drift(points, zero, coefficient), twist)
+    fit = _fit(session, points)
+    modelled = None
+    if session.effects and run_model is not None:
+        modelled = run_model(session, card, latitude, twist)
+    shown = shown_model(fit, points.index, points.sides, modelled)
+    means, _ = schuler_means(points.values, points.index)
+    chosen, middle = _middle(session, points, fit, estimator)
+    sigma = reading_sigma(
+        count=points.values.size,
+        variance=shown.variance,
+        dof=shown.dof,
+        card_sigma=card.sigma.reversal,
+        resolution=points.resolution,
+    )
+    north = _north(session, points, middle, sigma)
+    if modelled is not None:
+        chosen = f"least-squares with {', '.join(effect.id for effect in session.effects)}"
+        north = _modelled_north(session, points, middle, modelled)
+    return Reduction(
+        estimator=chosen,
+        north=north if correction is None else north + correction,
+        points_used=points.values.size,
+        dof=shown.dof,
+        sigma_source=sigma.origin,
+        reading_sigma=sigma.value if math.isfinite(sigma.value) else None,
+        residual_rms=shown.residual_rms,
+        amplitude=shown.amplitude,
+        damping_ratio=shown.damping_ratio,
+        period_s=period_from_times(points.rows, points.index),
+        tape_zero=zero,
+        coefficient=coefficient,
+        tape_zero_correction=_correction_value(zero, correction),
+        tests=_tests(points, shown, judge, card),
+        points=_point_results(points, shown.residuals),
+        schuler_means=tuple(wrap_two_pi(points.origin + mean) for mean in means.tolist()),
+        warnings=(*warnings, *_sigma_warnings(session, sigma)),
+        unit=None if session.effects else unit_scatter("turning points", sigma),
+    )
+
+
+def _middle(
+    session: OrientationSession, points: TurningPoints, fit: SwingFit, estimator: str | None
+) -> tuple[str, SwingMiddle]:
+    """The estimator and its middle; without three consecutive points the default is the fit."""
+    chosen = estimator or (
+        "least-squares" if points.values.size >= LEAST_SQUARES_FROM else "schuler"
+    )
+    if chosen == "schuler":
+        means = schuler_middle(fit, points.values, index=points.index, sides=points.sides)
+        if means is not None:
+            return chosen, means
+        if estimator is not None:
+            raise SurveyError(_no_triple(session))
+    if not fit.converged:
+        raise SurveyError(_no_fit(session, points))
+    return "least-squares", fitted_middle(fit)
+
+
+def _north(
+    session: OrientationSession, points: TurningPoints, middle: SwingMiddle, sigma: ReadingSigma
+) -> Uncertain:
+    return Uncertain(
+        points.origin + middle.value,
+        {
+            Source("turning points", session.id, sigma.dof): middle.weight_norm * sigma.value,
+            Source("damping", session.id): middle.damping_left,
+        },
+    )
+
+
+def _modelled_north(
+    session: OrientationSession, points: TurningPoints, middle: SwingMiddle, modelled: ModelledNorth
+) -> Uncertain:
+    """North of the model with adopted effects, on the turn of the circle where the swing stands."""
+    shift = wrap_pi(modelled.value - points.origin - middle.value)
+    return Uncertain(
+        points.origin + middle.value + shift,
+        {Source("turning points", session.id, modelled.dof): modelled.sigma},
+    )
+
+
+def _fit(session: OrientationSession, points: TurningPoints) -> SwingFit:
+    fit = fit_swing(points.values, points.index, points.sides)
+    if fit.converged or points.values.size < LEAST_SQUARES_FROM:
+        return fit
+    raise SurveyError(_no_fit(session, points))
+
+
+def _no_fit(session: OrientationSession, points: TurningPoints) -> Problem:
+    return Problem(
+        what="the damped swing does not fit: the turning points do not swing about one middle",
+        where=f"session {session.id}, {session.book_path}",
+        found=f"{points.values.size} turning points whose amplitude does not decay smoothly",
+        expected="readings alternating about north with slowly falling amplitude",
+        hint="Look for a mistyped degree or a missed turning point.",
+    )
+
+
+def _no_triple(session: OrientationSession) -> Problem:
+    return Problem(
+        what="no three consecutive turning points: there is no Schuler mean",
+        where=f"session {session.id}, {session.book_path}",
+        expected="three turning points without a missed one between",
+        hint="Use the estimator least-squares: it bridges missed points.",
+    )
+
+
+def tape_zero_of(
+    session: OrientationSession,
+    card: InstrumentCard,
+    swing: Sequence[Reading],
+    latitude: float | None,
+) -> tuple[TapeZero | None, TapeZeroCoefficient | None, Uncertain | None, list[ResultWarning]]:
+    """Tape zero of a session, its coefficient, the correction with its error, and warnings."""
+    zero = reduce_tape_zero(session.book, swing)
+    coefficient = tape_zero_coefficient(card, latitude)
+    if zero is None:
+        text = f"session {session.id}: no tape zero was observed"
+        if coefficient is not None and card.tape_zero.limit_div is not None:
+            worst = abs(coefficient.value) * card.tape_zero.limit_div * RHO_ARCSEC
+            text += f"; at the card's limit of {card.tape_zero.limit_div:g} div it moves north by "
+            text += f'{worst:.0f}"'
+        return None, coefficient, None, [ResultWarning("no_tape_zero", text)]
+    zero = with_levels(zero, session.book, card)
+    warnings = []
+    if zero.interpolation == "single":
+        text = f"session {session.id}: tape zero observed on one side of the run only"
+        warnings.append(ResultWarning("tape_zero_one_sided", text))
+    if coefficient is None:
+        text = (
+            f"session {session.id}: the tape zero of {zero.value_div:+.3f} div is known, but the "
+            "card states neither torsion ratio and scale value nor a correction: gyro north is "
+            "not corrected"
+        )
+        return zero, None, None, [*warnings, ResultWarning("tape_zero_correction_unknown", text)]
+    rows = session.book.of_kind(ReadingKind.TAPE_ZERO)
+    correction = tape_zero_parts(
+        session,
+        zero,
+        coefficient,
+        scale_sigma=card.sigma.scale_div,
+        scale_resolution=reading_resolution(rows),
+    )
+    return zero, coefficient, correction, warnings
+
+
+def _correction_value(zero: TapeZero | None, correction: Uncertain | None) -> float | None:
+    if correction is not None:
+        return correction.value
+    return 0.0 if zero is None else None
+
+
+def _tests(
+    points: TurningPoints, shown: ShownModel, judge: Judge, card: InstrumentCard
+) -> tuple[FitTest, ...]:
+    return goodness_of_fit(
+        shown.residuals,
+        shown.design,
+        judge,
+        sigma=card.sigma.reversal,
+        resolution=points.resolution,
+    )
+
+
+def _point_results(points: TurningPoints, found: Floats) -> tuple[PointResult, ...]:
+    observed = [row.value or 0.0 for row in points.rows]
+    residuals = found.tolist()
+    return point_results(
+        points.rows,
+        index=points.index,
+        sides=points.sides,
+        observed=observed,
+        fitted=[wrap_two_pi(x - v) for x, v in zip(observed, residuals, strict=True)],
+        residuals=residuals,
+    )
+
+
+def _sigma_warnings(session: OrientationSession, sigma: ReadingSigma) -> list[ResultWarning]:
+    if sigma.origin == "card":
+        text = f"session {session.id}: too few turning points to judge by: sigma is the card's"
+        return [ResultWarning("sigma_from_card", text)]
+    if sigma.origin is None:
+        text = f"session {session.id}: neither residuals nor card tell a sigma"
+        return [ResultWarning("sigma_unknown", text)]
+    return []

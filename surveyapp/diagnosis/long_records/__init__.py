@@ -1,0 +1,1 @@
+"""Records too long to be diagnosed whole: spectral lines, then block means."""

@@ -1,0 +1,1 @@
+"""What is diagnosed, one file each: how its observations become a problem of the engine."""

@@ -1,0 +1,209 @@
+"""A campaign as a problem: repeated constants or azimuths of one instrument over time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from surveyapp.core.orientation.campaign_columns import block_names
+from surveyapp.diagnosis.problem import Array, Problem
+from surveyapp.domain.project import ResultWarning
+from surveyapp.errors import Problem as InputProblem
+from surveyapp.errors import SurveyError
+from surveyapp_models.effects import of_subject
+from surveyapp_models.effects.effect import Effect
+
+
+@dataclass(frozen=True, slots=True)
+class Determination:
+    """One determination of a constant (or of one azimuth).
+
+    Parameters
+    ----------
+    value : float
+        [rad].
+    sigma : float or None
+        [rad]; without any the determinations are taken for equally good.
+    elapsed_days : float or None
+        Since any zero; ``order`` stands in where no determination has a date.
+    order : float or None
+    line : str
+        Name of the line, empty if unknown.
+    block : str
+        Spin-up, day or set-up; the day if absent.
+    temperature_c, latitude, line_reading, north_reading, running_s : float or None
+        Degrees Celsius, rad, rad, rad, seconds since spin-up.
+    label : str
+        For messages.
+    """
+
+    value: float
+    sigma: float | None = None
+    elapsed_days: float | None = None
+    order: float | None = None
+    line: str = ""
+    block: str = ""
+    temperature_c: float | None = None
+    latitude: float | None = None
+    line_reading: float | None = None
+    north_reading: float | None = None
+    running_s: float | None = None
+    label: str = ""
+
+
+def campaign(
+    determinations: Sequence[Determination],
+    *,
+    instrument: str = "",
+    reference_temperature_c: float | None = None,
+    resolution: float = 0.0,
+    extra: tuple[Effect, ...] = (),
+) -> Problem:
+    """Make the problem of a campaign.
+
+    Parameters
+    ----------
+    determinations : sequence of Determination
+    instrument : str
+    reference_temperature_c : float, optional
+    resolution : float
+        Of the determinations [rad]; 0 = unknown.
+    extra : tuple of Effect
+        The user's own effects.
+
+    Returns
+    -------
+    Problem
+
+    Raises
+    ------
+    SurveyError
+        If there are fewer than two determinations, or some have a sigma and others have none.
+    """
+    _check(determinations, instrument)
+    values = np.array([d.value for d in determinations])
+    n = values.size
+    sigmas = [d.sigma for d in determinations]
+    sigma = None if any(s is None for s in sigmas) else np.array(sigmas, dtype=np.float64)
+    columns, labels, warnings = _columns(determinations)
+    position = columns.get("elapsed_days", np.arange(n, dtype=np.float64))
+    if position.size > 1 and np.ptp(position) == 0.0:
+        position = np.arange(n, dtype=np.float64)
+    weights = np.full(n, 1.0 / n)
+    if sigma is not None:
+        weights = sigma**-2 / float(np.sum(sigma**-2))
+    references = {}
+    if reference_temperature_c is not None:
+        references["temperature_c"] = reference_temperature_c
+    if sigma is None:
+        warnings.append(
+            ResultWarning("no_sigmas", "no stated sigmas: all determinations count the same")
+        )
+    offset = float(np.median(values))
+    return Problem(
+        subject="campaign",
+        observations=values - offset,
+        base=np.ones((n, 1)),
+        base_names=("constant",),
+        value_base=np.ones(1),
+        value_weights=weights,
+        position=position,
+        columns=columns,
+        effects=(*of_subject("campaign"), *extra),
+        sigma=sigma,
+        weighted=sigma is not None,
+        resolution=resolution,
+        references=references,
+        offset=offset,
+        instrument=instrument,
+        identity=f"campaign of {instrument}" if instrument else "campaign",
+        labels=tuple(d.label or f"determination {i + 1}" for i, d in enumerate(determinations)),
+        grid_labels=labels,
+        warnings=tuple(warnings),
+        position_unit="d" if all(d.elapsed_days is not None for d in determinations) else "",
+    )
+
+
+def _check(determinations: Sequence[Determination], instrument: str) -> None:
+    faults = []
+    where = f"campaign of {instrument}" if instrument else "campaign"
+    if len(determinations) < 2:
+        faults.append(
+            InputProblem(
+                "too few determinations for a campaign",
+                where,
+                str(len(determinations)),
+                "at least 2; from 8 on an effect can be named",
+            )
+        )
+    with_sigma = sum(d.sigma is not None for d in determinations)
+    if 0 < with_sigma < len(determinations):
+        faults.append(
+            InputProblem(
+                "some determinations have a sigma and others have none",
+                where,
+                f"{with_sigma} of {len(determinations)}",
+                "all or none",
+            )
+        )
+    if any(d.sigma is not None and not d.sigma > 0.0 for d in determinations):
+        faults.append(InputProblem("a sigma is not positive", where, "", "sigmas above 0"))
+    if not all(np.isfinite(d.value) for d in determinations):
+        faults.append(InputProblem("a determination is no number", where, "nan", "angles"))
+    few = len(determinations) < 6 and with_sigma < len(determinations)
+    if few and len(determinations) >= 2:
+        faults.append(
+            InputProblem(
+                "too few determinations to judge their scatter, and no stated sigmas",
+                where,
+                str(len(determinations)),
+                "a sigma for each, or at least 6 determinations",
+                "Give the card's sigma of one determination.",
+            )
+        )
+    if faults:
+        raise SurveyError(faults)
+
+
+def _numbered(names: Sequence[str]) -> tuple[Array, dict[float, str]]:
+    order = list(dict.fromkeys(names))
+    return (
+        np.array([float(order.index(name)) for name in names]),
+        {float(i): name for i, name in enumerate(order)},
+    )
+
+
+def _columns(
+    determinations: Sequence[Determination],
+) -> tuple[dict[str, Array], dict[str, dict[float, str]], list[ResultWarning]]:
+    columns: dict[str, Array] = {}
+    labels: dict[str, dict[float, str]] = {}
+    warnings: list[ResultWarning] = []
+    for name in ("temperature_c", "latitude", "line_reading", "north_reading", "running_s"):
+        raw = [getattr(d, name) for d in determinations]
+        if any(v is not None for v in raw):
+            columns[name] = np.array([np.nan if v is None else v for v in raw], dtype=np.float64)
+    days = [d.elapsed_days for d in determinations]
+    orders = [d.order for d in determinations]
+    if all(d is not None for d in days):
+        columns["elapsed_days"] = np.array(days, dtype=np.float64)
+    else:
+        if all(o is not None for o in orders):
+            columns["elapsed_days"] = np.array(orders, dtype=np.float64)
+        warnings.append(
+            ResultWarning(
+                "no_dates",
+                "dates are missing or all the same: the order of the determinations stands for time"
+                if "elapsed_days" in columns
+                else "dates and order are missing: effects of time cannot be judged",
+            )
+        )
+    if all(d.line for d in determinations):
+        columns["line"], labels["line"] = _numbered([d.line for d in determinations])
+    if all(d.block for d in determinations):
+        columns["block"], labels["block"] = _numbered([d.block for d in determinations])
+    elif "elapsed_days" in columns and all(d is not None for d in days):
+        columns["block"], labels["block"] = _numbered(block_names(days))
+    return columns, labels, warnings

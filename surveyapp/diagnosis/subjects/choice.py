@@ -1,0 +1,348 @@
+"""From a project to what the engine diagnoses: a reversal run, or the campaign of an instrument.
+
+A campaign consists of the determinations of the instrument constant; where an instrument was
+never calibrated, of its repeated azimuths of one line.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from surveyapp.core.checks.adopted_checks import occurrences
+from surveyapp.core.orientation.adopted import SOURCE
+from surveyapp.core.orientation.campaign_columns import Circumstances, circumstances, in_blocks
+from surveyapp.core.orientation.whole_project import Orientation
+from surveyapp.core.statistics.repeated import SHARED
+from surveyapp.core.swing.run_model import ModelledNorth
+from surveyapp.core.swing.sights import TripodTwist, moments
+from surveyapp.core.swing.tracking import (
+    tape_zero_of,
+    turning_points,
+    without_tape_drift,
+    without_twist,
+)
+from surveyapp.core.uncertain import Uncertain
+from surveyapp.diagnosis.candidates import Candidate, all_candidates
+from surveyapp.diagnosis.fits import Fit, Member, fit_members
+from surveyapp.diagnosis.problem import Problem
+from surveyapp.diagnosis.run_value import value_of
+from surveyapp.diagnosis.subjects.campaign import Determination, campaign
+from surveyapp.diagnosis.subjects.reversal_run import TurningPoints, reversal_run
+from surveyapp.domain.instrument import AdoptedEffect, InstrumentCard
+from surveyapp.domain.project import OrientationSession
+from surveyapp.domain.readings import ReadingKind
+from surveyapp.errors import Problem as InputProblem
+from surveyapp.errors import SurveyError, nearest_names
+from surveyapp_models.angles import wrap_pi
+from surveyapp_models.effects.effect import Effect
+
+LEAST_CAMPAIGN = 3
+"""Sessions from which an instrument counts as a campaign by itself (design.md section 5)."""
+
+
+def is_run(session: OrientationSession) -> bool:
+    """Whether a session is a reversal run."""
+    return bool(session.book.of_kind(ReadingKind.REVERSAL))
+
+
+def run_problem(
+    session: OrientationSession,
+    card: InstrumentCard,
+    *,
+    latitude: float | None,
+    twist: TripodTwist | None = None,
+    extra: tuple[Effect, ...] = (),
+) -> Problem:
+    """The turning points of one session as a problem.
+
+    Parameters
+    ----------
+    session : OrientationSession
+    card : InstrumentCard
+    latitude : float or None
+        [rad], for the drift of the tape zero, which is known and taken out first.
+    twist : TripodTwist or None
+        Turning of the tripod that the sights tell: known and taken out as well.
+    extra : tuple of Effect
+        The user's own.
+
+    Raises
+    ------
+    SurveyError
+        If the session has no turning points on the circle, or too few.
+    """
+    if not is_run(session):
+        raise SurveyError(
+            InputProblem(
+                "only a reversal run can be diagnosed by itself",
+                f"session {session.id}",
+                f"method {session.method} without reversal rows",
+                "turning points on the circle",
+                "Diagnose the instrument's campaign with --campaign instead.",
+            )
+        )
+    points = turning_points(session)
+    zero, coefficient, _, _ = tape_zero_of(session, card, points.rows, latitude)
+    points = without_twist(without_tape_drift(points, zero, coefficient), twist)
+    times = moments(points.rows)
+    temperature = [
+        math.nan if row.temperature_c is None else row.temperature_c for row in points.rows
+    ]
+    known = not all(math.isnan(value) for value in temperature)
+    return reversal_run(
+        TurningPoints(
+            readings=(points.origin + points.values).tolist(),
+            count=points.index.tolist(),
+            right=(points.sides > 0).tolist(),
+            elapsed_s=None if times is None else (times - times[0]).tolist(),
+            covariates={"temperature_c": temperature} if known else {},
+            resolution=points.resolution,
+            sigma=card.sigma.reversal,
+            reference_temperature_c=session.reference_temperature_c,
+            instrument=session.instrument,
+            identity=session.id,
+        ),
+        extra,
+    )
+
+
+def adopted_fit(problem: Problem, effects: Sequence[AdoptedEffect]) -> Fit:
+    """Fit of a run with its adopted effects in the model, all estimated anew.
+
+    Raises
+    ------
+    SurveyError
+        If an adopted effect is none of the subject's, or its columns are missing.
+    """
+    base = fit_members(problem, ())
+    known = {
+        candidate.id: candidate
+        for candidate in all_candidates(problem, base.theta)
+        if candidate.kind == "named" and candidate.count == 1
+    }
+    members = []
+    for adopted in effects:
+        candidate = known.get(adopted.id)
+        if candidate is None or candidate.missing:
+            raise SurveyError(
+                InputProblem(
+                    "an adopted effect cannot be applied to this run",
+                    problem.identity,
+                    adopted.id if candidate is None else f"{adopted.id}: {candidate.missing}",
+                    hint=nearest_names(adopted.id, known),
+                )
+            )
+        members += [Member(candidate, place) for place in _places(candidate, adopted)]
+    return fit_members(problem, members, base.theta)
+
+
+def _places(candidate: Candidate, adopted: AdoptedEffect) -> list[int]:
+    """Grid points of an adopted effect, one for each time that it occurs."""
+    grid = {name: value for name, value in adopted.grid if not isinstance(value, str)}
+    count = 1 if candidate.effect is None else occurrences(adopted, candidate.effect)
+    places = []
+    for k in range(1, count + 1):
+        distances = [
+            sum(abs(grid.get(n if count == 1 else f"{n}_{k}", v) - v) for n, v in point.items())
+            for point in candidate.points
+        ]
+        places.append(int(np.argmin(distances)))
+    return places
+
+
+def modelled_run(
+    session: OrientationSession,
+    card: InstrumentCard,
+    latitude: float | None,
+    twist: TripodTwist | None = None,
+) -> ModelledNorth:
+    """Observed north of a session with its adopted effects, before the tape-zero correction."""
+    problem = run_problem(session, card, latitude=latitude, twist=twist)
+    fit = adopted_fit(problem, session.effects)
+    value = value_of(problem, fit)
+    first, decay = (0.0, 0.0) if fit.theta is None else (float(fit.theta[0]), float(fit.theta[1]))
+    return ModelledNorth(
+        value=value.value + problem.offset,
+        sigma=value.sigma,
+        dof=value.dof,
+        residuals=fit.residual,
+        design=fit.design,
+        amplitude=abs(first),
+        damping_ratio=math.exp(-decay),
+    )
+
+
+def determinations(orientation: Orientation, instrument: str) -> tuple[Determination, ...]:
+    """Every determination of the constant of one instrument, in order of time where it is known.
+
+    The sigma is that of what belongs to one determination alone: centring, deflection and the
+    known azimuth are the line's own, and whether a line stands off is to be found, not assumed.
+    """
+    by_key = _circumstances(orientation, instrument)
+    constant = next(c for c in orientation.constants if c.instrument.id == instrument)
+    found = []
+    for calibration in constant.calibrations:
+        facts = by_key[calibration.session, calibration.target]
+        own = calibration.value.without(
+            *SHARED, "run-to-run scatter", f"{SOURCE} outside its range"
+        )
+        label = f"{calibration.session} ({calibration.line})"
+        found.append(_determination(calibration.value.value, own, facts, label))
+    return _in_time(found if found else _azimuths(orientation, instrument, by_key))
+
+
+def _circumstances(
+    orientation: Orientation, instrument: str
+) -> dict[tuple[str, str], Circumstances]:
+    """Circumstances of every gyro azimuth of one instrument, by session and target."""
+    places = [
+        (item, target)
+        for item in orientation.sessions
+        if item.session.instrument == instrument
+        for target in item.targets
+    ]
+    facts = in_blocks(
+        [
+            circumstances(
+                item, target, latitude=orientation.positions[item.session.station].latitude
+            )
+            for item, target in places
+        ]
+    )
+    return {
+        (item.session.id, target.target): fact
+        for (item, target), fact in zip(places, facts, strict=True)
+    }
+
+
+def _in_time(items: Sequence[Determination]) -> tuple[Determination, ...]:
+    """In order of time, whatever the order of the project's tables.
+
+    Where every date is the same (or none is known) the sequence stands in for time.
+    """
+    if len({item.elapsed_days for item in items}) > 1:
+        if any(item.elapsed_days is None for item in items):
+            return tuple(items)
+        return tuple(sorted(items, key=lambda item: (item.elapsed_days or 0.0, item.label)))
+    stated = all(item.order is not None for item in items)
+    return tuple(
+        replace(item, elapsed_days=None, order=item.order if stated else float(place))
+        for place, item in enumerate(items)
+    )
+
+
+def _azimuths(
+    orientation: Orientation,
+    instrument: str,
+    by_key: dict[tuple[str, str], Circumstances],
+) -> list[Determination]:
+    """Repeated gyro azimuths of the most often observed line of an uncalibrated instrument."""
+    lines: dict[str, list[Determination]] = {}
+    for item in orientation.sessions:
+        if item.session.instrument != instrument:
+            continue
+        for target in item.targets:
+            if target.gyro_azimuth is None:
+                continue
+            facts = by_key[item.session.id, target.target]
+            members = lines.setdefault(facts.line, [])
+            value = target.gyro_azimuth.value
+            if members:
+                first = -members[0].value
+                value = first + wrap_pi(value - first)
+            # a larger gyro azimuth is a smaller constant
+            members.append(_determination(-value, target.gyro_azimuth, facts, item.session.id))
+    longest: list[Determination] = []
+    for members in lines.values():
+        longest = members if len(members) > len(longest) else longest
+    return longest
+
+
+def _determination(value: float, own: Uncertain, facts: Circumstances, label: str) -> Determination:
+    sigma = own.sigma
+    return Determination(
+        value=value,
+        sigma=sigma if 0.0 < sigma < math.inf else None,
+        elapsed_days=facts.elapsed_days,
+        order=facts.order,
+        line=facts.line,
+        block=facts.block,
+        temperature_c=facts.temperature_c,
+        latitude=facts.latitude,
+        line_reading=facts.line_reading,
+        north_reading=facts.north_reading,
+        running_s=facts.running_s,
+        label=label,
+    )
+
+
+def campaign_problem(
+    orientation: Orientation,
+    instrument: str,
+    *,
+    extra: tuple[Effect, ...] = (),
+    confirm_from: str | None = None,
+) -> tuple[Problem, Problem | None]:
+    """The campaign of one instrument, and the part of it that is held back to confirm.
+
+    Parameters
+    ----------
+    confirm_from : str or None
+        Session from which on the determinations choose nothing and only confirm.
+
+    Raises
+    ------
+    SurveyError
+        If there are too few determinations, or no such session among them.
+    """
+    items = determinations(orientation, instrument)
+    reference = next(
+        (
+            session.reference_temperature_c
+            for session in orientation.project.sessions
+            if session.instrument == instrument and session.reference_temperature_c is not None
+        ),
+        None,
+    )
+    cut = len(items)
+    if confirm_from is not None:
+        labels = [item.label.split(" (")[0] for item in items]
+        if confirm_from not in labels:
+            raise SurveyError(
+                InputProblem(
+                    "the confirming session is no determination of this instrument",
+                    "--confirm",
+                    confirm_from,
+                    f"a calibration session of {instrument}",
+                    nearest_names(confirm_from, labels),
+                )
+            )
+        cut = labels.index(confirm_from)
+        _check_parts(cut, len(items), confirm_from)
+    first = campaign(
+        items[:cut], instrument=instrument, reference_temperature_c=reference, extra=extra
+    )
+    if cut == len(items):
+        return first, None
+    second = campaign(
+        items[cut:], instrument=instrument, reference_temperature_c=reference, extra=extra
+    )
+    return first, second
+
+
+def _check_parts(cut: int, count: int, confirm_from: str) -> None:
+    """Both parts of a campaign must be campaigns, in order of time."""
+    if min(cut, count - cut) < 2:
+        raise SurveyError(
+            InputProblem(
+                "the confirming session leaves no two parts of the campaign",
+                "--confirm",
+                f"{confirm_from}: {cut} determinations before it, {count - cut} from it on",
+                "at least 2 in each part; from 8 before it on an effect can be named",
+                "Name the session from which on, in time, the determinations only confirm.",
+            )
+        )

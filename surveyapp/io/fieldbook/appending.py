@@ -1,0 +1,147 @@
+"""Writing a reading down: one line at the end of the book, on the disk before it is reported.
+
+Nothing that stands in a book is ever written again. The caller holds the project's lock.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.io.fieldbook.reading import judge, move_tail_aside, split_tail
+from surveyapp.io.fieldbook.rows import COLUMNS
+from surveyapp.io.files import has_control, read_bytes, shown, shown_path
+from surveyapp.io.tomltext import sync_folder
+from surveyapp_models.angles import AngleUnit
+
+
+def append_row(path: Path, row: Mapping[str, str], *, angle_unit: AngleUnit = AngleUnit.DMS) -> int:
+    """Append one row to a book and return its seq when it is on the disk.
+
+    Parameters
+    ----------
+    path : Path
+        The book; it is begun, header first, where it does not exist or is empty.
+    row : mapping of column to text
+        Without seq, which is given here. A new book has the columns of the format; an existing
+        one keeps its own, and a value for a column that it lacks is refused.
+    angle_unit : AngleUnit
+        The project's unit of angles.
+
+    Returns
+    -------
+    int
+        seq of the new row.
+
+    Raises
+    ------
+    SurveyError
+        If the row brings a problem into the book that was not there before, or if it cannot be
+        written in whole; the earlier rows stand as they were in either case.
+    """
+    where = path.name
+    data = read_bytes(path, where=where) if path.exists() else b""
+    text, tail = split_tail(data, where=where)
+    if tail and not move_tail_aside(path, size=len(data), tail=tail):
+        raise SurveyError(
+            Problem("the torn last line of the book cannot be moved aside", where, shown_path(path))
+        )
+    before = judge(text, angle_unit=angle_unit, where=where)
+    header = _header(text, where)
+    end = "\r\n" if text.partition("\n")[0].endswith("\r") else "\n"
+    seq = max((r.seq for r in before.book.rows), default=0) + 1
+    line = _line(header or COLUMNS, {**row, "seq": str(seq)}, where) + end
+    if header is None:
+        line = ",".join(COLUMNS) + end + line
+    after = judge(text + line, angle_unit=angle_unit, where=where)
+    fresh = [problem for problem in after.problems if problem not in before.problems]
+    if fresh:
+        raise SurveyError(fresh)
+    _append(path, line.encode("utf-8"))
+    return seq
+
+
+def book_columns(path: Path) -> tuple[str, ...]:
+    """Columns that a row of this book may have: its own, or those of the format for a new one."""
+    if not path.exists():
+        return COLUMNS
+    text, _ = split_tail(read_bytes(path, where=path.name), where=path.name)
+    return _header(text, path.name) or COLUMNS
+
+
+def _header(text: str, where: str) -> tuple[str, ...] | None:
+    """Columns of an existing book in their order, None for a new one."""
+    for line in text.removeprefix("\ufeff").split("\n"):
+        if line.strip():
+            try:
+                cells = next(csv.reader([line.rstrip("\r")], strict=True))
+            except csv.Error as error:
+                raise SurveyError(Problem(f"the header is no CSV ({error})", where)) from None
+            return tuple(cell.strip().lower() for cell in cells)
+    return None
+
+
+def _line(header: Sequence[str], row: Mapping[str, str], where: str) -> str:
+    problems = []
+    for column, value in row.items():
+        if value and column not in header:
+            problems.append(
+                Problem(
+                    f"the book has no column {shown(column)}",
+                    where,
+                    shown(value),
+                    ",".join(header),
+                    nearest_names(column, header),
+                )
+            )
+        if has_control(value) or "\n" in value or "\r" in value:
+            problems.append(
+                Problem(f"{shown(column)} is not one line of text", where, shown(value))
+            )
+    if problems:
+        raise SurveyError(problems)
+    buffer = io.StringIO()
+    csv.writer(buffer, lineterminator="").writerow([row.get(column, "") for column in header])
+    return buffer.getvalue()
+
+
+def _append(path: Path, line: bytes) -> None:
+    """One write at the end, then fsync; what could not be written in whole is cut off again."""
+    new = not path.exists()
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        book = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o644)
+    except OSError as error:
+        raise _not_written(path, error) from None
+    try:
+        size = os.fstat(book).st_size
+        try:
+            written = os.write(book, line)
+            if written != len(line):
+                raise OSError(f"{written} of {len(line)} bytes")
+            os.fsync(book)
+        except OSError as error:
+            os.ftruncate(book, size)
+            raise _not_written(path, error) from None
+    except OSError as error:
+        raise _not_written(path, error) from None
+    finally:
+        os.close(book)
+    if new:
+        sync_folder(path.parent)
+
+
+def _not_written(path: Path, error: OSError) -> SurveyError:
+    return SurveyError(
+        Problem(
+            f"the reading could not be written ({error.strerror or error})",
+            path.name,
+            shown_path(path),
+            "a disk with room that may be written to",
+            "the earlier rows stand; note the reading on paper and make room",
+        )
+    )

@@ -1,0 +1,1 @@
+"""What an office files: the ledger, seals, closings, snapshots, and the lock of a folder."""

@@ -1,0 +1,1 @@
+"""Traverse books and their tables in project.toml, read into a network."""

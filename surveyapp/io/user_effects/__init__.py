@@ -1,0 +1,1 @@
+"""A user's own effects: loaded from a named file, and checked before they are used."""

@@ -1,0 +1,365 @@
+"""Where one begins: recent projects, samples, and what a new project or session consists of.
+
+Everything a form writes stands in project.toml; editing that by hand is as good.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections import Counter
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Final
+
+from surveyapp import api
+from surveyapp.domain.project import Method, Purpose
+from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.filing.lock import ProjectLock
+from surveyapp.io.settings import Settings, read_settings, write_settings
+
+OBSERVATIONS: Final = "observations"
+LONGEST_ID: Final = 80
+"""Bytes of a session's id, which names its field book."""
+MOST_GRIDS: Final = 30
+"""More are no choice: a further word of the name is."""
+
+
+@dataclass(frozen=True, slots=True)
+class GridChoice:
+    """A grid that may be meant: its EPSG code and name."""
+
+    code: str
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class NewStation:
+    """A station as typed; what is empty stays away."""
+
+    name: str
+    e: float | None = None
+    n: float | None = None
+    lat: float | None = None
+    lon: float | None = None
+    h: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class NewProject:
+    """What the form for a new project asks for.
+
+    Parameters
+    ----------
+    folder, name : str
+    crs : str
+        EPSG code, PROJ string or WKT; empty for none.
+    angle_unit : str
+        dms | gon | deg.
+    angle_typing : str
+        separated | packed.
+    rule_book : str
+        Id of an installed rule book; empty for none.
+    stations : tuple of NewStation
+    instruments : tuple of (str, str, str)
+        Id, card and serial number.
+    constant : str
+        Known instrument constant of the first of them and its sigma, two numbers in arc-seconds;
+        empty where calibration sessions are to tell it.
+    """
+
+    folder: str
+    name: str
+    crs: str = ""
+    angle_unit: str = "dms"
+    angle_typing: str = "separated"
+    rule_book: str = ""
+    stations: tuple[NewStation, ...] = ()
+    instruments: tuple[tuple[str, str, str], ...] = ()
+    constant: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class NewSession:
+    """What the form for a new session asks for; ``azimuth_known`` as text in the project's unit."""
+
+    id: str
+    station: str
+    target: str
+    instrument: str
+    method: Method
+    purpose: Purpose
+    azimuth_known: str = ""
+    wanted_interval_arcsec: float | None = None
+
+
+def recent_projects() -> tuple[str, ...]:
+    """Project folders opened lately that still exist."""
+    return tuple(
+        folder for folder in read_settings().recent if (Path(folder) / "project.toml").is_file()
+    )
+
+
+def remember(folder: str) -> Settings:
+    """Put a project at the top of the recent ones."""
+    settings = read_settings().with_recent(str(Path(folder).resolve()))
+    write_settings(settings)
+    return settings
+
+
+def keep_theme(theme: str) -> None:
+    """Remember the theme."""
+    write_settings(replace(read_settings(), theme=theme))
+
+
+def keep_sound(*, sound: bool) -> Settings:
+    """Remember whether the countdown may be heard."""
+    settings = replace(read_settings(), sound=sound)
+    write_settings(settings)
+    return settings
+
+
+def samples() -> tuple[str, ...]:
+    """Names of the measured samples."""
+    from surveyapp.io.locations import sample_names
+
+    return sample_names()
+
+
+def sample_copy(name: str) -> str:
+    """Folder of the user's own copy of a sample; made where it does not exist yet."""
+    from surveyapp.io.locations import copy_sample, user_documents_folder
+
+    folder = user_documents_folder()
+    path = folder / name
+    return str(path if path.is_dir() else copy_sample(name, folder))
+
+
+def rule_books() -> tuple[str, ...]:
+    """Ids of the installed rule books."""
+    from surveyapp.io.rulebooks import installed_rule_book_ids
+
+    return installed_rule_book_ids()
+
+
+def find_grids(text: str, stations: tuple[NewStation, ...] = ()) -> tuple[GridChoice, ...]:
+    """Grids whose name or EPSG code holds the text, where the stations lie if that is known.
+
+    Without latitude and longitude it is their east and north that must lie where the grid is made
+    for. At most ``MOST_GRIDS`` are returned.
+    """
+    from surveyapp.core.geodesy import find_projected
+
+    place = next(
+        ((s.lat, s.lon) for s in stations if s.lat is not None and s.lon is not None), None
+    )
+    metres = next(((s.e, s.n) for s in stations if s.e is not None and s.n is not None), None)
+    found = find_projected(
+        text, place, coordinates=metres if place is None else None, limit=MOST_GRIDS
+    )
+    return tuple(GridChoice(code, name) for code, name in found)
+
+
+def read_stations(text: str) -> tuple[NewStation, ...]:
+    """Stations from typed or pasted text.
+
+    Parameters
+    ----------
+    text : str
+        One station a line: name, east, north, and perhaps height, separated by commas, semicolons,
+        tabs or blanks. A first line that names the columns (name, e, n, lat, lon, h) decides their
+        order; with lat and lon, degrees are meant. Or the path of such a CSV file alone.
+
+    Raises
+    ------
+    SurveyError
+        With every line that makes no sense.
+    """
+    if len(text.split("\n")) == 1 and text.strip().lower().endswith((".csv", ".txt")):
+        from surveyapp.io.files import read_text
+
+        path = Path(text.strip()).expanduser()
+        text = read_text(path, where=path.name)
+    columns = ["name", "e", "n", "h"]
+    stations: list[NewStation] = []
+    problems: list[Problem] = []
+    for number, line in enumerate(text.splitlines(), start=1):
+        cells = _cells(line)
+        if not cells:
+            continue
+        lowered = [cell.lower() for cell in cells]
+        if not stations and "name" in lowered:
+            columns = lowered
+            continue
+        try:
+            stations.append(_station(cells, columns))
+        except ValueError as error:
+            problems.append(
+                Problem(
+                    "this is no station",
+                    f"stations, line {number}",
+                    line.strip(),
+                    "name, east, north, height",
+                    str(error),
+                )
+            )
+    counts = Counter(station.name for station in stations)
+    problems += [
+        Problem("a station stands twice", "stations", name, "each name once")
+        for name in sorted(name for name, count in counts.items() if count > 1)
+    ]
+    if problems:
+        raise SurveyError(problems)
+    return tuple(stations)
+
+
+def _cells(line: str) -> list[str]:
+    for separator in (";", "\t", ","):
+        if separator in line:
+            row = next(csv.reader(io.StringIO(line.strip()), delimiter=separator), [])
+            return [cell.strip() for cell in row]
+    return line.split()
+
+
+def _station(cells: list[str], columns: list[str]) -> NewStation:
+    row = dict(zip(columns, cells, strict=False))
+    name = row.get("name", "")
+    if not name:
+        raise ValueError("the name is missing")
+    known = ("e", "n", "lat", "lon", "h")
+    numbers = {key: float(row[key]) for key in known if row.get(key)}
+    pairs = (("e", "n"), ("lat", "lon"))
+    for first, second in pairs:
+        if (first in numbers) != (second in numbers):
+            raise ValueError(f"{first} and {second} belong together")
+    return NewStation(name, **numbers)
+
+
+def create_project(form: NewProject) -> str:
+    """Make the project folder that a form describes, and return it.
+
+    Raises
+    ------
+    SurveyError
+        If the folder holds anything already, if the grid is none, or if a name stands twice.
+    """
+    from surveyapp.io.writing import append_tables, set_value
+
+    constant = _constant(form.constant)
+    folder = api.new_project(
+        Path(form.folder).expanduser(),
+        name=form.name,
+        crs=f"EPSG:{form.crs}" if form.crs.isdecimal() else form.crs or None,
+        angle_unit=form.angle_unit,
+    )
+    path = folder / "project.toml"
+    if form.angle_typing != "separated":
+        set_value(path, ("angle_typing",), form.angle_typing)
+    if form.rule_book:
+        set_value(path, ("rule_book",), form.rule_book)
+    tables: list[tuple[str, dict[str, object]]] = []
+    for number, (identity, card, serial) in enumerate(form.instruments):
+        table = {"id": identity, "card": card, "serial": serial or None}
+        tables.append(("instrument", {**table, "constant": constant if number == 0 else None}))
+    keys = ("name", "e", "n", "lat", "lon", "h")
+    tables += [("station", {key: getattr(item, key) for key in keys}) for item in form.stations]
+    append_tables(path, tables)
+    api.open_project(folder)
+    return str(folder)
+
+
+def _constant(text: str) -> dict[str, float] | None:
+    if not text.strip():
+        return None
+    try:
+        value, sigma = (float(part) for part in text.replace(",", " ").replace("±", " ").split())
+    except ValueError:
+        raise SurveyError(
+            Problem(
+                "this is no instrument constant",
+                "constant",
+                text,
+                "constant and sigma in arc-seconds, like -9.7 3.0",
+                "decimals are written with a point",
+            )
+        ) from None
+    return {"arcsec": value, "sigma_arcsec": sigma}
+
+
+def create_session(folder: api.Folder, form: NewSession) -> None:
+    """Add a session to a project, with an empty book.
+
+    Raises
+    ------
+    SurveyError
+        If the project is open elsewhere, or if the session could not stand in it: project.toml is
+        as it was then.
+    """
+    from surveyapp.io.files import read_text
+    from surveyapp.io.tomltext import atomic_write
+    from surveyapp.io.writing import append_table
+
+    path = Path(folder) / "project.toml"
+    book = _book_name(form.id)
+    with ProjectLock(Path(folder)) as lock:
+        if not lock.writable:
+            raise SurveyError(
+                Problem(
+                    "this project cannot be written to now", str(folder), "it is open elsewhere"
+                )
+            )
+        _new_book(Path(folder) / book)
+        before = read_text(path, where=path.name)
+        table = {
+            "id": form.id,
+            "station": form.station,
+            "target": form.target or None,
+            "instrument": form.instrument,
+            "method": form.method,
+            "purpose": form.purpose,
+            "azimuth_known": form.azimuth_known or None,
+            "wanted_interval_arcsec": form.wanted_interval_arcsec,
+            "book": book,
+        }
+        try:
+            append_table(path, "orientation", table)
+            api.open_project(folder)
+        except SurveyError:
+            atomic_write(path, before.encode("utf-8"))
+            (Path(folder) / book).unlink()
+            raise
+
+
+def _book_name(identity: str) -> str:
+    """Path of the book of a session; the id names a file, so it must be able to."""
+    usable = identity.isprintable() and not set(identity) & set('/\\:*?"<>|')
+    if not usable or identity.startswith(".") or len(identity.encode("utf-8")) > LONGEST_ID:
+        raise SurveyError(
+            Problem(
+                "this id cannot name a field book",
+                "id",
+                identity,
+                f'at most {LONGEST_ID} letters or digits, without / \\ : * ? " < > |',
+                "the book is observations/<id>.csv",
+            )
+        )
+    return f"{OBSERVATIONS}/{identity}.csv"
+
+
+def _new_book(path: Path) -> None:
+    """An empty book with its header; an existing one is never touched."""
+    from surveyapp.io.fieldbook import COLUMNS
+    from surveyapp.io.tomltext import atomic_write
+
+    if path.exists():
+        raise SurveyError(
+            Problem(
+                "a book of this name exists already",
+                path.name,
+                str(path),
+                "a new session id",
+                "a field book is never overwritten",
+            )
+        )
+    path.parent.mkdir(parents=True, exist_ok=True)
+    atomic_write(path, (",".join(COLUMNS) + "\n").encode("utf-8"))

@@ -1,0 +1,393 @@
+"""Observing: a session opened for writing, one reading at a time, and what it says so far.
+
+The screens call nothing else while a surveyor observes. A row is on the disk when ``record``
+returns; what cannot be written is told in words and changes nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from datetime import datetime
+from pathlib import Path
+from typing import Final
+
+from surveyapp import api
+from surveyapp.core.observing.progress import Progress
+from surveyapp.core.observing.steps import (
+    STEP_NOTE,
+    Step,
+    StepState,
+    current_step,
+    rows_of,
+    step_states,
+    swing_begun,
+)
+from surveyapp.core.observing.target import Target, target_of
+from surveyapp.domain.project import OrientationSession, Project
+from surveyapp.domain.readings import FieldBook, Reading, ReadingKind
+from surveyapp.domain.results import OrientationResult
+from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.fieldbook import append_row, book_columns, read_field_book
+from surveyapp.io.fieldbook.clock import SessionClock, Stamp, local_now, steady_seconds
+from surveyapp.io.fieldbook.problems import edited_problem, read_only_problem
+from surveyapp.io.filing.lock import ProjectLock
+from surveyapp.io.filing.seals import is_closed
+
+FARTHEST: Final = 10.0
+"""Periods beyond which a countdown is none: its moments stand on another clock than the session."""
+
+
+@dataclass(frozen=True, slots=True)
+class Aim:
+    """What a session is observed for.
+
+    Parameters
+    ----------
+    target : Target or None
+    book : str
+        Id of the project's rule book, empty without one: tells why there is no target.
+    problem : str
+        Why the rule book cannot be used, empty if it can.
+    """
+
+    target: Target | None
+    book: str = ""
+    problem: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class NewRow:
+    """A row before it has a number.
+
+    Parameters
+    ----------
+    kind : ReadingKind
+    value, unit : str
+        As it goes into the book.
+    face, side, target, note : str
+    """
+
+    kind: ReadingKind
+    value: str = ""
+    unit: str = ""
+    face: str = ""
+    side: str = ""
+    target: str = ""
+    note: str = ""
+
+
+class Observation:
+    """One session, open for observing.
+
+    Parameters
+    ----------
+    folder : path
+        Project folder.
+    session : str
+        Id of the session.
+    now, steady : callable
+        Wall clock, and seconds that never go back; for tests.
+
+    Attributes
+    ----------
+    writable : bool
+        False where another program has the project open, or the folder is read-only.
+    project : Project
+        As it stands after the last row.
+
+    Raises
+    ------
+    SurveyError
+        If the project cannot be used, or has no such session.
+    """
+
+    def __init__(
+        self,
+        folder: api.Folder,
+        session: str,
+        *,
+        now: Callable[[], datetime] = local_now,
+        steady: Callable[[], float] = steady_seconds,
+    ) -> None:
+        self.folder = Path(folder)
+        self.session_id = session
+        self._lock = ProjectLock(self.folder)
+        self.closed = is_closed(self.folder, session)
+        try:
+            self.project = api.open_project(self.folder)
+            self._step: Step | None = None
+            self._clocks = now, steady
+            self._begin_behind_the_book()
+        except BaseException:
+            self._lock.release()
+            raise
+
+    def _begin_behind_the_book(self) -> None:
+        """Clock and columns follow the book as it stands."""
+        now, steady = self._clocks
+        self._columns = book_columns(self.path)
+        self._mark = self._file_mark()
+        self.clock = SessionClock(self.session.book.rows, now=now, steady=steady)
+
+    @property
+    def path(self) -> Path:
+        """The field book's file."""
+        return self.folder / self.session.book_path
+
+    def _file_mark(self) -> tuple[int, int, int] | None:
+        """What tells one state of the file from another."""
+        try:
+            state = self.path.stat()
+        except OSError:
+            return None
+        return state.st_ino, state.st_size, state.st_mtime_ns
+
+    def changed_outside(self) -> bool:
+        """Whether another hand has changed the book's file since it was read or written here."""
+        return self._file_mark() != self._mark
+
+    def read_again(self) -> None:
+        """Take the book as another hand has left it.
+
+        Raises
+        ------
+        SurveyError
+            If it cannot be read so; what was known of it stays.
+        """
+        self._read_again(self.path)
+        if self.writable:  # who only reads stays at the step that is looked at
+            self._step = None
+        self._begin_behind_the_book()
+
+    @property
+    def torn(self) -> str | None:
+        """File beside the book that holds a torn last line, None where there is none."""
+        name = f"{self.session.book_path}.torn"
+        return name if (self.folder / name).exists() else None
+
+    @property
+    def writable(self) -> bool:
+        """Whether rows may be written: not by a second opener, and not after closing."""
+        return self._lock.writable and not self.closed
+
+    @property
+    def session(self) -> OrientationSession:
+        """The session as it stands."""
+        return self.project.session(self.session_id)
+
+    @property
+    def book(self) -> FieldBook:
+        """Its field book as it stands."""
+        return self.session.book
+
+    @property
+    def targets(self) -> tuple[str, ...]:
+        """Targets of this set-up, the session's own first."""
+        own = (self.session.target,) if self.session.target else ()
+        sighted = [row.target for row in self.book.of_kind(ReadingKind.BACKSIGHT) if row.target]
+        return tuple(dict.fromkeys((*own, *sighted)))
+
+    @property
+    def step(self) -> Step:
+        """The step that the book stands at."""
+        if self._step is not None:
+            return self._step
+        return current_step(self.book, self.session.method)
+
+    def steps(self) -> tuple[StepState, ...]:
+        """State of every step."""
+        return step_states(self.book, self.session.method, self.targets)
+
+    def rows(self, step: Step) -> tuple[Reading, ...]:
+        """Live readings of a step."""
+        return rows_of(self.book, step, self.session.method)
+
+    def swing_begun(self) -> bool:
+        """Whether what is read now can no longer stand before the observation."""
+        return swing_begun(self.book, self.session.method)
+
+    def record(self, row: NewRow, stamp: Stamp | None = None) -> int:
+        """Append one row; it is on the disk when this returns.
+
+        Parameters
+        ----------
+        row : NewRow
+        stamp : Stamp or None
+            When the reading was taken; this moment if None.
+
+        Returns
+        -------
+        int
+            seq of the row.
+
+        Raises
+        ------
+        SurveyError
+            If the folder may not be written to, if the row cannot stand in the book, if another
+            hand has changed the book, or if the disk refuses; the book is as it was in each case.
+        """
+        if not self.writable:
+            raise SurveyError(read_only_problem(self.folder, closed=self.closed))
+        if self.changed_outside():
+            self.read_again()
+            raise SurveyError(edited_problem(self.path))
+        moment = stamp or self.clock.stamp()
+        latest = max((r.elapsed_s for r in self.book.rows if r.elapsed_s is not None), default=0.0)
+        elapsed = max(moment.elapsed_s, latest)
+        cells = {
+            "time": moment.time.isoformat(timespec="milliseconds"),
+            "elapsed_s": f"{elapsed:.3f}",
+            "kind": str(row.kind),
+            "value": row.value,
+            "unit": row.unit,
+            "face": row.face,
+            "side": row.side,
+            "target": row.target,
+            "note": row.note,
+        }
+        try:
+            seq = append_row(self.path, self._fitting(cells), angle_unit=self.project.angle_unit)
+        finally:
+            self._mark = self._file_mark()
+        self._read_again(self.path)
+        if row.kind is not ReadingKind.STRIKE:
+            self._step = None
+        return seq
+
+    def _fitting(self, cells: dict[str, str]) -> dict[str, str]:
+        """Cells without the moment where an older book has no column for it."""
+        return {
+            name: text
+            for name, text in cells.items()
+            if name in self._columns or name not in ("time", "elapsed_s")
+        }
+
+    def _read_again(self, path: Path) -> None:
+        book = read_field_book(path, angle_unit=self.project.angle_unit, repair=False)
+        self.project = replace(
+            self.project,
+            sessions=tuple(
+                replace(item, book=book) if item.id == self.session_id else item
+                for item in self.project.sessions
+            ),
+        )
+
+    def strike(self, seq: int, reason: str) -> int:
+        """Strike a row; it stays in the book, and the next of its kind takes its place."""
+        return self.record(NewRow(ReadingKind.STRIKE, value=str(seq), note=reason))
+
+    def last_live(self) -> Reading | None:
+        """The latest reading that counts: what undo strikes."""
+        struck = set(self.book.struck)
+        quiet = (ReadingKind.STRIKE, ReadingKind.NOTE)
+        for row in reversed(self.book.rows):
+            if row.kind not in quiet and row.seq not in struck:
+                return row
+        return None
+
+    def go_to(self, step: Step) -> None:
+        """Note that the surveyor goes to a step, unless the book stands there already."""
+        if step is self.step:
+            return
+        if not self.writable or "note" not in self._columns:  # who only reads leaves no trace
+            self._step = step
+        else:
+            self.record(NewRow(ReadingKind.NOTE, note=f"{STEP_NOTE}{step}"))
+
+    def aim(self) -> Aim:
+        """Target of this session: its own wanted interval, else what the rule book tells."""
+        from surveyapp.io.project_checks import project_rule_book
+
+        own = target_of(self.session, None)
+        if own is not None:
+            return Aim(own)
+        try:
+            book = project_rule_book(self.project)
+        except SurveyError as error:
+            return Aim(None, self.project.rule_book or "", error.problems[0].what)
+        return Aim(target_of(self.session, book), "" if book is None else book.id)
+
+    def remaining_s(self, progress: Progress) -> float | None:
+        """Seconds to the next passage or turning point; None where not known or long past."""
+        due, period = progress.due_s, progress.period_s
+        if due is None:
+            return None
+        remaining = due - self.clock.stamp().elapsed_s
+        if period is None:
+            return remaining
+        late = 0.25 if progress.passage is not None else 0.5
+        return remaining if -late * period <= remaining <= FARTHEST * period else None
+
+    def close(self) -> None:
+        """Give the right to write back."""
+        self._lock.release()
+
+
+def progress(project: Project, session: str) -> Progress:
+    """What a session says so far: forecast, interval, alarm.
+
+    Parameters
+    ----------
+    project : Project
+        A snapshot: nothing is read from the disk.
+    session : str
+        Id of the session.
+    """
+    from surveyapp.core.geodesy import open_grid, position_of
+    from surveyapp.core.observing.by_method import progress_of
+
+    item = project.session(session)
+    grid = open_grid(project.crs) if project.crs is not None else None
+    position = position_of(project.station(item.station), grid)
+    card = project.instrument(item.instrument).card
+    rng = api.generator_of(project)
+    return progress_of(item, card, rng, latitude=position.latitude)
+
+
+def orient_observed(project: Project) -> OrientationResult:
+    """Orient a project of which no session may be finished yet.
+
+    Raises
+    ------
+    SurveyError
+        If what has enough readings cannot be oriented.
+    """
+    kept = api.without_unfinished(project)
+    try:
+        return api.orient(project)
+    except SurveyError:
+        if kept.sessions:
+            raise
+    return api.orient(kept)
+
+
+def write_record(folder: api.Folder) -> str:
+    """Write the record of a project as PDF to its results folder, and return the path.
+
+    Raises
+    ------
+    SurveyError
+        If the project cannot be used or the folder cannot be written to.
+    """
+    path = Path(folder) / "results"
+    try:
+        path.mkdir(exist_ok=True)
+    except OSError as error:
+        what = f"the record cannot be written ({error.strerror or error})"
+        raise SurveyError(Problem(what, str(path))) from None
+    return str(api.report(folder, path / "record.pdf").path)
+
+
+def unfinished_session(project: Project) -> str | None:
+    """The session to go on with: the one with the latest row that was begun here and not ended."""
+    best: tuple[float, str] | None = None
+    for session in project.sessions:
+        begun = any(row.note.startswith(STEP_NOTE) for row in session.book.rows)
+        if not begun or current_step(session.book, session.method) is Step.RESULT:
+            continue
+        last = next((r.time for r in reversed(session.book.rows) if r.time is not None), None)
+        moment = last.timestamp() if last is not None else 0.0
+        if best is None or moment > best[0]:
+            best = (moment, session.id)
+    return None if best is None else best[1]
