@@ -222,7 +222,7 @@ CRASH = """
 import os, sys
 from pathlib import Path
 from surveyapp import api
-from surveyapp.io import ledger
+from surveyapp.io.filing import ledger
 keep = int(sys.argv[2])
 def torn(path, data):
     with path.open("ab") as stream:

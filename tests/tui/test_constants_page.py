@@ -23,7 +23,7 @@ from surveyapp.tui.widgets.constants import ConstantCanvas, ConstantPlot, draw_c
 from surveyapp_models.angles import ARCSEC
 
 PROJECTS = Path(__file__).resolve().parents[2] / "projects"
-CORE = Path(api.__file__).parent / "core"
+CORE = Path(api.__file__).parents[1] / "core"
 MARCH_2 = 1772409600.0  # 2026-03-02 00:00 UTC
 DAY = 86400.0
 
