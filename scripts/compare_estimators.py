@@ -11,18 +11,16 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.simulate.disturbing import damped_gyro
 from surveyapp.core.simulate.specification import SessionSpec
 from surveyapp.core.swing.gyrofit import fit_swing
 from surveyapp_models.angles import ARCSEC
+from surveyapp_models.arrays import Floats
 from surveyapp_models.gyro.integration import Disturbance, Start, TapeTop, integrate
 from surveyapp_models.gyro.moments import directive_moment
 from surveyapp_models.gyro.motion import Events, turning_points
 from surveyapp_models.gyro.periods import tracking_period_s
-
-Floats = NDArray[np.float64]
 
 RATIO = 0.99
 AMPLITUDE = math.radians(1.0)

@@ -14,10 +14,11 @@ from surveyapp.diagnosis.compare import Level
 from surveyapp.diagnosis.fits import Member
 from surveyapp.diagnosis.held_out import confirm_rms
 from surveyapp.diagnosis.loop import Search, margin_of
-from surveyapp.diagnosis.problem import Array, Problem
+from surveyapp.diagnosis.problem import Problem
 from surveyapp.diagnosis.result import Adoption, NamedCoefficient
 from surveyapp.diagnosis.run_value import coefficients, rms
 from surveyapp.domain.instrument import AdoptedEffect
+from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Effect
 
 
@@ -80,7 +81,7 @@ def adoptions(
 
 
 def _coefficients(
-    effect: Effect, members: Sequence[Member], numbers: tuple[Array, Array]
+    effect: Effect, members: Sequence[Member], numbers: tuple[Floats, Floats]
 ) -> tuple[tuple[NamedCoefficient, ...], tuple[tuple[float, ...], ...]]:
     """Coefficients of an effect and their covariance, in the units that they are told in."""
     values, covariance = numbers

@@ -26,7 +26,8 @@ from surveyapp.diagnosis.fits import (
     with_noise,
 )
 from surveyapp.diagnosis.nulls import reductions
-from surveyapp.diagnosis.problem import Array, Problem
+from surveyapp.diagnosis.problem import Problem
+from surveyapp_models.arrays import Floats
 
 MARGIN = 4.0
 """BIC by which every rival must be worse (diagnosis.md step 4)."""
@@ -106,7 +107,7 @@ def base_level(problem: Problem) -> Level:
     return Level(0, (fit,), with_noise(problem, fit))
 
 
-def orthonormal_design(fit: Fit) -> Array:
+def orthonormal_design(fit: Fit) -> Floats:
     """Orthonormal basis of the columns of a fit, dependent ones dropped."""
     norms = np.sqrt((fit.design**2).sum(axis=0))
     unit = fit.design / np.where(norms > 0.0, norms, 1.0)
@@ -219,7 +220,7 @@ def f_limit(p: float, upper: int, lower: int) -> float:
 
 
 def _best_addition(
-    problem: Problem, anchor: Fit, candidate: Candidate, q: Array
+    problem: Problem, anchor: Fit, candidate: Candidate, q: Floats
 ) -> tuple[float, tuple[Member, ...]] | None:
     """Best grid point of a candidate beside an anchor and the approximate BIC there."""
     item = project(candidate, q)
@@ -316,7 +317,7 @@ def scored(problem: Problem, fit: Fit) -> Fit:
     return dataclasses.replace(fit, score=score)
 
 
-def _profile(problem: Problem, fit: Fit, member: Member, others: tuple[Member, ...]) -> Array:
+def _profile(problem: Problem, fit: Fit, member: Member, others: tuple[Member, ...]) -> Floats:
     """Sum of squares at each separable grid point of a member beside the others."""
     if member.candidate.is_law and fit.theta is not None:
         return scan_law(problem, member.candidate, others, fit.theta)
@@ -348,7 +349,7 @@ def spans(rival: Fit, fit: Fit) -> bool:
     return bool(np.all(np.sqrt((left**2).sum(axis=0)) <= allowed))
 
 
-def added_signal(fit: Fit) -> Array:
+def added_signal(fit: Fit) -> Floats:
     """Fitted contribution of each member, beside the base (weighted), shape (n, members)."""
     laws = 1 if fit.law is not None else 0
     swing = 0 if fit.theta is None else 2 + laws

@@ -11,7 +11,8 @@ from surveyapp.diagnosis.candidates import Candidate, Projected, project
 from surveyapp.diagnosis.compare import may_join, orthonormal_design, slip_bends
 from surveyapp.diagnosis.fits import Fit, scan_exact, scan_law, unit_variance
 from surveyapp.diagnosis.nulls import Noise, null_of, ratio, reductions
-from surveyapp.diagnosis.problem import Array, Problem
+from surveyapp.diagnosis.problem import Problem
+from surveyapp_models.arrays import Floats
 
 GATE = 0.05
 """Family p at which the search goes on (diagnosis.md step 3)."""
@@ -73,7 +74,7 @@ def rounding_of(problem: Problem, fit: Fit) -> float:
     return 0.0 if share < FINE else float(2.0 ** (np.round(2.0 * np.log2(share)) / 2.0))
 
 
-def statistic(problem: Problem, fit: Fit, item: Projected, q: Array) -> float:
+def statistic(problem: Problem, fit: Fit, item: Projected, q: Floats) -> float:
     """Largest reduction of the sum of squares over the grid, relative to what is left."""
     reduction = float(reductions(item, fit.residual).max(initial=0.0))
     candidate = item.candidate

@@ -12,19 +12,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.domain.project import ResultWarning
 from surveyapp_models.angles import ARCSEC
+from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Effect, Subject
-
-Array = NDArray[np.float64]
 
 FEW_OBSERVATIONS = 6
 """Below this number the stated sigmas serve instead of the residuals (diagnosis.md step 0)."""
 
 
-def _read_only(values: Array) -> Array:
+def _read_only(values: Floats) -> Floats:
     """A view through which nobody can write; the array of the caller stays as it is."""
     view = np.asarray(values).view()
     view.flags.writeable = False
@@ -86,17 +84,17 @@ class Problem:
     """
 
     subject: Subject
-    observations: Array
-    base: Array
+    observations: Floats
+    base: Floats
     base_names: tuple[str, ...]
-    value_base: Array
-    value_weights: Array
-    position: Array
-    columns: Mapping[str, Array]
+    value_base: Floats
+    value_weights: Floats
+    position: Floats
+    columns: Mapping[str, Floats]
     effects: tuple[Effect, ...]
-    side: Array | None = None
-    half_swing: Array | None = None
-    sigma: Array | None = None
+    side: Floats | None = None
+    half_swing: Floats | None = None
+    sigma: Floats | None = None
     weighted: bool = False
     resolution: float = 0.0
     references: Mapping[str, float] = field(default_factory=dict)
@@ -146,7 +144,7 @@ class Problem:
         return self.size < FEW_OBSERVATIONS and self.sigma is not None
 
     @property
-    def root_weights(self) -> Array:
+    def root_weights(self) -> Floats:
         """Factors that make the observations equally good, with mean square 1."""
         if not self.weighted or self.sigma is None:
             return np.ones(self.size)

@@ -14,8 +14,9 @@ import numpy as np
 
 from surveyapp.diagnosis.candidates import swing_columns
 from surveyapp.diagnosis.fits import Fit, Member, fit_members, independent, unit_variance
-from surveyapp.diagnosis.problem import Array, Problem
+from surveyapp.diagnosis.problem import Problem
 from surveyapp.diagnosis.stochastic import NoiseKind, NoisePoint
+from surveyapp_models.arrays import Floats
 
 NEAR_POSITIONS = 6.0
 """BIC within which other positions of a searched effect contribute to its uncertainty."""
@@ -53,7 +54,7 @@ def t_quantile(probability: float, dof: float) -> float:
     return float(stdtrit(dof, probability))
 
 
-def effect_rows(problem: Problem, member: Member, columns: Array) -> Array:
+def effect_rows(problem: Problem, member: Member, columns: Floats) -> Floats:
     """What the value takes of a member's columns, shape (q,)."""
     candidate = member.candidate
     effect = candidate.effect
@@ -64,7 +65,7 @@ def effect_rows(problem: Problem, member: Member, columns: Array) -> Array:
     return np.asarray(problem.value_weights @ columns)
 
 
-def _midpoint_columns(problem: Problem, fit: Fit, member: Member) -> Array:
+def _midpoint_columns(problem: Problem, fit: Fit, member: Member) -> Floats:
     effect = member.candidate.effect
     if effect is not None and effect.midpoint is not None:
         return effect.midpoint(swing_columns(problem, fit.theta), **member.point)
@@ -73,7 +74,7 @@ def _midpoint_columns(problem: Problem, fit: Fit, member: Member) -> Array:
     return np.asarray(member.columns / problem.root_weights[:, None])
 
 
-def functional(problem: Problem, fit: Fit) -> Array:
+def functional(problem: Problem, fit: Fit) -> Floats:
     """Row that makes the value of the parameters of a fit, shape (p,)."""
     parts = [problem.value_base]
     parts += [
@@ -85,7 +86,7 @@ def functional(problem: Problem, fit: Fit) -> Array:
     return np.concatenate([row, np.zeros(fit.design.shape[1] - row.size)])
 
 
-def _grid_derivatives(problem: Problem, fit: Fit) -> tuple[Array, Array]:
+def _grid_derivatives(problem: Problem, fit: Fit) -> tuple[Floats, Floats]:
     """Columns of the continuous grid parameters (n, r), and what the value takes of them (r,)."""
     columns, rows = [], []
     at = problem.base.shape[1]
@@ -121,7 +122,7 @@ def _variance_factor(problem: Problem, fit: Fit) -> tuple[float, float]:
     return max(fit.sum_of_squares / dof, problem.noise_floor**2), dof
 
 
-def plain_value(problem: Problem, fit: Fit, row: Array | None = None) -> Value:
+def plain_value(problem: Problem, fit: Fit, row: Floats | None = None) -> Value:
     """Value of a deterministic fit at its own grid point; ``row`` in place of the mean."""
     row = functional(problem, fit) if row is None else row
     extra, extra_row = _grid_derivatives(problem, fit)
@@ -266,7 +267,7 @@ def rms(problem: Problem, fit: Fit) -> float:
     return float(np.sqrt(np.mean((fit.residual / problem.root_weights) ** 2)))
 
 
-def coefficients(problem: Problem, fit: Fit) -> dict[str, tuple[Array, Array]]:
+def coefficients(problem: Problem, fit: Fit) -> dict[str, tuple[Floats, Floats]]:
     """Coefficients of each member and their covariance [SI], by id (gross errors joined)."""
     factor, _ = _variance_factor(problem, fit)
     norms = np.sqrt((fit.design**2).sum(axis=0))

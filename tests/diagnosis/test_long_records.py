@@ -21,7 +21,7 @@ from bench._long_records import (
     STEP_S,
     TEMPERATURE,
     TONE,
-    Array,
+    Floats,
     autoregressive,
     flicker,
     rate_log,
@@ -205,7 +205,7 @@ def test_a_walk_that_is_slower_than_fifty_blocks_ends_unnamed() -> None:
 # --- lines ---------------------------------------------------------------------------------------
 
 
-def with_line(g: np.random.Generator, noise: Array, amplitude: float, frequency: float) -> Array:
+def with_line(g: np.random.Generator, noise: Floats, amplitude: float, frequency: float) -> Floats:
     t = STEP_S * np.arange(noise.size)
     return noise + amplitude * np.cos(2.0 * np.pi * frequency * t + 6.0 * g.random())
 

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Columns = Mapping[str, Array]
+from surveyapp_models.arrays import Floats
+
+Columns = Mapping[str, Floats]
 Subject = Literal["reversal_run", "campaign", "traverse", "compass", "tilt", "rate"]
 SUBJECTS: tuple[Subject, ...] = (
     "reversal_run",
@@ -30,7 +30,7 @@ SUBJECTS: tuple[Subject, ...] = (
 class Basis(Protocol):
     """Columns of an effect: reading = base model + basis @ coefficients."""
 
-    def __call__(self, columns: Columns, /, **grid: float) -> Array:
+    def __call__(self, columns: Columns, /, **grid: float) -> Floats:
         """Return the columns, shape (n, p), for one value of each non-linear parameter."""
         ...
 
@@ -40,13 +40,13 @@ class AmplitudeLaw(Protocol):
 
     def __call__(
         self,
-        half_swing: Array,
-        first_amplitude: Array,
-        decay: Array,
-        coefficient: Array,
+        half_swing: Floats,
+        first_amplitude: Floats,
+        decay: Floats,
+        coefficient: Floats,
         /,
-        **grid: float | Array,
-    ) -> Array:
+        **grid: float | Floats,
+    ) -> Floats:
         """Return the amplitude [unit of first_amplitude]; coefficient 0 = A exp(-k t)."""
         ...
 
@@ -133,7 +133,7 @@ class GridParameter:
 
     name: str
     unit: str
-    values: Callable[[Columns], Array]
+    values: Callable[[Columns], Floats]
     meaning: str
     continuous: bool = False
     neutral: float | None = None
@@ -239,7 +239,7 @@ FIRST_AMPLITUDE = Column("first_amplitude", "rad")
 DECAY = Column("decay", "1/half swing")
 
 
-def mean_loss_time(half_swing: Array, decay: Array) -> Array:
+def mean_loss_time(half_swing: Floats, decay: Floats) -> Floats:
     """(1 - exp(-k t)) / k, the time t as the damping shortens it, also for k = 0."""
     product = np.asarray(half_swing * decay, dtype=np.float64)
     small = np.abs(product) < 1e-6
@@ -248,7 +248,7 @@ def mean_loss_time(half_swing: Array, decay: Array) -> Array:
     return np.asarray(half_swing * ratio)
 
 
-def inner_positions(positions: Array, *, margin: int) -> Array:
+def inner_positions(positions: Floats, *, margin: int) -> Floats:
     """Sorted different positions with at least ``margin`` of them left on either side."""
     different = np.unique(positions)
     return different[margin - 1 : different.size - margin]

@@ -6,7 +6,6 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.observing.passage_forecast import PassageFit, first_side
 from surveyapp.core.orientation.unfinished import lacking
@@ -20,8 +19,6 @@ from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession
 from surveyapp.errors import SurveyError
-
-Floats = NDArray[np.float64]
 
 SWING_SOURCES = ("scale readings", "passages", "scale readings and passages")
 """Error sources of the swing itself; what remains is clamp, torsion ratio, tape zero."""

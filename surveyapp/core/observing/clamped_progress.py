@@ -10,7 +10,6 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.book.resolution import reading_resolution, rounding_sigma
 from surveyapp.core.observing.clamped_alert import alert_of_readings, alert_of_swing
@@ -51,8 +50,7 @@ from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import Reading
 from surveyapp_models.angles import wrap_two_pi
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,12 +12,10 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp.core.swing.gyrofit import SwingFit, fit_swing
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 LOG_DECREMENT: Final = 0.015
 LOG_DECREMENT_SIGMA: Final = 0.015

@@ -16,11 +16,9 @@ from enum import StrEnum
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.swing.gyrofit import SwingFit
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 MIN_POINTS: Final = 6
 """N, A, damping and one more leave two degrees of freedom."""

@@ -6,15 +6,13 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.observing.forecast import swing_curve
 from surveyapp.core.observing.progress import Point
 from surveyapp.core.observing.run_alert import channels
 from surveyapp.core.swing.gyrofit import SwingFit
 from surveyapp.domain.readings import Reading
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 CURVE_STEPS: Final = 24
 """Points of the drawn swing in one half swing."""

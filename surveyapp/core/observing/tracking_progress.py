@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.book.resolution import reading_resolution
 from surveyapp.core.observing.forecast import (
@@ -42,8 +41,7 @@ from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import Reading, ReadingKind
 from surveyapp.errors import SurveyError
 from surveyapp_models.angles import wrap_two_pi
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 
 def tracking_period(card: InstrumentCard, latitude: float | None) -> float | None:

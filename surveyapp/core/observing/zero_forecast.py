@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.book.resolution import reading_resolution
 from surveyapp.core.observing.forecast import forecast_reading
@@ -17,8 +16,7 @@ from surveyapp.core.swing.clamped import NOMINAL_SIGMA_DIV
 from surveyapp.core.swing.gyrofit import fit_swing
 from surveyapp.core.swing.reduction import reading_sigma
 from surveyapp.domain.readings import Reading, Side
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 
 @dataclass(frozen=True, slots=True)

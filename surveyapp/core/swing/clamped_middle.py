@@ -27,8 +27,7 @@ from surveyapp.core.swing.swingfit import ClampedFit, ClampedSwing, fit_clamped
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession
 from surveyapp_models.angles import RHO_ARCSEC
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 MIN_FULL_FIT = 7
 """Observations from which the full fit (5 unknowns) has two degrees of freedom."""

@@ -11,7 +11,6 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.book.resolution import reading_resolution
 from surveyapp.core.swing.card_physics import card_at
@@ -33,8 +32,7 @@ from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession, ResultWarning
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.domain.results import PointResult
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,12 +15,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.domain.readings import Reading, Side
 from surveyapp_models.angles import wrap_pi_array
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 LEAST_SQUARES_FROM = 6
 """Turning points from which least squares is the default, for tracked and scale swings alike."""

@@ -12,11 +12,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.swing.gyrofit import fit_swing
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 PARAMETERS = 5
 MAX_ITERATIONS = 60

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.book.resolution import reading_resolution
 from surveyapp.core.swing.clamped import session_problem
@@ -52,8 +51,7 @@ from surveyapp.domain.readings import Reading, ReadingKind
 from surveyapp.domain.results import PointResult
 from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.angles import RHO_ARCSEC, wrap_pi, wrap_two_pi
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 MIN_POINTS = 3
 

@@ -14,9 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.diagnosis.long_records.lines import judges_lines
-from surveyapp.diagnosis.problem import Array, Problem
+from surveyapp.diagnosis.problem import Problem
 from surveyapp.errors import Problem as InputProblem
 from surveyapp.errors import SurveyError
+from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Effect
 
 LEAST_BLOCKS = 50
@@ -53,7 +54,7 @@ class Blocks:
         """Samples of each block, shape (m,)."""
         return np.diff(np.append(self.first, self.size))
 
-    def sums(self, values: Array) -> Array:
+    def sums(self, values: Floats) -> Floats:
         """Sums over the blocks of values (n, ...), shape (m, ...)."""
         return np.asarray(np.add.reduceat(values, self.first, axis=0))
 
@@ -85,7 +86,7 @@ def finer_than_blocks(problem: Problem, most: int) -> tuple[str, ...]:
     return tuple(found)
 
 
-def split(position: Array, runs: NDArray[np.intp], count: int) -> Blocks:
+def split(position: Floats, runs: NDArray[np.intp], count: int) -> Blocks:
     """Cut a sorted record into about ``count`` blocks of equal extent in time.
 
     Parameters
@@ -115,7 +116,7 @@ def split(position: Array, runs: NDArray[np.intp], count: int) -> Blocks:
     return best
 
 
-def _cut(position: Array, runs: NDArray[np.intp], duration: float) -> Blocks:
+def _cut(position: Floats, runs: NDArray[np.intp], duration: float) -> Blocks:
     ends = np.append(runs[1:], position.size) - 1
     extent = position[ends] - position[runs]
     parts = np.maximum(np.rint(extent / duration), 1.0)
@@ -157,7 +158,7 @@ def block_means(problem: Problem, blocks: Blocks) -> Problem:
         weight = problem.sigma**-2
     total = blocks.sums(weight)
 
-    def mean(values: Array) -> Array:
+    def mean(values: Floats) -> Floats:
         parts = blocks.sums((values.T * weight).T)
         return np.asarray((parts.T / total).T)
 
@@ -207,7 +208,7 @@ def _check(problem: Problem, blocks: Blocks) -> None:
         )
 
 
-def averaged_columns(problem: Problem, blocks: Blocks, weight: Array) -> dict[str, Array]:
+def averaged_columns(problem: Problem, blocks: Blocks, weight: Floats) -> dict[str, Floats]:
     """Covariates of the blocks: numbered ones as they are, angles on the circle, others averaged.
 
     Missing samples are left out; a block with fewer than half has no value (NaN).
@@ -233,7 +234,9 @@ def averaged_columns(problem: Problem, blocks: Blocks, weight: Array) -> dict[st
     return found
 
 
-def blurred(effect: Effect, problem: Problem, blocks: Blocks, columns: Mapping[str, Array]) -> bool:
+def blurred(
+    effect: Effect, problem: Problem, blocks: Blocks, columns: Mapping[str, Floats]
+) -> bool:
     """Whether an effect of averaged covariates is not the average of the effect.
 
     Judged at the middle of its grid. An effect whose columns are missing is not: that is said

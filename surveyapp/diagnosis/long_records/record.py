@@ -29,11 +29,12 @@ from surveyapp.diagnosis.long_records.lines import (
 )
 from surveyapp.diagnosis.long_records.whiteness import Whiteness, whiteness
 from surveyapp.diagnosis.loop import Search
-from surveyapp.diagnosis.problem import Array, Problem
+from surveyapp.diagnosis.problem import Problem
 from surveyapp.diagnosis.result import CandidateResult, CandidateVerdict, Diagnosis
 from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem as InputProblem
 from surveyapp.errors import SurveyError
+from surveyapp_models.arrays import Floats
 
 LONG = 400
 """Observations up to which a record is diagnosed as it is: 0.7 GB, of a swing 1 GB."""
@@ -173,7 +174,7 @@ def _sorted_and_finite(problem: Problem) -> Problem:
     )
 
 
-def _residual(problem: Problem) -> Array:
+def _residual(problem: Problem) -> Floats:
     """Residuals of the base model, not weighted (n,) [SI]."""
     root = problem.root_weights
     q, r = np.linalg.qr(problem.base * root[:, None])
@@ -181,7 +182,7 @@ def _residual(problem: Problem) -> Array:
     return np.asarray(problem.observations - problem.base @ along)
 
 
-def _need_variation(problem: Problem, residual: Array) -> None:
+def _need_variation(problem: Problem, residual: Floats) -> None:
     size = float(np.abs(problem.observations).max(initial=0.0))
     if float(np.std(residual)) <= 1e-12 * max(size, problem.resolution):
         _refuse(
@@ -221,7 +222,7 @@ def _until_white(problem: Problem) -> tuple[Problem, Blocks, tuple[Whiteness, ..
     return (*best, tuple(tests))
 
 
-def _explained(problem: Problem) -> Array:
+def _explained(problem: Problem) -> Floats:
     """Columns of the base and of every effect without a scan, shape (m, p), not weighted."""
     parts = [problem.base]
     for effect in problem.effects:

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from surveyapp.core.orientation.campaign_columns import block_names
-from surveyapp.diagnosis.problem import Array, Problem
+from surveyapp.diagnosis.problem import Problem
 from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem as InputProblem
 from surveyapp.errors import SurveyError
+from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Effect
 
@@ -167,7 +168,7 @@ def _check(determinations: Sequence[Determination], instrument: str) -> None:
         raise SurveyError(faults)
 
 
-def _numbered(names: Sequence[str]) -> tuple[Array, dict[float, str]]:
+def _numbered(names: Sequence[str]) -> tuple[Floats, dict[float, str]]:
     order = list(dict.fromkeys(names))
     return (
         np.array([float(order.index(name)) for name in names]),
@@ -177,8 +178,8 @@ def _numbered(names: Sequence[str]) -> tuple[Array, dict[float, str]]:
 
 def _columns(
     determinations: Sequence[Determination],
-) -> tuple[dict[str, Array], dict[str, dict[float, str]], list[ResultWarning]]:
-    columns: dict[str, Array] = {}
+) -> tuple[dict[str, Floats], dict[str, dict[float, str]], list[ResultWarning]]:
+    columns: dict[str, Floats] = {}
     labels: dict[str, dict[float, str]] = {}
     warnings: list[ResultWarning] = []
     for name in ("temperature_c", "latitude", "line_reading", "north_reading", "running_s"):

@@ -7,11 +7,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from surveyapp.diagnosis.problem import Array, Problem
+from surveyapp.diagnosis.problem import Problem
 from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem as InputProblem
 from surveyapp.errors import SurveyError
 from surveyapp_models.angles import circular_mean, wrap_pi_array
+from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Effect
 
@@ -106,14 +107,14 @@ def reversal_run(points: TurningPoints, extra: tuple[Effect, ...] = ()) -> Probl
     )
 
 
-def _columns(points: TurningPoints) -> dict[str, Array]:
+def _columns(points: TurningPoints) -> dict[str, Floats]:
     columns = {name: np.asarray(v, dtype=np.float64) for name, v in points.covariates.items()}
     if points.elapsed_s is not None:
         columns["elapsed_s"] = np.asarray(points.elapsed_s, dtype=np.float64)
     return columns
 
 
-def _middle(readings: Array) -> float:
+def _middle(readings: Floats) -> float:
     """Middle of the swing; of one wider than half a circle, as read without passing zero."""
     try:
         return circular_mean(readings)
@@ -121,7 +122,7 @@ def _middle(readings: Array) -> float:
         return float(0.5 * (readings.min() + readings.max()))
 
 
-def _check(points: TurningPoints, readings: Array) -> None:
+def _check(points: TurningPoints, readings: Floats) -> None:
     faults = []
     if readings.size < LEAST_POINTS:
         faults.append(
@@ -163,7 +164,7 @@ def _check(points: TurningPoints, readings: Array) -> None:
         raise SurveyError(faults)
 
 
-def _sides(points: TurningPoints, y: Array, count: Array) -> Array:
+def _sides(points: TurningPoints, y: Floats, count: Floats) -> Floats:
     """+1 right, -1 left; alternating with the count, whatever single readings look like."""
     parity = np.where(np.round(count - count[0]) % 2 == 0, 1.0, -1.0)
     if points.right is not None:
@@ -184,7 +185,7 @@ def _sides(points: TurningPoints, y: Array, count: Array) -> Array:
     return parity if first_is_right else -parity
 
 
-def _warnings(points: TurningPoints, count: Array) -> tuple[ResultWarning, ...]:
+def _warnings(points: TurningPoints, count: Floats) -> tuple[ResultWarning, ...]:
     if points.elapsed_s is None:
         text = (
             "no times: the number of the turning point stands in for time, rates and time "
@@ -194,7 +195,7 @@ def _warnings(points: TurningPoints, count: Array) -> tuple[ResultWarning, ...]:
     return tuple(_time_warnings(np.asarray(points.elapsed_s, dtype=np.float64), count))
 
 
-def _time_warnings(times: Array, count: Array) -> list[ResultWarning]:
+def _time_warnings(times: Floats, count: Floats) -> list[ResultWarning]:
     if not np.isfinite(times).all() or times.size < 3:
         return [ResultWarning("times_incomplete", "times are incomplete and are not used")]
     slope, start = np.polyfit(count, times, 1)
