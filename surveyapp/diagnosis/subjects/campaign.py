@@ -105,6 +105,8 @@ def campaign(
     offset = float(np.median(values))
     return Problem(
         subject="campaign",
+        title="campaign",
+        value_name="the constant",
         observations=values - offset,
         base=np.ones((n, 1)),
         base_names=("constant",),
