@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from surveyapp.diagnosis import Problem
+from surveyapp.diagnosis import Case
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import (
     Coefficient,
@@ -83,11 +83,11 @@ def rate_log(
     effects: tuple[Effect, ...] = (RAMP,),
     columns: Mapping[str, Floats] | None = None,
     **more: Any,
-) -> Problem:
+) -> Case:
     """A problem with one constant bias [deg/h]."""
     n = values.size
     t = STEP_S * np.arange(n) if time is None else time
-    return Problem(
+    return Case(
         subject="rate",
         observations=values,
         base=np.ones((n, 1)),

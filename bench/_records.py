@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from surveyapp.diagnosis import Determination, Problem, TurningPoints
+from surveyapp.diagnosis import Case, Determination, TurningPoints
 from surveyapp.diagnosis.subjects.choice import campaign, reversal_run
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
@@ -154,7 +154,7 @@ def midpoint(truth: Truth, runs: int, g: np.random.Generator) -> Callable[[float
     return north
 
 
-def problems(truth: Truth, runs: int, seed: int) -> tuple[list[Problem], Floats]:
+def problems(truth: Truth, runs: int, seed: int) -> tuple[list[Case], Floats]:
     """Problems of a line and the true north averaged over each run [rad]."""
     made = simulate(truth, runs, seed)
     with_temperature = truth.effect == "temperature"
@@ -186,7 +186,7 @@ class CampaignTruth:
     ar1: float = 0.0
 
 
-def campaign_problem(truth: CampaignTruth, seed: int) -> tuple[Problem, float]:
+def campaign_problem(truth: CampaignTruth, seed: int) -> tuple[Case, float]:
     """Simulate a campaign of three determinations a day; the constant averaged over it [rad]."""
     g = np.random.default_rng(seed)
     n = truth.size

@@ -14,7 +14,7 @@ import numpy as np
 
 from surveyapp.core.simulate.disturbing import damped_gyro
 from surveyapp.core.simulate.specification import SessionSpec
-from surveyapp.core.swing.gyrofit import fit_swing
+from surveyapp.core.swing.gyrofit import fit_damped_swing
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
 from surveyapp_models.gyro.integration import Disturbance, Start, TapeTop, integrate
@@ -192,7 +192,7 @@ def least_squares_table() -> list[tuple[int, list[float]]]:
         k = np.arange(points, dtype=np.float64)
         sides = np.where(damped[:points] > 0.0, 1.0, -1.0)
         found = [
-            fit_swing(damped[:points] + noise[run, :points], k, sides).north
+            fit_damped_swing(damped[:points] + noise[run, :points], k, sides).north
             for run in range(FIT_RUNS)
         ]
         rows.append(
@@ -202,8 +202,8 @@ def least_squares_table() -> list[tuple[int, list[float]]]:
                     least_squares_cofactor(points),
                     least_squares_cofactor(points, drift=True) if points > 4 else math.nan,
                     float(np.std(found)) / SIGMA_ARCSEC,
-                    abs(fit_swing(damped[:points], k, sides).north),
-                    abs(fit_swing(lagging[:points], k, sides).north),
+                    abs(fit_damped_swing(damped[:points], k, sides).north),
+                    abs(fit_damped_swing(lagging[:points], k, sides).north),
                 ],
             )
         )

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.compare import orthonormal_design
 from surveyapp.diagnosis.fits import Fit
 from surveyapp.diagnosis.gate import rounding_of
 from surveyapp.diagnosis.nulls import Noise, residual_draws
-from surveyapp.diagnosis.problem import Problem
 from surveyapp_models.arrays import Floats
 
 DRAWS = 1000
@@ -32,7 +32,7 @@ class BatteryTest:
     p: float
 
 
-def channels(problem: Problem, residuals: Floats) -> dict[str, Floats]:
+def channels(problem: Case, residuals: Floats) -> dict[str, Floats]:
     """Channels of residuals (d, n): the only one, or amplitude and midpoint of a swing."""
     if problem.side is None:
         return {"residual": residuals}
@@ -92,7 +92,7 @@ STATISTICS = (
 )
 
 
-def run_battery(problem: Problem, fit: Fit, seed: int) -> tuple[BatteryTest, ...]:
+def run_battery(problem: Case, fit: Fit, seed: int) -> tuple[BatteryTest, ...]:
     """Apply every statistic to every channel of the residuals of a fit."""
     generator = np.random.default_rng(seed)
     q = orthonormal_design(fit)

@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from surveyapp.diagnosis.problem import Problem
+from surveyapp.diagnosis.case import Case
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Effect
 
@@ -117,7 +117,7 @@ class Candidate:
         return NOT_SEPARABLE_LAW if self.is_law else NOT_SEPARABLE
 
 
-def swing_columns(problem: Problem, theta: Floats | None) -> dict[str, Floats]:
+def swing_columns(problem: Case, theta: Floats | None) -> dict[str, Floats]:
     """Columns of a problem with those of its swing as it is fitted now."""
     columns = dict(problem.columns)
     if problem.side is not None and problem.half_swing is not None and theta is not None:
@@ -151,7 +151,7 @@ CONSTANT_COLUMNS = frozenset(
 """Columns that may be constant."""
 
 
-def all_candidates(problem: Problem, theta: Floats | None) -> tuple[Candidate, ...]:
+def all_candidates(problem: Case, theta: Floats | None) -> tuple[Candidate, ...]:
     """Every candidate of a problem at the present amplitude and damping of its swing."""
     columns = swing_columns(problem, theta)
     root = problem.root_weights
@@ -208,7 +208,7 @@ def _shape(name: str, columns: list[Floats], charge: int, root: Floats) -> Candi
     return Candidate(name, "shape", points, stacked, np.full(len(columns), float(charge)))
 
 
-def _shapes(problem: Problem, columns: Mapping[str, Floats], root: Floats) -> list[Candidate]:
+def _shapes(problem: Case, columns: Mapping[str, Floats], root: Floats) -> list[Candidate]:
     """Generic shapes over the position; of a swing in its amplitude too."""
     position = problem.position
     if np.unique(position).size < 5:
@@ -246,7 +246,7 @@ def _shapes(problem: Problem, columns: Mapping[str, Floats], root: Floats) -> li
 
 
 def _pulse_shape(
-    problem: Problem, columns: Mapping[str, Floats], root: Floats
+    problem: Case, columns: Mapping[str, Floats], root: Floats
 ) -> tuple[Candidate, ...]:
     """The pulses that show in more than one reading: in one alone it is a slip."""
     stacked = np.stack(_pulses(problem.position, problem.side))

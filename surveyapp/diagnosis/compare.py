@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from surveyapp.diagnosis.candidates import Candidate, Projected, project
+from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.fits import (
     Fit,
     Member,
@@ -26,7 +27,6 @@ from surveyapp.diagnosis.fits import (
     with_noise,
 )
 from surveyapp.diagnosis.nulls import reductions
-from surveyapp.diagnosis.problem import Problem
 from surveyapp_models.arrays import Floats
 
 MARGIN = 4.0
@@ -101,7 +101,7 @@ class Level:
         return min(simpler, key=lambda fit: (fit.parameters, fit.bic)) if simpler else best
 
 
-def base_level(problem: Problem) -> Level:
+def base_level(problem: Case) -> Level:
     """The model that stands, alone."""
     fit = fit_members(problem, ())
     return Level(0, (fit,), with_noise(problem, fit))
@@ -145,7 +145,7 @@ Draft = tuple[float, tuple[Member, ...], Fit]
 """Approximate BIC, members, and the set that was added to."""
 
 
-def next_level(problem: Problem, level: Level, candidates: Iterable[Candidate]) -> Level:
+def next_level(problem: Case, level: Level, candidates: Iterable[Candidate]) -> Level:
     """Best fit of every set that has one candidate more than the best sets of a level."""
     drafts = _drafts(problem, level, tuple(candidates))
     if not drafts:
@@ -169,7 +169,7 @@ def next_level(problem: Problem, level: Level, candidates: Iterable[Candidate]) 
 
 
 def _drafts(
-    problem: Problem, level: Level, pool: tuple[Candidate, ...]
+    problem: Case, level: Level, pool: tuple[Candidate, ...]
 ) -> dict[tuple[frozenset[str], int], Draft]:
     """Best addition for each set of names and each number of gross errors in it."""
     drafts: dict[tuple[frozenset[str], int], Draft] = {}
@@ -188,7 +188,7 @@ def _drafts(
     return drafts
 
 
-def settled_count(problem: Problem, counts: Mapping[int, Fit]) -> Fit:
+def settled_count(problem: Case, counts: Mapping[int, Fit]) -> Fit:
     """As many gross errors as each prove themselves beside the others.
 
     Fits of the same effects with more and more gross errors. A further one is taken for real when
@@ -220,7 +220,7 @@ def f_limit(p: float, upper: int, lower: int) -> float:
 
 
 def _best_addition(
-    problem: Problem, anchor: Fit, candidate: Candidate, q: Floats
+    problem: Case, anchor: Fit, candidate: Candidate, q: Floats
 ) -> tuple[float, tuple[Member, ...]] | None:
     """Best grid point of a candidate beside an anchor and the approximate BIC there."""
     item = project(candidate, q)
@@ -243,7 +243,7 @@ def slip_bends(candidate: Candidate, fit: Fit) -> bool:
     return candidate.is_slip and is_spoilt(fit)
 
 
-def _refined(problem: Problem, members: tuple[Member, ...], anchor: Fit, *, every: bool) -> Fit:
+def _refined(problem: Case, members: tuple[Member, ...], anchor: Fit, *, every: bool) -> Fit:
     """Exact fit; the grid of every member is searched again beside the others."""
     start = anchor.theta
     fit = fit_members(problem, members, start)
@@ -294,7 +294,7 @@ def within_margin(level: Level) -> tuple[Fit, ...]:
     return tuple(sorted((*chosen, *rivals), key=lambda fit: (fit.bic, fit is not best)))
 
 
-def scored(problem: Problem, fit: Fit) -> Fit:
+def scored(problem: Case, fit: Fit) -> Fit:
     """The fit with its scans paid for by the evidence.
 
     A scan over G points of which only one explains the record costs 2 log G; one of which many do
@@ -317,7 +317,7 @@ def scored(problem: Problem, fit: Fit) -> Fit:
     return dataclasses.replace(fit, score=score)
 
 
-def _profile(problem: Problem, fit: Fit, member: Member, others: tuple[Member, ...]) -> Floats:
+def _profile(problem: Case, fit: Fit, member: Member, others: tuple[Member, ...]) -> Floats:
     """Sum of squares at each separable grid point of a member beside the others."""
     if member.candidate.is_law and fit.theta is not None:
         return scan_law(problem, member.candidate, others, fit.theta)

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.long_records.lines import SpectralLine
-from surveyapp.diagnosis.problem import Problem
-from surveyapp.diagnosis.result import Adoption, Diagnosis, ModelResult, Quantity
+from surveyapp.diagnosis.result import Adoption, Diagnosis, Estimate, ModelResult
 from surveyapp_models.effects.effect import Effect
 
 NOISE_AND_SHAPES = {
@@ -66,7 +66,7 @@ def plain_words(
     return said
 
 
-def words_of(result: Diagnosis, problem: Problem) -> list[str]:
+def words_of(result: Diagnosis, problem: Case) -> list[str]:
     """Same as ``plain_words`` with the effects and labels of a problem."""
     return plain_words(result, problem.effects, problem.grid_labels)
 
@@ -153,7 +153,7 @@ def _line(result: Diagnosis, line: SpectralLine, known: dict[str, Effect]) -> st
     return f"{what}; {whose}."
 
 
-def _value(result: Diagnosis, quantity: Quantity) -> str:
+def _value(result: Diagnosis, quantity: Estimate) -> str:
     return _small(result, quantity.sigma)
 
 

@@ -14,7 +14,7 @@ from typing import Literal
 
 import numpy as np
 
-from surveyapp.diagnosis.problem import Problem
+from surveyapp.diagnosis.case import Case
 from surveyapp_models.arrays import Floats
 
 NoiseKind = Literal["random_walk", "amplitude_walk", "ar1"]
@@ -58,7 +58,7 @@ class NoiseModel:
 _CACHE: dict[bytes, tuple[NoiseModel, ...]] = {}
 
 
-def noise_models(problem: Problem) -> tuple[NoiseModel, ...]:
+def noise_models(problem: Case) -> tuple[NoiseModel, ...]:
     """All covariances of the stochastic rivals for the positions of a problem."""
     key = hashlib.sha256()
     for part in (problem.position, problem.root_weights):
@@ -73,7 +73,7 @@ def noise_models(problem: Problem) -> tuple[NoiseModel, ...]:
     return found
 
 
-def _build(problem: Problem) -> tuple[NoiseModel, ...]:
+def _build(problem: Case) -> tuple[NoiseModel, ...]:
     n, root = problem.size, problem.root_weights
     rank = _scaled_position(problem.position)
     walk = np.minimum.outer(rank, rank) + 1.0
@@ -161,7 +161,7 @@ class NoiseFit:
 
 
 def best_noises(
-    problem: Problem, J: Floats, residual: Floats, *, scale: float, floor: float
+    problem: Case, J: Floats, residual: Floats, *, scale: float, floor: float
 ) -> tuple[NoiseFit, ...]:
     """Every kind of noise for the residuals of a design, by its marginal likelihood.
 
@@ -174,7 +174,7 @@ def best_noises(
 
     Parameters
     ----------
-    problem : Problem
+    problem : Case
     J : ndarray, shape (n, p)
         Design (weighted, derivatives of the non-linear part).
     residual : ndarray, shape (n,)

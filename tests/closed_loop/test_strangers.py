@@ -11,7 +11,7 @@ from scipy.stats import binom
 
 from bench._records import Truth, problems
 from bench.operating_characteristics import evaluate
-from surveyapp.diagnosis import Determination, Problem, TurningPoints
+from surveyapp.diagnosis import Case, Determination, TurningPoints
 from surveyapp.diagnosis.candidates import all_candidates
 from surveyapp.diagnosis.compare import base_level, next_level, settled_count
 from surveyapp.diagnosis.engine import diagnose
@@ -101,7 +101,7 @@ def test_a_slip_of_a_whole_degree_is_found_in_eight_points(at: int) -> None:
     assert {n: v for n, v, _ in result.adopted[0].grid} == {"point": float(at)}
 
 
-def series(missing: bool) -> Problem:
+def series(missing: bool) -> Case:
     """A campaign whose constant follows a temperature that rises; some of it may be unread."""
     g = np.random.default_rng(5)
     days = np.arange(45.0) * 2.0
@@ -149,7 +149,7 @@ def test_what_has_no_name_stays_in_the_sigma() -> None:
             assert result.averaged.sigma >= result.after.value.sigma * (1.0 - 1e-9)
 
 
-def dated(values: list[float], days: list[float], sigma: float | None = None) -> Problem:
+def dated(values: list[float], days: list[float], sigma: float | None = None) -> Case:
     return campaign(
         [
             Determination(

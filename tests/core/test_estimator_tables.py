@@ -14,7 +14,7 @@ import pytest
 from scripts import compare_estimators as compare
 from surveyapp.core.simulate.specification import Noise, SessionSpec
 from surveyapp.core.simulate.turning_points import simulate_turning_points
-from surveyapp.core.swing.gyrofit import fit_swing
+from surveyapp.core.swing.gyrofit import fit_damped_swing
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.gyro.integration import Start, TapeTop, integrate
 from surveyapp_models.gyro.motion import DampedSwing, swing_position
@@ -148,7 +148,7 @@ def test_source_000_schuler_figures():
     for points in (4, 6):
         assert abs(least_squares_weights(points) @ u[:points]) == pytest.approx(9.0, abs=0.1)
     k = np.arange(6, dtype=float)
-    fitted = fit_swing(u, k, np.sign(u))
+    fitted = fit_damped_swing(u, k, np.sign(u))
     assert fitted.north == pytest.approx(0.0, abs=1e-6)
 
 

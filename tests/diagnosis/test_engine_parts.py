@@ -9,7 +9,7 @@ import pytest
 from measured_runs import johannesburg
 from scipy import optimize, stats
 
-from surveyapp.diagnosis import Determination, Problem, TurningPoints
+from surveyapp.diagnosis import Case, Determination, TurningPoints
 from surveyapp.diagnosis.candidates import Candidate, all_candidates, project
 from surveyapp.diagnosis.compare import orthonormal_design, spans
 from surveyapp.diagnosis.fits import Fit, Member, fit_members, with_noise
@@ -22,14 +22,14 @@ from surveyapp_models.angles import ARCSEC
 from surveyapp_models.effects import of_subject
 
 
-def quiet_run(seed: int, n: int = 20) -> Problem:
+def quiet_run(seed: int, n: int = 20) -> Case:
     g = np.random.default_rng(seed)
     k = np.arange(float(n))
     y = 1.0 + 0.017 * (-1.0) ** k * np.exp(-0.015 * k) + 4.0 * ARCSEC * g.standard_normal(n)
     return reversal_run(TurningPoints(list(y)))
 
 
-def candidate_of(problem: Problem, identity: str) -> Candidate:
+def candidate_of(problem: Case, identity: str) -> Candidate:
     pool = all_candidates(problem, fit_members(problem, ()).theta)
     return next(c for c in pool if c.id == identity and c.count == 1)
 

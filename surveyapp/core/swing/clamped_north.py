@@ -17,7 +17,7 @@ from surveyapp.core.swing.card_physics import card_at
 from surveyapp.core.swing.clamped import Observed, clamp_reading, observe, session_problem
 from surveyapp.core.swing.clamped_middle import Middle, middle_of
 from surveyapp.core.swing.goodness import FitTest, Judge, goodness_of_fit
-from surveyapp.core.swing.gyrofit import fit_swing
+from surveyapp.core.swing.gyrofit import fit_damped_swing
 from surveyapp.core.swing.reduction import Reduction, point_results, tape_zero_parts
 from surveyapp.core.swing.sights import TripodTwist, moments
 from surveyapp.core.swing.swingfit import ClampedFit
@@ -229,7 +229,7 @@ def _residuals(observed: Observed, fit: ClampedFit | None) -> Floats | None:
     if fit is not None:
         return fit.reading_residuals
     if swing.readings.size >= 3:
-        return fit_swing(swing.readings, swing.index, swing.sides).residuals
+        return fit_damped_swing(swing.readings, swing.index, swing.sides).residuals
     return None
 
 
@@ -270,7 +270,7 @@ def _tests(
         )
     if swing.readings.size < 4:
         return ()
-    own = fit_swing(swing.readings, swing.index, swing.sides)
+    own = fit_damped_swing(swing.readings, swing.index, swing.sides)
     return goodness_of_fit(
         own.residuals,
         own.jacobian(swing.index, swing.sides),

@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from surveyapp.core.swing.gyrofit import SwingFit
+from surveyapp.core.swing.gyrofit import DampedFit
 from surveyapp.core.swing.sights import TripodTwist
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession
@@ -72,7 +72,7 @@ class ShownModel:
 
 
 def shown_model(
-    fit: SwingFit, index: Floats, sides: Floats, modelled: ModelledNorth | None
+    fit: DampedFit, index: Floats, sides: Floats, modelled: ModelledNorth | None
 ) -> ShownModel:
     """The damped swing, or the model with adopted effects where there are any."""
     if modelled is None:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surveyapp.core.swing.gyrofit import fit_swing
+from surveyapp.core.swing.gyrofit import fit_damped_swing
 from surveyapp_models.arrays import Floats
 
 PARAMETERS = 5
@@ -188,7 +188,7 @@ def whitened_jacobian(swing: ClampedSwing, parameters: Floats) -> Floats:
 def _start(swing: ClampedSwing, period: float) -> Floats:
     """First guess: turning points give B, A, c; the passages t0."""
     if swing.readings.size >= 3:
-        fit = fit_swing(swing.readings, swing.index, swing.sides)
+        fit = fit_damped_swing(swing.readings, swing.index, swing.sides)
         middle, amplitude, decrement = fit.north, fit.amplitude, fit.log_decrement
         decrement = min(max(decrement, -0.05), 0.2)
     else:

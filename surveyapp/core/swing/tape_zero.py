@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from surveyapp.core.swing.card_physics import card_at
-from surveyapp.core.swing.gyrofit import fit_swing, schuler_means, side_signs
+from surveyapp.core.swing.gyrofit import fit_damped_swing, schuler_means, side_signs
 from surveyapp.core.swing.sights import swing_moments
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.readings import FieldBook, Place, Reading, ReadingKind
@@ -92,7 +92,7 @@ def rest_position(readings: Floats, sides: Floats) -> RestPosition:
     means, weights = schuler_means(readings, index)
     variance, dof = None, 0
     if readings.size >= MIN_POINTS_FOR_RESIDUALS and np.unique(sides).size == 2:
-        fit = fit_swing(readings, index, sides)
+        fit = fit_damped_swing(readings, index, sides)
         variance, dof = fit.variance, fit.dof
     return RestPosition(
         value_div=float(means.mean()),

@@ -7,10 +7,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from surveyapp.diagnosis.problem import Problem
+from surveyapp.diagnosis.case import Case
 from surveyapp.domain.project import ResultWarning
-from surveyapp.errors import Problem as InputProblem
-from surveyapp.errors import SurveyError
+from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.angles import circular_mean, wrap_pi_array
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
@@ -57,7 +56,7 @@ class TurningPoints:
     identity: str = ""
 
 
-def reversal_run(points: TurningPoints, extra: tuple[Effect, ...] = ()) -> Problem:
+def reversal_run(points: TurningPoints, extra: tuple[Effect, ...] = ()) -> Case:
     """Make the problem of a reversal run.
 
     Parameters
@@ -68,7 +67,7 @@ def reversal_run(points: TurningPoints, extra: tuple[Effect, ...] = ()) -> Probl
 
     Returns
     -------
-    Problem
+    Case
 
     Raises
     ------
@@ -83,7 +82,7 @@ def reversal_run(points: TurningPoints, extra: tuple[Effect, ...] = ()) -> Probl
     offset = _middle(readings)
     y = wrap_pi_array(readings - offset)
     temperature = points.reference_temperature_c
-    return Problem(
+    return Case(
         subject="reversal_run",
         title="run",
         value_name="north over the run",
@@ -128,7 +127,7 @@ def _check(points: TurningPoints, readings: Floats) -> None:
     faults = []
     if readings.size < LEAST_POINTS:
         faults.append(
-            InputProblem(
+            Problem(
                 "too few turning points to diagnose a run",
                 points.identity,
                 str(readings.size),
@@ -138,7 +137,7 @@ def _check(points: TurningPoints, readings: Floats) -> None:
         )
     elif np.ptp(wrap_pi_array(readings - readings[0])) == 0.0:
         faults.append(
-            InputProblem(
+            Problem(
                 "the turning points do not swing",
                 points.identity,
                 "all readings equal",
@@ -149,7 +148,7 @@ def _check(points: TurningPoints, readings: Floats) -> None:
     for name, values in (("count", points.count), ("elapsed_s", points.elapsed_s)):
         if values is not None and len(values) != readings.size:
             faults.append(
-                InputProblem(
+                Problem(
                     f"{name} does not belong to these readings",
                     points.identity,
                     str(len(values)),
@@ -158,10 +157,10 @@ def _check(points: TurningPoints, readings: Floats) -> None:
             )
         elif values is not None and np.any(np.diff(np.asarray(values, dtype=float)) <= 0.0):
             faults.append(
-                InputProblem(f"{name} does not increase", points.identity, "", "increasing values")
+                Problem(f"{name} does not increase", points.identity, "", "increasing values")
             )
     if not np.isfinite(readings).all():
-        faults.append(InputProblem("a reading is no number", points.identity, "nan", "angles"))
+        faults.append(Problem("a reading is no number", points.identity, "nan", "angles"))
     if faults:
         raise SurveyError(faults)
 
@@ -173,7 +172,7 @@ def _sides(points: TurningPoints, y: Floats, count: Floats) -> Floats:
         side = np.where(np.asarray(points.right, dtype=bool), 1.0, -1.0)
         if np.any(side * side[0] != parity):
             raise SurveyError(
-                InputProblem(
+                Problem(
                     "two turning points on one side follow each other",
                     points.identity,
                     "",

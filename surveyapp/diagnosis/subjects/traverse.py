@@ -23,12 +23,11 @@ import numpy as np
 from surveyapp.core.network.adjustment import solve_network
 from surveyapp.core.network.model import Model, compile_network
 from surveyapp.core.network.observation_equations import equations, linearised, misclosures
-from surveyapp.diagnosis.problem import Problem
+from surveyapp.diagnosis.case import Case
 from surveyapp.domain.observations import Observation, ObservationKind
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network
-from surveyapp.errors import Problem as InputProblem
-from surveyapp.errors import SurveyError
+from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Columns, Effect
@@ -50,7 +49,7 @@ def traverse(
     name: str = "",
     atmosphere_applied: bool | None = None,
     extra: tuple[Effect, ...] = (),
-) -> Problem:
+) -> Case:
     """Make the problem of a network.
 
     Parameters
@@ -66,7 +65,7 @@ def traverse(
 
     Returns
     -------
-    Problem
+    Case
         ``columns`` are those of the observations, ``observations`` the conditions.
 
     Raises
@@ -77,7 +76,7 @@ def traverse(
     identity = name or network.name or "traverse"
     if len(network.observations) > MOST_OBSERVATIONS:
         raise SurveyError(
-            InputProblem(
+            Problem(
                 "too many observations to diagnose them together",
                 identity,
                 str(len(network.observations)),
@@ -92,7 +91,7 @@ def traverse(
     transform = _conditions(design, towards)
     if transform.shape[0] < 2:
         raise SurveyError(
-            InputProblem(
+            Problem(
                 "nothing controls the traverse",
                 identity,
                 f"{len(model.observations)} observations, all of them necessary",
@@ -103,7 +102,7 @@ def traverse(
     base = np.zeros((size, 1))
     base[0, 0] = 1.0
     columns = {**observation_columns(network, model, values), TRANSFORM: transform @ whitener}
-    return Problem(
+    return Case(
         subject="traverse",
         title="traverse",
         value_name="the place of the least certain point",
@@ -284,12 +283,12 @@ def _warnings(
     return tuple(found)
 
 
-def condition_count(problem: Problem) -> int:
+def condition_count(problem: Case) -> int:
     """Independent conditions of a traverse, the degrees of freedom of its adjustment."""
     return problem.size - 1
 
 
-def chi_square_ratio(problem: Problem) -> float:
+def chi_square_ratio(problem: Case) -> float:
     """Root of the sum of squares of the conditions over their number: sigma0 over its a priori."""
     conditions = problem.observations[1:]
     return math.sqrt(float(conditions @ conditions) / condition_count(problem))

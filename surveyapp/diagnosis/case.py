@@ -31,7 +31,7 @@ def _read_only(values: Floats) -> Floats:
 
 
 @dataclass(frozen=True, slots=True)
-class Problem:
+class Case:
     """Observations with their base model.
 
     Parameters
