@@ -32,7 +32,8 @@ def test_the_toy_subject_finds_the_expansion_of_steel(toy: dict[str, Any]) -> No
     found = result.adopted[0].coefficients[0]
     # 30 m of steel expand by 30e3 mm x 11.5e-6/K
     assert abs(found.value + 30.0e3 * 11.5e-6) < 4.0 * found.sigma
-    assert result.heading == "tape 7" and result.value_name == "the length"
+    assert result.heading == "tape 7"
+    assert result.value_name == "the length"
 
 
 def test_wrong_records_are_told_together(toy: dict[str, Any]) -> None:
