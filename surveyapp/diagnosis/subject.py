@@ -13,10 +13,9 @@ from typing import Protocol
 import numpy as np
 
 from surveyapp.diagnosis.action import Action
-from surveyapp.diagnosis.problem import Problem
+from surveyapp.diagnosis.case import Case
 from surveyapp.domain.project import ResultWarning
-from surveyapp.errors import Problem as InputProblem
-from surveyapp.errors import SurveyError
+from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Column, Columns, Effect
@@ -125,8 +124,8 @@ class Record:
     extra: tuple[Effect, ...] = ()
 
 
-def problem_of(subject: Subject, record: Record) -> Problem:
-    """Make the problem of a record of any subject.
+def case_of(subject: Subject, record: Record) -> Case:
+    """Make the case of a record of any subject.
 
     The value is taken over the record: what an effect adds on average belongs to it.
 
@@ -143,7 +142,7 @@ def problem_of(subject: Subject, record: Record) -> Problem:
     weights = np.full(values.size, 1.0 / max(values.size, 1))
     if sigma is not None:
         weights = sigma**-2 / float(np.sum(sigma**-2))
-    return Problem(
+    return Case(
         subject=subject.id,
         observations=values,
         base=subject.base(columns) if columns else subject.base({POSITION_ONLY: position}),
@@ -186,11 +185,11 @@ def _check(
     where = identity or subject.title
     faults = []
     if values.ndim != 1 or not np.isfinite(values).all():
-        faults.append(InputProblem("an observation is no number", where, "nan", "numbers"))
+        faults.append(Problem("an observation is no number", where, "nan", "numbers"))
     for name, column in columns.items():
         if column.shape != values.shape:
             faults.append(
-                InputProblem(
+                Problem(
                     "a column has another length than the observations",
                     f"{where}, {name}",
                     str(column.size),
@@ -200,7 +199,7 @@ def _check(
     order = columns.get(subject.position)
     if order is not None and not np.isfinite(order).all():
         faults.append(
-            InputProblem(
+            Problem(
                 "the column that orders the observations has gaps",
                 f"{where}, {subject.position}",
                 f"{int((~np.isfinite(order)).sum())} of {order.size} missing",
@@ -208,6 +207,6 @@ def _check(
             )
         )
     if sigma is not None and (sigma.shape != values.shape or not bool(np.all(sigma > 0.0))):
-        faults.append(InputProblem("a sigma is not positive", where, "", "sigmas above 0"))
+        faults.append(Problem("a sigma is not positive", where, "", "sigmas above 0"))
     if faults:
         raise SurveyError(faults)

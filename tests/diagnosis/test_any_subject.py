@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from surveyapp.diagnosis.subject import Record, Subject, problem_of
+from surveyapp.diagnosis.subject import Record, Subject, case_of
 from surveyapp.errors import SurveyError
 
 PAGE = Path(__file__).parents[2] / "docs/how-to/add-a-subject.md"
@@ -40,7 +40,7 @@ def test_wrong_records_are_told_together(toy: dict[str, Any]) -> None:
     subject: Subject = toy["TAPE"]
     record = Record([1.0, np.nan], {"temperature_c": [1.0]}, sigma=[1.0, 0.0])
     with pytest.raises(SurveyError) as caught:
-        problem_of(subject, record)
+        case_of(subject, record)
     assert len(caught.value.problems) == 3
 
 
