@@ -211,7 +211,7 @@ class Diagnosis:
     @property
     def heading(self) -> str:
         """What was diagnosed: the subject, and which one."""
-        told = self.identity.startswith(self.title)
+        told = f"{self.identity} ".startswith(f"{self.title} ")
         return self.identity if told else f"{self.title} {self.identity}"
 
     def to_dict(self) -> dict[str, Any]:
