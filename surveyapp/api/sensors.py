@@ -162,9 +162,11 @@ def calibrate(
 
     subject_of(kind)
     opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
-    if opened.entry is not None and opened.entry.kind != kind:
+    if opened.entry is not None and opened.entry.kind not in (None, kind):
         where = f"[[sensor_log]] {opened.entry.id}"
-        raise SurveyError(Problem("the log is of another kind", where, opened.entry.kind, kind))
+        raise SurveyError(
+            Problem("the log is of another kind", where, str(opened.entry.kind), kind)
+        )
     request = CalibrationRequest(
         kind=kind,
         file=opened.file,

@@ -18,7 +18,8 @@ class SensorLogEntry:
     Parameters
     ----------
     id : str
-    kind : SensorKind
+    kind : SensorKind or None
+        None = not stated: the command that reads it decides.
     file : str
         As written, relative to the project folder.
     columns : mapping of str to str
@@ -45,7 +46,7 @@ class SensorLogEntry:
     """
 
     id: str
-    kind: SensorKind
+    kind: SensorKind | None
     file: str
     columns: Mapping[str, str] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)

@@ -66,11 +66,9 @@ def _entry(table: Table) -> SensorLogEntry:
             table.problem(f"units: {shown(column)} has no known unit", unit, "a unit", hint)
     rows = table.number("header_rows", low=0, high=_MAX_HEADER)
     sha256 = table.text("sha256")
-    if sha256 is not None and (len(sha256) != 64 or not _hexadecimal(sha256)):
-        table.problem("sha256 is none", sha256, "64 hexadecimal digits")
     entry = SensorLogEntry(
         id=table.text("id", required=True) or "",
-        kind=cast("SensorKind", table.choice("kind", SENSOR_KINDS, required=True) or "rate"),
+        kind=cast("SensorKind | None", table.choice("kind", SENSOR_KINDS)),
         file=table.text("file", required=True) or "",
         columns=columns,
         units=units,
@@ -88,10 +86,6 @@ def _entry(table: Table) -> SensorLogEntry:
     table.get("effect")
     table.warn_unknown()
     return entry
-
-
-def _hexadecimal(text: str) -> bool:
-    return all(letter in "0123456789abcdefABCDEF" for letter in text)
 
 
 def _texts(table: Table, key: str) -> dict[str, str]:
