@@ -95,15 +95,16 @@ def _clean(s: Scene, g: np.random.Generator) -> Floats:
 
 
 def _drift(s: Scene, g: np.random.Generator) -> Floats:
-    return _centred(2.0 * s.u, s.n) * g.choice([-1.0, 1.0])
+    return np.asarray(_centred(2.0 * s.u, s.n) * g.choice([-1.0, 1.0]))
 
 
 def _temperature(s: Scene, g: np.random.Generator) -> Floats:
-    return _centred(s.columns["temperature_c"], s.n) / 8.0 * g.choice([-1.0, 1.0])
+    return np.asarray(_centred(s.columns["temperature_c"], s.n) / 8.0 * g.choice([-1.0, 1.0]))
 
 
 def _latitude(s: Scene, g: np.random.Generator) -> Floats:
-    return _centred(8.0 / np.cos(s.columns["latitude"]), s.n) * g.choice([-1.0, 1.0])
+    x = _centred(8.0 / np.cos(s.columns["latitude"]), s.n)
+    return np.asarray(x * g.choice([-1.0, 1.0]))
 
 
 def _warm_up(s: Scene, g: np.random.Generator) -> Floats:

@@ -186,7 +186,7 @@ def _read_tables(
     )
     sessions = _read_sessions(top, files, names, (lines.get("orientation", ()), repair))
     for instrument, table in zip(instruments, cards, strict=True):
-        names.check_choice(table, instrument.constant_choice, instrument.id)
+        names.check_choice(table, instrument.constant_choice or "pooled", instrument.id)
         if instrument.card.id and is_path(str(table.get("card"))):
             files.read(str(table.get("card")), table.where)
     rule_book = top.text("rule_book")

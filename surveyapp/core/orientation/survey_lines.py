@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from surveyapp.core.checks.blunders import azimuth_warnings
 from surveyapp.core.orientation.calibration_sessions import centring_of, rounds_of
 from surveyapp.core.orientation.instrument_constant import Chosen, InstrumentConstant, choose
 from surveyapp.core.orientation.lines import LineGeometry, OrientedLine, Round, orient_line
+from surveyapp.core.orientation.predicted_constant import leaves_out
+from surveyapp.core.orientation.predicted_lines import Key, PredictedLine, survey_groups
 from surveyapp.core.orientation.sequence import SessionOrder, session_moments
 from surveyapp.core.statistics.repeated import RunScatter
 from surveyapp.core.swing.session import ReducedSession
@@ -24,6 +27,7 @@ def oriented_lines(
     scatters: Mapping[str, RunScatter],
     stations: Mapping[str, Station],
     only: str | None,
+    predicted: Mapping[Key, PredictedLine],
 ) -> tuple[tuple[OrientedLine, ...], list[ResultWarning]]:
     """Orient every line of the survey sessions; A-B and B-A are two lines.
 
@@ -31,6 +35,8 @@ def oriented_lines(
     ----------
     only : str or None
         Use this session alone.
+    predicted : mapping of line to PredictedLine
+        Of ``predicted_lines``.
 
     Raises
     ------
@@ -40,25 +46,18 @@ def oriented_lines(
     calibration_ids = frozenset(s.id for s in project.sessions if s.purpose == "calibration")
     by_instrument = {constant.instrument.id: constant for constant in constants}
     orders = {identity: _order(project, identity) for identity in by_instrument}
-    groups: dict[tuple[str, str, str], list[tuple[ReducedSession, Uncertain]]] = {}
-    for item in reduced:
-        session = item.session
-        if session.purpose != "survey" or (only is not None and session.id != only):
-            continue
-        for target in item.targets:
-            if target.gyro_azimuth is not None:
-                key = (session.station, target.target, session.instrument)
-                groups.setdefault(key, []).append((item, target.gyro_azimuth))
+    groups = survey_groups(reduced, only)
     lines: list[OrientedLine] = []
     warnings: list[ResultWarning] = []
     problems: list[Problem] = []
-    for (_, target_name, instrument), members in groups.items():
+    for key, members in groups.items():
+        _, target_name, instrument = key
         try:
             rounds = [
                 _round(
                     item,
                     azimuth,
-                    (by_instrument[instrument], scatters[instrument]),
+                    (by_instrument[instrument], scatters[instrument], predicted.get(key)),
                     orders[instrument],
                     stations=stations,
                 )
@@ -95,25 +94,33 @@ def _order(project: Project, instrument: str) -> SessionOrder:
 def _round(
     item: ReducedSession,
     azimuth: Uncertain,
-    known: tuple[InstrumentConstant, RunScatter],
+    known: tuple[InstrumentConstant, RunScatter, PredictedLine | None],
     order: SessionOrder,
     *,
     stations: Mapping[str, Station],
 ) -> Round:
     session = item.session
-    constant, scatter = known
+    constant, scatter, predicted = known
+    choice = session.constant_choice or constant.choice
+    if choice == "predicted" and predicted is not None:
+        chosen = Chosen(predicted.constant, "predicted")
+        own = predicted.scatter.applied(azimuth, session.id)
+        return Round(session.id, own, chosen, rounds_of(item))
 
     def distance_to(name: str) -> float | None:
         return grid_distance_m(stations[session.station], stations[name])
 
-    chosen: Chosen = choose(
+    chosen = choose(
         constant,
-        session.constant_choice or constant.instrument.constant_choice,
+        choice,
         moment=order.moment(session.id),
         block=order.block(session.id),
         distance_to=distance_to,
         where=f"session {session.id}",
     )
+    if predicted is not None and chosen.value is not None and choice != "known":
+        told = leaves_out(choice, chosen.value, predicted.constant, f"session {session.id}")
+        chosen = replace(chosen, warnings=(*chosen.warnings, told))
     return Round(session.id, scatter.applied(azimuth, session.id), chosen, rounds_of(item))
 
 

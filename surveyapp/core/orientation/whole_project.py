@@ -34,6 +34,7 @@ from surveyapp.core.orientation.lines import (
     line_geometry,
 )
 from surveyapp.core.orientation.pooled_weights import with_pooled_weights
+from surveyapp.core.orientation.predicted_lines import predicted_lines
 from surveyapp.core.orientation.sequence import session_moments, surveys_before
 from surveyapp.core.orientation.survey_lines import oriented_lines
 from surveyapp.core.statistics.repeated import RunScatter, run_scatter
@@ -131,7 +132,11 @@ def orient_project(
         )
         warnings += more
         constants.append(determine(instrument, calibrations))
-    lines, more = oriented_lines(project, reduced, constants, geometry, scatters, stations, only)
+    known, predicted, more = predicted_lines(reduced, constants, positions, only, {})
+    warnings += more
+    lines, more = oriented_lines(
+        project, reduced, known, geometry, scatters, stations, only, predicted
+    )
     warnings += more
     return Orientation(
         project,
@@ -140,7 +145,7 @@ def orient_project(
         measured,
         sigmas,
         scatters,
-        tuple(constants),
+        known,
         lines,
         tuple(warnings),
     )

@@ -10,6 +10,7 @@ Source: prediction.md A, equations 1 to 10; O'Hagan & Forster (2004), Bayesian I
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
@@ -61,6 +62,9 @@ class Determinations:
         What is wanted: weights (sum 1) of the constant at these visits.
     carried : ndarray, shape (n, r)
         Error contributions that determinations share, one column for each source [rad].
+    scenarios : int
+        Equally likely states of what later visits do not tell: the targets are those of the first
+        state, then those of the second ...
     """
 
     values: Floats
@@ -68,6 +72,7 @@ class Determinations:
     columns: Mapping[str, Floats]
     targets: Floats
     carried: Floats
+    scenarios: int = 1
 
     @property
     def size(self) -> int:
@@ -95,6 +100,9 @@ class Predicted:
         How much of the average each cause has after the determinations were looked at.
     dof : float
         Of the scatter.
+    excess : float
+        Standard deviation that every determination has beside its stated one, or 0 [rad]: what the
+        next one will have too.
     """
 
     values: Floats
@@ -104,6 +112,7 @@ class Predicted:
     carried: Floats
     weights: Mapping[str, float]
     dof: float
+    excess: float
 
     def half_width(self, target: int = 0, beside: float = 0.0) -> float:
         """Half-width of the 95 % interval [rad] beside an independent variance [rad^2]."""
@@ -149,6 +158,8 @@ class Members:
     means : ndarray, shape (m, t)
     covariance : ndarray, shape (m, t, t)
     carried : ndarray, shape (m, t, r)
+    noise : ndarray, shape (m,)
+        Variance factor of the determinations.
     dof, unit : float
         Degrees of freedom; the median sigma [rad].
     """
@@ -160,6 +171,7 @@ class Members:
     means: Floats
     covariance: Floats
     carried: Floats
+    noise: Floats
     dof: float
     unit: float
 
@@ -195,9 +207,13 @@ def members(data: Determinations, priors: Priors) -> Members:
     to = terms.products[:, b:, :]
     rest = 1.0 - to[:, :, 0]
     means = constant[:, None] * rest + to[:, :, 1]
-    inner = terms.prior_cov - to[:, :, b:] + rest[:, :, None] * rest[:, None, :] / one[:, None, None]
-    carried = to[:, :, 2:b] + rest[:, :, None] * (terms.products[:, None, 0, 2:b] / one[:, None, None])
-    return Members(
+    inner = (
+        terms.prior_cov - to[:, :, b:] + rest[:, :, None] * rest[:, None, :] / one[:, None, None]
+    )
+    carried = to[:, :, 2:b] + rest[:, :, None] * (
+        terms.products[:, None, 0, 2:b] / one[:, None, None]
+    )
+    found = Members(
         units=terms.units,
         sizes=terms.sizes,
         log_evidence=evidence,
@@ -205,8 +221,28 @@ def members(data: Determinations, priors: Priors) -> Members:
         means=centre / unit + means,
         covariance=(spread / nu)[:, None, None] * inner,
         carried=carried,
+        noise=spread / nu,
         dof=nu,
         unit=unit,
+    )
+    return found if data.scenarios == 1 else _in_every_state(found, data.scenarios)
+
+
+def _in_every_state(found: Members, count: int) -> Members:
+    """Each member once in each state of what is not told."""
+    t = found.means.shape[1] // count
+    rows = [slice(k * t, (k + 1) * t) for k in range(count)]
+    return Members(
+        units=found.units * count,
+        sizes=found.sizes * count,
+        log_evidence=np.tile(found.log_evidence, count),
+        log_prior=np.tile(found.log_prior, count) - np.log(count),
+        means=np.concatenate([found.means[:, k] for k in rows]),
+        covariance=np.concatenate([found.covariance[:, k, k] for k in rows]),
+        carried=np.concatenate([found.carried[:, k] for k in rows]),
+        noise=np.tile(found.noise, count),
+        dof=found.dof,
+        unit=found.unit,
     )
 
 
@@ -239,6 +275,7 @@ def averaged(found: Members) -> Predicted:
         carried=unit * np.einsum("m,mtr->tr", w, found.carried),
         weights=shares,
         dof=found.dof,
+        excess=unit * math.sqrt(max(float(w @ found.noise) - 1.0, 0.0)),
     )
 
 
@@ -261,9 +298,7 @@ def _joined(parts: list[_Terms]) -> _Terms:
     )
 
 
-def _low_rank(
-    data: Determinations, priors: Priors, d: Floats, fixed: Floats
-) -> Iterator[_Terms]:
+def _low_rank(data: Determinations, priors: Priors, d: Floats, fixed: Floats) -> Iterator[_Terms]:
     """The base, steps and gross errors: at most one column beside the noise."""
     n, t = data.size, data.targets.shape[0]
     none, nothing = np.zeros((1, n)), np.zeros((1, t))

@@ -76,7 +76,7 @@ def kernels(columns: Mapping[str, Floats], n: int) -> tuple[Kernel, ...]:
     found += _of_time(columns, n)
     found += _of_places(columns, n)
     found += _of_temperature(columns, n)
-    found += _of_running(columns, n)
+    found += _of_running(columns)
     return tuple(found)
 
 
@@ -85,8 +85,9 @@ def columns_size(columns: Mapping[str, Floats]) -> int:
     return int(next(iter(columns.values())).size)
 
 
-def _varies(values: Floats | None, n: int) -> bool:
-    return values is not None and bool(np.isfinite(values).all()) and np.ptp(values[:n]) > 0.0
+def _varies(values: Floats | None) -> bool:
+    """Whether a column is told everywhere and says anything, if only of the later visits."""
+    return values is not None and bool(np.isfinite(values).all() and np.ptp(values) > 0.0)
 
 
 def _outer(x: Floats) -> Floats:
@@ -128,11 +129,11 @@ def _integrated_walk(a: Floats, b: Floats) -> Floats:
 def _of_places(columns: Mapping[str, Floats], n: int) -> list[Kernel]:
     found = []
     latitude = columns.get("latitude")
-    if latitude is not None and _varies(latitude, n):
+    if latitude is not None and _varies(latitude):
         secant = 1.0 / np.cos(latitude)
         found.append(Kernel("latitude", _outer(LATITUDE_UNIT * (secant - secant[:n].mean()))))
     target, north = columns.get("line_reading"), columns.get("north_reading")
-    if target is not None and north is not None and _varies(target, n) and _varies(north, n):
+    if target is not None and north is not None and _varies(target) and _varies(north):
         apart = [np.cos(a[:, None] - a[None, :]) for a in (target, north)]
         found.append(Kernel("circle", 0.5 * (apart[0] + apart[1])))
     for unit, name in (("line", "line"), ("day", "block"), ("day", "observer")):
@@ -144,7 +145,7 @@ def _of_places(columns: Mapping[str, Floats], n: int) -> list[Kernel]:
 
 def _of_temperature(columns: Mapping[str, Floats], n: int) -> list[Kernel]:
     theta = columns.get("temperature_c")
-    if theta is None or not _varies(theta, n):
+    if theta is None or not _varies(theta):
         return []
     x = (theta - theta[:n].mean()) / TEMPERATURE_UNIT_K
     square = x * x - float(np.mean(x[:n] ** 2))
@@ -152,9 +153,9 @@ def _of_temperature(columns: Mapping[str, Floats], n: int) -> list[Kernel]:
     return [Kernel("temperature", line), Kernel("curve", line + CURVATURE * _outer(square))]
 
 
-def _of_running(columns: Mapping[str, Floats], n: int) -> list[Kernel]:
+def _of_running(columns: Mapping[str, Floats]) -> list[Kernel]:
     running = columns.get("running_s")
-    if running is None or not _varies(running, n):
+    if running is None or not _varies(running):
         return []
     return [Kernel("warm_up", WARM_UP_UNIT * _outer(np.exp(-running / tau))) for tau in TAUS_S]
 

@@ -72,7 +72,11 @@ def _log_sum(values: Floats) -> float:
 
 
 def learned(
-    archive: Sequence[Evidence], *, origin: str, start: Priors = DEFAULT_PRIORS, strength: float = 0.0
+    archive: Sequence[Evidence],
+    *,
+    origin: str,
+    start: Priors = DEFAULT_PRIORS,
+    strength: float = 0.0,
 ) -> Priors:
     """Priors that an archive makes most likely.
 

@@ -86,8 +86,7 @@ def normal_cdf(z: Floats) -> Floats:
     x = np.abs(z) / math.sqrt(2.0)
     t = 1.0 / (1.0 + 0.3275911 * x)
     poly = t * (
-        0.254829592
-        + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429)))
+        0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429)))
     )
     upper = 0.5 * poly * np.exp(-x * x)
     return np.asarray(np.where(z >= 0.0, 1.0 - upper, upper))
