@@ -121,6 +121,8 @@ def _diagnosed(
         residuals_before=_residuals(problem, base),
         residuals_after=_residuals(problem, found.after),
         residuals_best=_residuals(problem, best),
+        title=problem.title or problem.subject.replace("_", " "),
+        value_name=problem.value_name,
     )
 
 

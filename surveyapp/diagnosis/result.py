@@ -178,6 +178,8 @@ class Diagnosis:
         Of a long record; they are not in the residuals.
     frequency_unit : str
         Of the lines.
+    title, value_name : str
+        Of the subject, and of its result.
     """
 
     subject: str
@@ -203,6 +205,14 @@ class Diagnosis:
     residuals_best: tuple[float, ...]
     lines: tuple[SpectralLine, ...] = ()
     frequency_unit: str = "Hz"
+    title: str = ""
+    value_name: str = "the result"
+
+    @property
+    def heading(self) -> str:
+        """What was diagnosed: the subject, and which one."""
+        told = f"{self.identity} ".startswith(f"{self.title} ")
+        return self.identity if told else f"{self.title} {self.identity}"
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON of ``diagnose`` (design.md section 5)."""
