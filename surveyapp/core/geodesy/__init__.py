@@ -12,6 +12,7 @@ from surveyapp.core.geodesy.azimuths import (
     latitude_problem,
 )
 from surveyapp.core.geodesy.grid import Frame, Grid
+from surveyapp.core.geodesy.mine import grid_of, open_mine_grid
 from surveyapp.core.geodesy.position import Position, arc_to_chord, position_of
 from surveyapp.core.geodesy.register import find_projected, open_grid
 
@@ -26,7 +27,9 @@ __all__ = [
     "arc_to_chord",
     "deflection_term",
     "find_projected",
+    "grid_of",
     "latitude_problem",
     "open_grid",
+    "open_mine_grid",
     "position_of",
 ]

@@ -146,12 +146,13 @@ class Plane:
         """True east and north [m] of positions [rad], shape (n,); infinite where undefined."""
         own = (longitude - self.prime_meridian, latitude)
         given = [own[axis.place] / axis.factor for axis in self.base_axes]
-        return _placed(self.transformer.transform(*given, direction="FORWARD"), self.axes)
+        found = self.transformer.transform(given[0], given[1], direction="FORWARD")
+        return _placed(found, self.axes)
 
     def unproject(self, e: float, n: float) -> tuple[float, float]:
         """Latitude and longitude east of Greenwich [rad]; infinite where undefined."""
         given = [(e, n)[axis.place] / axis.factor for axis in self.axes]
-        found = self.transformer.transform(*given, direction="INVERSE")
+        found = self.transformer.transform(given[0], given[1], direction="INVERSE")
         longitude, latitude = _placed([np.array([v]) for v in found], self.base_axes)
         east = float(longitude[0]) + self.prime_meridian
         return float(latitude[0]), math.remainder(east, 2.0 * math.pi) if abs(east) < 1e9 else east

@@ -25,6 +25,8 @@ _FILES: Final = re.compile(
     re.IGNORECASE,
 )
 """What makes PROJ open a file: a project must not name one."""
+_AXES: Final = re.compile(r"\+axis\s*=\s*(\w+)")
+"""Turns the axes of a PROJ string after everything else: true east and north stay the same."""
 _HARMLESS: Final = re.compile(r"\+?\binit\s*=\s*(epsg|esri):\d+", re.IGNORECASE)
 
 
@@ -38,7 +40,8 @@ def open_grid(text: str) -> Grid:
         If pyproj cannot read it or compute with it, if it names a file, or if it is no projected
         CRS: then it has no convergence.
     """
-    crs = _read(text)
+    axes = _AXES.search(text) if "+proj" in text else None
+    crs = _read(text if axes is None else _AXES.sub("", text))
     horizontal = _horizontal(crs)
     named = text if text == horizontal.name else f"{' '.join(text.split())} ({horizontal.name})"
     geod = horizontal.get_geod()
@@ -53,7 +56,8 @@ def open_grid(text: str) -> Grid:
         name=horizontal.name,
         plane=plane,
         geodesic=geod,
-        directions_from_south="south" in directions and len(set(directions)) == 2,
+        directions_from_south=("south" in directions and len(set(directions)) == 2)
+        or (axes is not None and "s" in axes[1]),
         transverse_mercator=method is not None and _is_transverse(method.method_name),
         area_deg=None if area is None else area.bounds,
     )
@@ -102,7 +106,7 @@ def _plane(crs: CRS, named: str) -> Plane:
         raise crs_problem("the axes of this crs cannot be told apart", named)
     try:
         # its own conversion alone: between two CRS pyproj may choose a change of datum
-        transformer = Transformer.from_pipeline(conversion.to_proj4())
+        transformer = Transformer.from_pipeline(conversion.to_proj4() or "")
     except (CRSError, ProjError) as error:
         # some old grids stand in the register without usable parameters, ESRI's Lo with k = -1
         raise crs_problem(
