@@ -172,7 +172,7 @@ class Diagnosis:
     battery : tuple of BatteryTest
     ledger : mapping
         The entry for the ledger, complete but for time and software.
-    residuals_before, residuals_after : tuple of float
+    residuals_before : tuple of float
         [SI]; of a long record those of its block means.
     lines : tuple of SpectralLine
         Of a long record; they are not in the residuals.
@@ -201,7 +201,6 @@ class Diagnosis:
     battery: tuple[BatteryTest, ...]
     ledger: dict[str, Any]
     residuals_before: tuple[float, ...]
-    residuals_after: tuple[float, ...]
     residuals_best: tuple[float, ...]
     lines: tuple[SpectralLine, ...] = ()
     frequency_unit: str = "Hz"

@@ -248,9 +248,3 @@ def mean_loss_time(half_swing: Floats, decay: Floats) -> Floats:
     safe = np.where(small, 1.0, product)
     ratio = np.where(small, 1.0 - 0.5 * product, -np.expm1(-safe) / safe)
     return np.asarray(half_swing * ratio)
-
-
-def inner_positions(positions: Floats, *, margin: int) -> Floats:
-    """Sorted different positions with at least ``margin`` of them left on either side."""
-    different = np.unique(positions)
-    return different[margin - 1 : different.size - margin]
