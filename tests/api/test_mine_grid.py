@@ -77,18 +77,18 @@ def test_a_mine_grid_turned_against_true_north(tmp_path: Path) -> None:
     assert result["constants"][0]["arcsec"] == pytest.approx(-0.1, abs=1e-4)
     line = result["lines"][0]
     assert line["convergence_arcsec"] == pytest.approx(43200.0, abs=1e-6)
-    assert line["grid_azimuth"]["deg"] == pytest.approx(88.0, abs=1e-9)
+    assert line["grid_azimuth"]["deg"] == pytest.approx(88.0, abs=1e-7)
     assert line["direction_from_south"] is None
 
 
 def test_meridians_converge_from_the_origin_of_a_mine_grid_without_a_base() -> None:
-    origin = {"latitude": math.radians(-26.2), "longitude": math.radians(27.9)}
-    grid = open_mine_grid(MineGrid(rotation=math.radians(-3.0), e=1e4, n=2e4, **origin))
-    east = origin["longitude"] + math.radians(0.05)
-    gamma = grid.convergence(latitude=origin["latitude"], longitude=east)
-    expected = math.radians(-3.0) + math.radians(0.05) * math.sin(origin["latitude"])
+    phi, lam = math.radians(-26.2), math.radians(27.9)
+    mine = MineGrid(rotation=math.radians(-3.0), e=1e4, n=2e4, latitude=phi, longitude=lam)
+    grid = open_mine_grid(mine)
+    gamma = grid.convergence(latitude=phi, longitude=lam + math.radians(0.05))
+    expected = math.radians(-3.0) + math.radians(0.05) * math.sin(phi)
     assert (gamma - expected) * RHO_ARCSEC == pytest.approx(0.0, abs=1e-4)
-    e, n = grid.projected(**origin)
+    e, n = grid.projected(latitude=phi, longitude=lam)
     assert (e, n) == pytest.approx((1e4, 2e4), abs=1e-6)
 
 
