@@ -29,6 +29,7 @@ from surveyapp.api.office import (
     report_text,
 )
 from surveyapp.api.orientation import demo, generator_of, orient, plan
+from surveyapp.api.penetration import predict
 from surveyapp.api.project import (
     SOFTWARE,
     Folder,
@@ -38,8 +39,10 @@ from surveyapp.api.project import (
     open_project,
     simulate,
 )
+from surveyapp.api.sensors import LogOptions, calibrate, open_sensor_log
 from surveyapp.api.unfinished import unfinished, without_unfinished
 from surveyapp.domain.adjustment import AdjustmentResult
+from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.fieldfile import ImportResult
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import Project
@@ -67,9 +70,13 @@ __all__ = [
     "compass_rule",
     "variance_components",
     "SubjectKeyword",
+    "predict",
     "subjects",
     "check",
     "diagnose",
+    "calibrate",
+    "open_sensor_log",
+    "LogOptions",
     "batch",
     "batch_rows",
     "report",
@@ -85,6 +92,7 @@ __all__ = [
     "export_zip",
     "AdjustmentResult",
     "ImportResult",
+    "Calibration",
     "InstrumentCard",
     "Project",
     "Check",

@@ -17,7 +17,7 @@ from typing import Final
 
 from surveyapp.domain.project import Centring, OrientationSession, Project, ResultWarning
 from surveyapp.domain.readings import FieldBook
-from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.cards import is_path
 from surveyapp.io.fieldbook.reading import interpret, move_tail_aside, split_tail
 from surveyapp.io.files import decode, read_bytes, shown, shown_path
@@ -29,6 +29,7 @@ from surveyapp.io.project_tables import (
     read_station,
     unique,
 )
+from surveyapp.io.sensor_logs.tables import read_sensor_logs
 from surveyapp.io.tables import Findings, Table, parse_toml
 from surveyapp_models.angles import AngleUnit
 
@@ -196,6 +197,7 @@ def _read_tables(
     if typing is not None:
         tables["angle_typing"] = typing
     _read_other_files(top, files, lines)
+    sensor_logs = read_sensor_logs(top, lines.get("sensor_log", ()))
     project = Project(
         name=top.text("name") or files.path.resolve().name,
         stations=tuple(stations),
@@ -207,6 +209,7 @@ def _read_tables(
         centring=read_centring(top) or Centring(),
         path=str(files.path),
         tables=tables,
+        sensor_logs=sensor_logs,
     )
     top.get("note")
     tables.update({key: top.data[key] for key in top.unread()})
@@ -331,8 +334,3 @@ def _warn_shared_books(paths: list[str], findings: Findings) -> None:
     for path in sorted({p for p in paths if p and paths.count(p) > 1}):
         text = f"{PROJECT_FILE}: several sessions name the book {path}: it counts for each of them"
         findings.warnings.append(ResultWarning("shared_book", text))
-
-
-def nearest_session(project: Project, name: str) -> str:
-    """Hint for a session id that the project does not have."""
-    return nearest_names(name, [session.id for session in project.sessions])
