@@ -108,8 +108,8 @@ def _block(state: _State, line: int, block: str) -> None:
     gathered = state.gathered
     try:
         found = words(block)
-        if found[0].index not in ("11", "41"):
-            raise WordError(f"the block does not begin with a word 11 or 41: {found[0].index}")
+        if found[0].word_index not in ("11", "41"):
+            raise WordError(f"the block does not begin with a word 11 or 41: {found[0].word_index}")
         if state.cut and layout(block) in state.cut:
             raise WordError(f"the line is cut short behind {len(found)} words")
     except WordError as error:
@@ -129,7 +129,7 @@ def _block(state: _State, line: int, block: str) -> None:
         _meaning(state, line, found)
     except WordError as error:
         gathered.damaged(line, str(error), block)
-        if not any(word.index in _READINGS for word in found):
+        if not any(word.word_index in _READINGS for word in found):
             _lose(state, line)
 
 
@@ -154,11 +154,11 @@ def _lose(state: _State, line: int) -> None:
 
 
 def _meaning(state: _State, line: int, found: list[Word]) -> None:
-    by_index = {word.index: word for word in reversed(found)}
+    by_index = {word.word_index: word for word in reversed(found)}
     for index in by_index:
         if index not in _USED:
             state.gathered.ignored[f"word {index}"] += 1
-    if found[0].index == "41":
+    if found[0].word_index == "41":
         _code(state, by_index)
     elif any(index in by_index and not by_index[index].empty for index in _READINGS):
         _pointing(state, line, by_index)
@@ -235,7 +235,7 @@ def _reading(word: Word | None) -> float | None:
         return None
     value = word.angle()
     if not 0.0 <= value <= _TWO_PI + 1e-12:
-        raise WordError(f"word {word.index} is beyond the circle: {word.sign}{word.data}")
+        raise WordError(f"word {word.word_index} is beyond the circle: {word.sign}{word.data}")
     return 0.0 if value >= _TWO_PI else value
 
 

@@ -40,7 +40,7 @@ class Word(NamedTuple):
 
     Parameters
     ----------
-    index : str
+    word_index : str
         Two or three digits.
     info : str
         Positions 3 to 6, dots included.
@@ -49,7 +49,7 @@ class Word(NamedTuple):
         8 or 16 characters.
     """
 
-    index: str
+    word_index: str
     info: str
     sign: str
     data: str
@@ -68,7 +68,7 @@ class Word(NamedTuple):
     def integer(self) -> int:
         """The digits with their sign."""
         if not (self.data.isascii() and self.data.isdigit()):
-            raise WordError(f"word {self.index} holds no number: {self.data.strip()}")
+            raise WordError(f"word {self.word_index} holds no number: {self.data.strip()}")
         value = int(self.data)
         return -value if self.sign == "-" else value
 
@@ -79,10 +79,10 @@ class Word(NamedTuple):
             seconds10, rest = digits % 1000, digits // 1000
             minutes, degrees = rest % 100, rest // 100
             if minutes > 59 or seconds10 > 600 or digits < 0:
-                raise WordError(f"word {self.index} is no DDDMMSSs: {self.data}")
+                raise WordError(f"word {self.word_index} is no DDDMMSSs: {self.data}")
             return (degrees + minutes / 60.0 + seconds10 / 36000.0) * DEGREE
         if unit not in _CIRCLE:
-            raise WordError(f"word {self.index} has no unit of angles: {unit}")
+            raise WordError(f"word {self.word_index} has no unit of angles: {unit}")
         factor, place = _CIRCLE[unit]
         return digits * place * factor
 
@@ -93,13 +93,15 @@ class Word(NamedTuple):
             return round(self.integer() * _PLACES[unit], 6), False
         if unit in _FEET:
             return self.integer() * _FEET[unit] * foot, True
-        raise WordError(f"word {self.index} has no unit of lengths: {unit}")
+        raise WordError(f"word {self.word_index} has no unit of lengths: {unit}")
 
     def pair(self) -> tuple[int, int]:
         """Two signed numbers in one word (51: ppm and prism), split at the second sign."""
         match = re.fullmatch(r"(\d+)([+-])(\d+)", self.data.strip())
         if match is None:
-            raise WordError(f"word {self.index} holds no two signed numbers: {self.data.strip()}")
+            raise WordError(
+                f"word {self.word_index} holds no two signed numbers: {self.data.strip()}"
+            )
         first = int(match[1]) * (-1 if self.sign == "-" else 1)
         return first, int(match[3]) * (-1 if match[2] == "-" else 1)
 
