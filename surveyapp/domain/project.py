@@ -62,6 +62,8 @@ class Station:
         Standard deviation of each coordinate against the neighbouring stations [m].
     convergence : StatedConvergence or None
         As the record prints it.
+    planned : bool
+        Not yet built; an adjustment leaves it out.
     """
 
     name: str
@@ -74,6 +76,7 @@ class Station:
     deflection: Deflection = field(default_factory=Deflection)
     sigma_m: float | None = None
     convergence: StatedConvergence | None = None
+    planned: bool = False
 
     @property
     def has_grid_position(self) -> bool:

@@ -148,6 +148,7 @@ def read_station(table: Table, unit: AngleUnit) -> Station:
         deflection=_deflection(table),
         sigma_m=table.number("sigma_m", low=0.0, high=1e3),
         convergence=read_convergence(table, unit),
+        planned=table.boolean("planned"),
     )
     table.get("note")
     table.warn_unknown()
