@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surveyapp.core.prediction.average import Determinations, members
+from surveyapp.core.prediction.members import Determinations, members
 from surveyapp.core.prediction.priors import (
     AMPLITUDES,
     BASE,
