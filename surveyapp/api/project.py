@@ -14,6 +14,7 @@ from surveyapp.errors import Problem, SurveyError, nearest_names
 
 if TYPE_CHECKING:
     from surveyapp.io.simulated import SimulatedFiles
+    from surveyapp.workflows.computing import Computed
 
 Folder = str | os.PathLike[str]
 
@@ -33,9 +34,11 @@ def open_project(folder: Folder) -> Project:
     return read_project(Path(folder))
 
 
-def opened(project: Project | Folder) -> Project:
+def opened(source: Project | Folder | Computed) -> Project:
     """The project itself, read if it is given by its folder."""
-    return project if isinstance(project, Project) else open_project(project)
+    if isinstance(source, Project):
+        return source
+    return open_project(source) if isinstance(source, str | os.PathLike) else source.project
 
 
 def require(name: str, known: Iterable[str], kind: str, more: str = "") -> None:
