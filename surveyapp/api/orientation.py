@@ -190,7 +190,7 @@ def plan(
     if not math.isfinite(interval_arcsec) or interval_arcsec <= 0.0:
         found = f"{interval_arcsec:g}"
         raise SurveyError(
-            Problem("the wanted interval is not positive", "--interval", found, "arc-seconds > 0")
+            Problem("the wanted interval is not positive", "interval_arcsec", found, "arc-seconds > 0")
         )
     return plan_stations(project, names, wanted=interval_arcsec * ARCSEC)
 

@@ -48,7 +48,7 @@ def require(name: str, known: Iterable[str], kind: str, more: str = "") -> None:
         raise SurveyError(
             Problem(
                 what=f"there is no {kind} of this name",
-                where=f"--{kind}",
+                where=kind,
                 found=name,
                 expected=f"the name of a {kind} of the project",
                 hint=". ".join(filter(None, [nearest_names(name, names), more])),
@@ -103,7 +103,7 @@ def simulate(
     from surveyapp.io.simulated import write_simulated
 
     if seed < 0:
-        raise SurveyError(Problem("the seed is negative", "--seed", str(seed), "0 or more"))
+        raise SurveyError(Problem("the seed is negative", "seed", str(seed), "0 or more"))
     files, truth = simulate_kind(kind, effects=effects, seed=seed)
     return write_simulated(Path(out), files, truth)
 
