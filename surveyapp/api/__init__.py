@@ -36,6 +36,7 @@ from surveyapp.api.orientation import (
     plan,
     unfinished,
 )
+from surveyapp.api.penetration import predict
 from surveyapp.api.project import (
     SOFTWARE,
     Folder,
@@ -45,7 +46,9 @@ from surveyapp.api.project import (
     open_project,
     simulate,
 )
+from surveyapp.api.sensors import LogOptions, calibrate, open_sensor_log
 from surveyapp.domain.adjustment import AdjustmentResult
+from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import Check, OrientationResult, Subject, Verdicts
@@ -73,9 +76,13 @@ __all__ = [
     "compass_rule",
     "variance_components",
     "SubjectKeyword",
+    "predict",
     "subjects",
     "check",
     "diagnose",
+    "calibrate",
+    "open_sensor_log",
+    "LogOptions",
     "batch",
     "batch_rows",
     "report",
@@ -89,6 +96,7 @@ __all__ = [
     "export_json",
     "export_zip",
     "AdjustmentResult",
+    "Calibration",
     "InstrumentCard",
     "Project",
     "Check",

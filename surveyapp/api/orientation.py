@@ -83,6 +83,8 @@ def oriented(
     """
     from surveyapp.workflows.computing import oriented as oriented_project
 
+    if not isinstance(source, Project | str | PathLike) and session is None and estimator is None:
+        return source.oriented
     project = opened(source)
     if session is not None:
         require(session, [item.id for item in project.sessions], "session")
@@ -190,7 +192,9 @@ def plan(
     if not math.isfinite(interval_arcsec) or interval_arcsec <= 0.0:
         found = f"{interval_arcsec:g}"
         raise SurveyError(
-            Problem("the wanted interval is not positive", "interval_arcsec", found, "arc-seconds > 0")
+            Problem(
+                "the wanted interval is not positive", "interval_arcsec", found, "arc-seconds > 0"
+            )
         )
     return plan_stations(project, names, wanted=interval_arcsec * ARCSEC)
 

@@ -14,6 +14,7 @@ from surveyapp.domain.closing import Filing
 from surveyapp.domain.instrument import AdoptedEffect, Instrument
 from surveyapp.domain.readings import FieldBook
 from surveyapp.domain.rulebook import RuleBook
+from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.subject import Subject
 from surveyapp.domain.traverse_book import Traverse
 from surveyapp_models.angles import ARCSEC, AngleUnit
@@ -60,6 +61,8 @@ class Station:
         Height [m].
     fixed : bool
     deflection : Deflection
+    planned : bool
+        Not yet built; an adjustment leaves it out.
     """
 
     name: str
@@ -70,6 +73,7 @@ class Station:
     h: float | None = None
     fixed: bool = False
     deflection: Deflection = field(default_factory=Deflection)
+    planned: bool = False
 
     @property
     def has_grid_position(self) -> bool:
@@ -218,6 +222,7 @@ class Project:
         Folder; empty for a project that was never on a disk.
     tables : mapping
         The parsed TOML of what has no typed field yet, by name.
+    sensor_logs : tuple of SensorLogEntry
     warnings : tuple of ResultWarning
     """
 
@@ -236,6 +241,7 @@ class Project:
     filing: Filing = field(default_factory=Filing)
     path: str = ""
     tables: dict[str, object] = field(default_factory=dict)
+    sensor_logs: tuple[SensorLogEntry, ...] = ()
     warnings: tuple[ResultWarning, ...] = ()
 
     def station(self, name: str) -> Station:

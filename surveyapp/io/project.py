@@ -28,13 +28,14 @@ from surveyapp.io.project_tables import (
     unique,
 )
 from surveyapp.io.rulebooks import read_rule_book
+from surveyapp.io.sensor_logs.tables import read_sensor_logs
 from surveyapp.io.session_books import read_sessions
 from surveyapp.io.tables import Findings, Table, parse_toml
 from surveyapp.io.traverse.book import read_traverses
 from surveyapp_models.angles import AngleUnit
 
 FORMAT: Final = 1
-RAW_TABLES: Final = ("penetration", "shaft", "sensor_log")
+RAW_TABLES: Final = ("penetration", "shaft")
 """Tables that have no typed field of the project yet: passed on as they were parsed."""
 
 ANGLE_TYPING: Final = ("separated", "packed")
@@ -175,8 +176,9 @@ def _read_tables(top: _Top, repair: bool | None) -> Project:
         if instrument.card.id and is_path(str(card.get("card"))):
             files.read(str(card.get("card")), card.where)
     rule_book, rules = _rules(top)
-    traverses = read_traverses(top.tables("traverse"), files, stations, unit)
+    traverses = read_traverses(top.tables("traverse"), files, names.stations, unit)
     _read_other_files(top)
+    sensor_logs = read_sensor_logs(table, top.lines.get("sensor_log", ()))
     project = Project(
         name=table.text("name") or files.path.resolve().name,
         stations=tuple(stations),
@@ -192,6 +194,7 @@ def _read_tables(top: _Top, repair: bool | None) -> Project:
         filing=_filing(files),
         path=str(files.path),
         tables={key: table.get(key) for key in RAW_TABLES if key in table},
+        sensor_logs=sensor_logs,
     )
     table.get("note")
     table.warn_unknown(*RAW_TABLES)

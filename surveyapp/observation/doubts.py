@@ -24,7 +24,7 @@ from surveyapp.core.observing.steps import Expected
 from surveyapp.core.observing.zero_forecast import forecast_zero
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.readings import Reading, ReadingKind
-from surveyapp.observation.session import Observation
+from surveyapp.observation.session import SessionDesk
 from surveyapp_models.angles import wrap_two_pi
 
 TURNING: Final = (ReadingKind.REVERSAL, ReadingKind.SCALE_REVERSAL)
@@ -32,13 +32,13 @@ ROUNDS: Final = (ReadingKind.AZIMUTH, ReadingKind.NORTH)
 
 
 def questions_about(
-    observation: Observation, value: float, what: Expected, progress: Progress | None
+    observation: SessionDesk, value: float, what: Expected, progress: Progress | None
 ) -> tuple[Question, ...]:
     """Doubts about a reading.
 
     Parameters
     ----------
-    observation : Observation
+    observation : SessionDesk
     value : float
         [rad], on the scale [div].
     what : Expected
@@ -61,7 +61,7 @@ def questions_about(
     return doubt_passage(value, earlier) if kind is ReadingKind.TRANSIT else ()
 
 
-def _card(observation: Observation) -> InstrumentCard:
+def _card(observation: SessionDesk) -> InstrumentCard:
     return observation.project.instrument(observation.session.instrument).card
 
 
@@ -69,7 +69,7 @@ def _values(rows: Sequence[Reading]) -> list[float]:
     return [row.value for row in rows if row.value is not None]
 
 
-def _about_sight(observation: Observation, value: float, what: Expected) -> tuple[Question, ...]:
+def _about_sight(observation: SessionDesk, value: float, what: Expected) -> tuple[Question, ...]:
     here = set(observation.rows(what.step))
     assert what.face is not None
     if what.kind is ReadingKind.ZENITH:
@@ -101,7 +101,7 @@ def _about_zero(
 
 
 def _about_point(
-    observation: Observation, value: float, what: Expected, progress: Progress | None
+    observation: SessionDesk, value: float, what: Expected, progress: Progress | None
 ) -> tuple[Question, ...]:
     rows = list(observation.book.of_kind(what.kind))
     scale = what.kind is ReadingKind.SCALE_REVERSAL
@@ -134,7 +134,7 @@ def of_this_book(progress: Progress | None, points: list[Reading]) -> Progress |
 
 
 def sights_of(
-    observation: Observation, target: str, kind: ReadingKind = ReadingKind.BACKSIGHT
+    observation: SessionDesk, target: str, kind: ReadingKind = ReadingKind.BACKSIGHT
 ) -> tuple[Reading, ...]:
     """Live sights of one target, in the order of the book."""
     own = observation.session.target or ""

@@ -78,7 +78,7 @@ class NewRow:
     note: str = ""
 
 
-class Observation:
+class SessionDesk:
     """One session, open for observing.
 
     Parameters

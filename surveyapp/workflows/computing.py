@@ -46,6 +46,10 @@ class OrientedProject:
     constants: tuple[GyroConstant, ...]
     notes: tuple[ResultWarning, ...]
 
+    def result(self, software: str = "") -> OrientationResult:
+        """Sessions, constants and lines without any verdict."""
+        return outcome(self.orientation, (), software=software)
+
     def network(self, traverse: str | None = None) -> Network:
         """Network of one traverse, or of all of them together, gyro sides included.
 

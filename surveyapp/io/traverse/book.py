@@ -1,7 +1,7 @@
 """The traverses of a project: ``[[traverse]]`` tables with the rows of their books.
 
-Everything that can be told of a book without any orientation is told when the folder is read:
-an unknown point, an impossible value, a row without a standard deviation.
+An unknown point or an impossible value is told when the folder is read. Whether every row has a
+standard deviation is asked when a network is made of it: a prediction has its own.
 """
 
 from __future__ import annotations
@@ -10,8 +10,7 @@ from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
-from surveyapp.core.network.traverse_network import book_observations
-from surveyapp.domain.project import ResultWarning, Station
+from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse_book import Traverse, TraverseRow
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.files import decode
@@ -24,7 +23,7 @@ MM = 1e-3
 
 
 def read_traverses(
-    tables: Sequence[Table], files: ProjectFiles, stations: Sequence[Station], unit: AngleUnit
+    tables: Sequence[Table], files: ProjectFiles, stations: Sequence[str], unit: AngleUnit
 ) -> tuple[Traverse, ...]:
     """Every [[traverse]] with its book; problems are noted in the findings.
 
@@ -32,8 +31,8 @@ def read_traverses(
     ----------
     tables : sequence of Table
     files : ProjectFiles
-    stations : sequence of Station
-        What rows may name, and where they lie.
+    stations : sequence of str
+        What rows may name.
     unit : AngleUnit
         Of angles whose row names none.
     """
@@ -59,7 +58,7 @@ def _read_traverse(
     table: Table,
     number: int,
     files: ProjectFiles,
-    known: tuple[Sequence[Station], AngleUnit],
+    known: tuple[Sequence[str], AngleUnit],
 ) -> Traverse:
     table = Table(table.data, f"{PROJECT_FILE}, [[traverse]] number {number}", files.findings)
     traverse = _header(table, number)
@@ -75,10 +74,8 @@ def _read_traverse(
         files.findings.absorb(error)
         return traverse
     rows, problems = parse_traverse(text, angle_unit=unit, where=traverse.book)
-    problems += _unknown_points(rows, traverse, [station.name for station in stations])
+    problems += _unknown_points(rows, traverse, stations)
     traverse = replace(traverse, rows=tuple(rows))
-    if not problems:
-        _, problems = book_observations(traverse, stations)
     files.findings.problems += problems
     if not rows and not problems:
         text = f"{traverse.book}: the book of {table.where} has no observation yet"

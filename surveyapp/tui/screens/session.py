@@ -18,7 +18,7 @@ from textual.widgets import Footer, Input
 from surveyapp.core.observing.steps import Step
 from surveyapp.errors import SurveyError
 from surveyapp.observation.practice import Practice
-from surveyapp.observation.session import Observation
+from surveyapp.observation.session import SessionDesk
 from surveyapp.tui import texts
 from surveyapp.tui.drafts import Draft
 from surveyapp.tui.entry_desk import Desk, NotWrittenError, problem_text
@@ -40,7 +40,7 @@ class SessionScreen(Screen[None]):
 
     Parameters
     ----------
-    observation : Observation
+    observation : SessionDesk
         Open; the screen closes it when it is left.
     draft : str
         What was half typed when the session was left.
@@ -54,7 +54,7 @@ class SessionScreen(Screen[None]):
     ]
 
     def __init__(
-        self, observation: Observation, draft: str = "", practice: Practice | None = None
+        self, observation: SessionDesk, draft: str = "", practice: Practice | None = None
     ) -> None:
         super().__init__()
         self.practice = practice
