@@ -7,6 +7,7 @@ Each subject has a module of its own behind this one, which is all that scripts 
 from __future__ import annotations
 
 from surveyapp.api.batch import batch, batch_rows
+from surveyapp.api.importing import import_file
 from surveyapp.api.judgement import SubjectKeyword, check, diagnose, subjects
 from surveyapp.api.network import (
     adjust,
@@ -49,6 +50,7 @@ from surveyapp.api.project import (
 from surveyapp.api.sensors import LogOptions, calibrate, open_sensor_log
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.calibration import Calibration
+from surveyapp.domain.fieldfile import ImportResult
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import Check, OrientationResult, Subject, Verdicts
@@ -91,11 +93,13 @@ __all__ = [
     "close",
     "reopen",
     "compare",
+    "import_file",
     "export_csv",
     "export_gkf",
     "export_json",
     "export_zip",
     "AdjustmentResult",
+    "ImportResult",
     "Calibration",
     "InstrumentCard",
     "Project",

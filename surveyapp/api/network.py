@@ -61,13 +61,16 @@ def variance_components(network: Network) -> tuple[VarianceComponent, ...]:
 
 def network(source: Source, *, traverse: str | None = None) -> Network:
     """Network of a project's traverses or of a ``.gkf`` file, as ``adjust`` takes it."""
+    from surveyapp.core.checks.grid_checks import refuse_unfit_grid
     from surveyapp.io.importers.gkf import read_gkf
 
-    if isinstance(source, Project):
-        return oriented(source, even_unfinished=True).network(traverse)
-    if not isinstance(source, str | PathLike):
+    if not isinstance(source, Project | str | PathLike):
         return source.network(traverse)
-    path = Path(source)
-    if path.suffix.lower() in (".gkf", ".xml") or path.is_file():
-        return read_gkf(path)
-    return oriented(path, even_unfinished=True).network(traverse)
+    if not isinstance(source, Project):
+        path = Path(source)
+        if path.suffix.lower() in (".gkf", ".xml") or path.is_file():
+            return read_gkf(path)
+    found = oriented(source, even_unfinished=True)
+    if found.orientation.sessions:
+        refuse_unfit_grid(found.orientation.project)
+    return found.network(traverse)

@@ -12,6 +12,7 @@ from typing import Any, Literal
 
 from surveyapp.domain.closing import Filing
 from surveyapp.domain.instrument import AdoptedEffect, Instrument
+from surveyapp.domain.mine_grid import MineGrid, StatedConvergence
 from surveyapp.domain.readings import FieldBook
 from surveyapp.domain.rulebook import RuleBook
 from surveyapp.domain.sensor_entry import SensorLogEntry
@@ -61,6 +62,10 @@ class Station:
         Height [m].
     fixed : bool
     deflection : Deflection
+    sigma_m : float or None
+        Standard deviation of each coordinate against the neighbouring stations [m].
+    convergence : StatedConvergence or None
+        As the record prints it.
     planned : bool
         Not yet built; an adjustment leaves it out.
     """
@@ -73,6 +78,8 @@ class Station:
     h: float | None = None
     fixed: bool = False
     deflection: Deflection = field(default_factory=Deflection)
+    sigma_m: float | None = None
+    convergence: StatedConvergence | None = None
     planned: bool = False
 
     @property
@@ -123,6 +130,8 @@ class OrientationSession:
     target : str or None
     azimuth_known : float or None
         Known grid azimuth of the line [rad].
+    azimuth_known_sigma : float or None
+        Its standard deviation [rad]; None: from the coordinates' sigma.
     constant_choice : str or None
         Overrides the instrument's.
     date : datetime.date or None
@@ -136,6 +145,10 @@ class OrientationSession:
         Reading resolution [rad].
     eccentric : Eccentric or None
     effects : tuple of AdoptedEffect
+    convergence : StatedConvergence or None
+        As the record prints it.
+    recentred : bool
+        The instrument was centred anew for this session: its centring error is its own.
     override : tuple of (str, object)
         Further keys of the table, kept for those who know them.
     """
@@ -149,6 +162,7 @@ class OrientationSession:
     book_path: str = ""
     target: str | None = None
     azimuth_known: float | None = None
+    azimuth_known_sigma: float | None = None
     constant_choice: str | None = None
     date: date | None = None
     order: float | None = None
@@ -158,6 +172,8 @@ class OrientationSession:
     resolution: float | None = None
     eccentric: Eccentric | None = None
     effects: tuple[AdoptedEffect, ...] = ()
+    convergence: StatedConvergence | None = None
+    recentred: bool = False
     override: tuple[tuple[str, object], ...] = ()
 
 
@@ -205,6 +221,10 @@ class Project:
         With the rows of their books.
     crs : str or None
         As written.
+    grid : MineGrid or None
+        The mine's own grid; wins over ``crs``, which is then its base.
+    station_sigma_m : float or None
+        Standard deviation of a station's coordinates where it states none [m].
     angle_unit : AngleUnit
     angle_typing : str
         How the screens take a plain number for dms: ``separated`` or ``packed``.
@@ -232,6 +252,8 @@ class Project:
     sessions: tuple[OrientationSession, ...] = ()
     traverses: tuple[Traverse, ...] = ()
     crs: str | None = None
+    grid: MineGrid | None = None
+    station_sigma_m: float | None = None
     angle_unit: AngleUnit = AngleUnit.DMS
     angle_typing: str = "separated"
     rule_book: str | None = None

@@ -19,6 +19,7 @@ from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.cards import is_path
 from surveyapp.io.files import decode, read_bytes, shown, shown_path
 from surveyapp.io.filing.seals import changed_after_closing, read_filing
+from surveyapp.io.grid_tables import read_mine_grid, refuse_two_convergences
 from surveyapp.io.project_files import PROJECT_FILE, ProjectFiles, inside
 from surveyapp.io.project_tables import (
     Names,
@@ -161,7 +162,7 @@ def _read_tables(top: _Top, repair: bool | None) -> Project:
     table, files = top.table, top.files
     table.get("format")
     unit = AngleUnit(table.choice("angle_unit", [str(u) for u in AngleUnit]) or AngleUnit.DMS)
-    stations = [read_station(t) for t in top.tables("station")]
+    stations = [read_station(t, unit) for t in top.tables("station")]
     cards = top.tables("instrument")
     instruments = [read_instrument(t, files.path) for t in cards]
     names = Names(
@@ -178,6 +179,8 @@ def _read_tables(top: _Top, repair: bool | None) -> Project:
     rule_book, rules = _rules(top)
     traverses = read_traverses(top.tables("traverse"), files, names.stations, unit)
     _read_other_files(top)
+    crs = table.text("crs", multiline=True)
+    refuse_two_convergences(stations, sessions, files.findings)
     sensor_logs = read_sensor_logs(table, top.lines.get("sensor_log", ()))
     project = Project(
         name=table.text("name") or files.path.resolve().name,
@@ -185,7 +188,9 @@ def _read_tables(top: _Top, repair: bool | None) -> Project:
         instruments=tuple(instruments),
         sessions=tuple(sessions),
         traverses=traverses,
-        crs=table.text("crs", multiline=True),
+        crs=crs,
+        grid=read_mine_grid(table, unit, crs),
+        station_sigma_m=table.number("station_sigma_m", low=0.0, high=1e3),
         angle_unit=unit,
         angle_typing=table.choice("angle_typing", ANGLE_TYPING) or ANGLE_TYPING[0],
         rule_book=rule_book,

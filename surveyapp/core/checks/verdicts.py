@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Final
 
+from surveyapp.core.checks.always_on import always_on_checks
 from surveyapp.core.checks.evidence import Evidence
 from surveyapp.core.checks.filing_checks import filing_checks
 from surveyapp.core.checks.instrument_checks import instrument_checks
@@ -48,6 +49,11 @@ CHECKS: Final[tuple[CheckGroup, ...]] = (
         "instrument",
         "periods, supply and tape-zero tilt against the card",
         lambda e: instrument_checks(e.orientation),
+    ),
+    CheckGroup(
+        "always on",
+        "the data against card, coordinates and grid; no rule book is needed",
+        lambda e: always_on_checks(e.orientation),
     ),
     CheckGroup(
         "validity",
