@@ -86,7 +86,7 @@ def rate_log(
 ) -> Case:
     """A problem with one constant bias [deg/h]."""
     n = values.size
-    t = STEP_S * np.arange(n) if time is None else time
+    t = np.asarray(STEP_S * np.arange(n) if time is None else time, dtype=np.float64)
     return Case(
         subject="rate",
         observations=values,

@@ -13,7 +13,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from surveyapp.diagnosis import Case, Determination, TurningPoints
-from surveyapp.diagnosis.subjects.choice import campaign, reversal_run
+from surveyapp.diagnosis.subjects.campaign import campaign
+from surveyapp.diagnosis.subjects.reversal_run import reversal_run
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
 

@@ -46,7 +46,7 @@ class Filter:
     def vector(self) -> Floats:
         """Weights with sum 1."""
         values = np.array(self.weights)
-        return values / values.sum()
+        return np.asarray(values / values.sum())
 
 
 def schuler_weights(points: int) -> tuple[float, ...]:
@@ -122,7 +122,7 @@ def undisturbed(
         disturbance=Disturbance(torque=lambda t: moment * north(t)),
     )
     found: Events = turning_points(motion, count)
-    return found.azimuth[0] / ARCSEC, north(np.arange(count) * half) / ARCSEC
+    return found.azimuth[0] / ARCSEC, north(np.asarray(np.arange(count) * half)) / ARCSEC
 
 
 def bias_arcsec(weights: Floats, readings: Floats, north: Floats) -> float:

@@ -65,10 +65,7 @@ def subjects_text(found: Diagnosed) -> str:
 
 def diagnosis_text(diagnosis: Diagnosis, words: Sequence[str]) -> str:
     """The whole diagnosis in words and tables."""
-    name = {"reversal_run": "run ", "campaign": "", "traverse": ""}.get(
-        diagnosis.subject, diagnosis.subject
-    )
-    parts = [heading(f"{name}{diagnosis.identity}: {diagnosis.verdict.replace('_', ' ')}")]
+    parts = [heading(f"{diagnosis.heading}: {diagnosis.verdict.replace('_', ' ')}")]
     parts.append("\n".join(textwrap.fill(text, 79) for text in words))
     parts.append(_models(diagnosis))
     parts.append(_candidates(diagnosis))

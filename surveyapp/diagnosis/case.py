@@ -8,15 +8,16 @@ base; the other subjects have a linear base only. The engine works in SI units i
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from surveyapp.diagnosis.action import Action
 from surveyapp.domain.project import ResultWarning
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
-from surveyapp_models.effects.effect import Effect, Subject
+from surveyapp_models.effects.effect import Columns, Effect, SubjectId
 
 FEW_OBSERVATIONS = 6
 """Below this number the stated sigmas serve instead of the residuals (diagnosis.md step 0)."""
@@ -81,9 +82,17 @@ class Case:
     warnings : tuple of ResultWarning
     position_unit : str
         Of ``position`` where it is a time: ``s`` makes frequencies Hz; empty = an order.
+    title : str
+        The subject with its article; empty = its id.
+    value_name : str
+        What the result is called.
+    actions : tuple of Action
+        What can be observed next.
+    base_of : callable or None
+        The base design of other rows; None = the mean of the record's own rows.
     """
 
-    subject: Subject
+    subject: SubjectId
     observations: Floats
     base: Floats
     base_names: tuple[str, ...]
@@ -108,6 +117,10 @@ class Case:
     grid_labels: Mapping[str, Mapping[float, str]] = field(default_factory=dict)
     warnings: tuple[ResultWarning, ...] = ()
     position_unit: str = ""
+    title: str = ""
+    value_name: str = "the result"
+    actions: tuple[Action, ...] = ()
+    base_of: Callable[[Columns], Floats] | None = None
 
     def __post_init__(self) -> None:
         """Hand out what effects may read so that they cannot write into it."""

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surveyapp.diagnosis.candidates import Candidate, Projected, project
+from surveyapp.diagnosis.candidates import Candidate, project
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.fits import (
     Fit,
@@ -369,25 +369,6 @@ def added_signal(fit: Fit) -> Floats:
     return np.column_stack(signals) if signals else np.zeros((fit.design.shape[0], 0))
 
 
-def common_names(sets: Iterable[Fit]) -> frozenset[str]:
-    """Ids that are in every set."""
-    keys = [fit.key for fit in sets]
-    return frozenset.intersection(*keys) if keys else frozenset()
-
-
-def best_without(level: Level, identity: str) -> Fit | None:
-    """Best set of a level that does not contain an effect."""
-    return next((fit for fit in level.every if identity not in fit.key), None)
-
-
 def best_with(level: Level, identity: str) -> Fit | None:
     """Best set of a level that contains an effect."""
     return next((fit for fit in level.every if identity in fit.key), None)
-
-
-def by_id(items: Iterable[Projected]) -> Mapping[str, list[int]]:
-    """Positions of the candidates of each id (gross errors have several)."""
-    found: dict[str, list[int]] = {}
-    for i, item in enumerate(items):
-        found.setdefault(item.candidate.id, []).append(i)
-    return found

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from surveyapp.diagnosis.adoption import adoptions, p_values
 from surveyapp.diagnosis.ambiguity import ambiguities
@@ -119,8 +118,9 @@ def _diagnosed(
         battery=battery,
         ledger=ledger_entry(problem, found, battery, digest=digest, draws=draws),
         residuals_before=_residuals(problem, base),
-        residuals_after=_residuals(problem, found.after),
         residuals_best=_residuals(problem, best),
+        title=problem.title or problem.subject.replace("_", " "),
+        value_name=problem.value_name,
     )
 
 
@@ -288,8 +288,3 @@ def _warnings(problem: Case, found: Search) -> list[ResultWarning]:
         ResultWarning("not_adopted", f"{identity}: {reason}") for identity, reason in found.refused
     ]
     return result
-
-
-def to_json(diagnosis: Diagnosis) -> dict[str, Any]:
-    """Same as ``diagnosis.to_dict()``, for callers that prefer a function."""
-    return diagnosis.to_dict()

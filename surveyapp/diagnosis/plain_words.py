@@ -27,11 +27,6 @@ NOISE_AND_SHAPES = {
     "amplitude_step": "a sudden change of the amplitude without a known cause",
     "outlier": "a single determination that stands off",
 }
-RESULT_NAMES = {
-    "reversal_run": "north over the run",
-    "campaign": "the constant",
-    "traverse": "the place of the least certain point",
-}
 
 
 Labels = Mapping[str, Mapping[float, str]]
@@ -163,7 +158,7 @@ def _value(result: Diagnosis, quantity: Estimate) -> str:
 
 
 def _consequence(result: Diagnosis) -> list[str]:
-    what = RESULT_NAMES.get(result.subject, "the result")
+    what = result.value_name
     head = f"{what[0].upper()}{what[1:]}"
     shift = (result.averaged.value - result.before.value.value) / result.scale
     sigma, before = _value(result, result.averaged), _value(result, result.before.value)

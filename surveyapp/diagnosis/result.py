@@ -172,12 +172,14 @@ class Diagnosis:
     battery : tuple of BatteryTest
     ledger : mapping
         The entry for the ledger, complete but for time and software.
-    residuals_before, residuals_after : tuple of float
+    residuals_before : tuple of float
         [SI]; of a long record those of its block means.
     lines : tuple of SpectralLine
         Of a long record; they are not in the residuals.
     frequency_unit : str
         Of the lines.
+    title, value_name : str
+        Of the subject, and of its result.
     """
 
     subject: str
@@ -199,10 +201,17 @@ class Diagnosis:
     battery: tuple[BatteryTest, ...]
     ledger: dict[str, Any]
     residuals_before: tuple[float, ...]
-    residuals_after: tuple[float, ...]
     residuals_best: tuple[float, ...]
     lines: tuple[SpectralLine, ...] = ()
     frequency_unit: str = "Hz"
+    title: str = ""
+    value_name: str = "the result"
+
+    @property
+    def heading(self) -> str:
+        """What was diagnosed: the subject, and which one."""
+        told = f"{self.identity} ".startswith(f"{self.title} ")
+        return self.identity if told else f"{self.title} {self.identity}"
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON of ``diagnose`` (design.md section 5)."""

@@ -15,7 +15,8 @@ from surveyapp.diagnosis.candidates import all_candidates
 from surveyapp.diagnosis.engine import diagnose
 from surveyapp.diagnosis.fits import Member, fit_members, scan_law
 from surveyapp.diagnosis.held_out import confirm_rms
-from surveyapp.diagnosis.subjects.choice import campaign, reversal_run
+from surveyapp.diagnosis.subjects.campaign import campaign
+from surveyapp.diagnosis.subjects.reversal_run import reversal_run
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.effects import CATALOGUE
 

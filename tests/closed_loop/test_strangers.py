@@ -17,7 +17,8 @@ from surveyapp.diagnosis.compare import base_level, next_level, settled_count
 from surveyapp.diagnosis.engine import diagnose
 from surveyapp.diagnosis.fits import Member, fit_members
 from surveyapp.diagnosis.run_value import plain_value
-from surveyapp.diagnosis.subjects.choice import campaign, reversal_run
+from surveyapp.diagnosis.subjects.campaign import campaign
+from surveyapp.diagnosis.subjects.reversal_run import reversal_run
 from surveyapp_models.angles import ARCSEC
 
 DRAWS = 500
@@ -146,6 +147,8 @@ def test_what_has_no_name_stays_in_the_sigma() -> None:
     for problem in problems(Truth("walk", 45, walk=9.0), 12, 31)[0]:
         result = diagnose(problem, draws=DRAWS)
         if result.verdict == "unattributed":
+            assert result.averaged.sigma is not None
+            assert result.after.value.sigma is not None
             assert result.averaged.sigma >= result.after.value.sigma * (1.0 - 1e-9)
 
 
@@ -174,6 +177,7 @@ def test_effects_that_coincide_in_the_first_part_have_no_forecast(seed: int) -> 
 def test_scatter_that_denies_the_stated_sigmas_is_not_adequate() -> None:
     result = diagnose(dated([0.0, 0.0, 3.0, 1000.0], [1.0] * 4, 10.0), draws=DRAWS)
     assert result.verdict == "unattributed"
+    assert result.averaged.sigma is not None
     assert result.averaged.sigma > 200.0 * ARCSEC
 
 
@@ -184,6 +188,8 @@ def test_equal_moments_do_not_widen_the_constant() -> None:
     for _ in range(10):
         values = (10.0 * g.standard_normal(12)).tolist()
         result = diagnose(dated(values, [0.0] * 6 + [5.0] * 6), draws=DRAWS)
+        assert result.averaged.sigma is not None
+        assert result.before.value.sigma is not None
         widths.append(result.averaged.sigma / result.before.value.sigma)
     assert max(widths) < 4.0
 

@@ -103,7 +103,7 @@ def test_design_equals_central_differences() -> None:
     point = np.array([3.0, 1000.0, 0.02])
 
     def model(p: np.ndarray) -> np.ndarray:
-        return p[0] + p[1] * sides * np.exp(-p[2] * k)
+        return np.asarray(p[0] + p[1] * sides * np.exp(-p[2] * k))
 
     analytic = design(k, sides, amplitude=1000.0, log_decrement=0.02)
     for i, step in enumerate((1e-3, 1e-2, 1e-7)):

@@ -6,7 +6,6 @@ import dataclasses
 
 import numpy as np
 import pytest
-from measured_runs import johannesburg
 from scipy import optimize, stats
 
 from surveyapp.diagnosis import Case, Determination, TurningPoints
@@ -17,9 +16,11 @@ from surveyapp.diagnosis.held_out import leave_one_out
 from surveyapp.diagnosis.nulls import Noise, null_of, reductions
 from surveyapp.diagnosis.run_value import plain_value, value_of
 from surveyapp.diagnosis.stochastic import noise_models
-from surveyapp.diagnosis.subjects.choice import campaign, reversal_run
+from surveyapp.diagnosis.subjects.campaign import campaign
+from surveyapp.diagnosis.subjects.reversal_run import reversal_run
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.effects import of_subject
+from tests.diagnosis.measured_runs import johannesburg
 
 
 def quiet_run(seed: int, n: int = 20) -> Case:

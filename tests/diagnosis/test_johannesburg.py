@@ -10,15 +10,15 @@ import math
 
 import numpy as np
 import pytest
-from measured_runs import johannesburg
 
 from surveyapp.diagnosis import Case, Diagnosis, diagnose
 from surveyapp.diagnosis.candidates import all_candidates
 from surveyapp.diagnosis.fits import Fit, Member, fit_members
 from surveyapp.diagnosis.held_out import forecast
 from surveyapp.diagnosis.run_value import datum_values, rms, value_of
-from surveyapp.diagnosis.subjects.choice import reversal_run
+from surveyapp.diagnosis.subjects.reversal_run import reversal_run
 from surveyapp_models.angles import ARCSEC
+from tests.diagnosis.measured_runs import johannesburg
 
 NORTH = math.radians(180.0 + 10.0 / 60.0)
 

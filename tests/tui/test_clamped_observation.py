@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers_tui import SMALL, Clock, make_project, rows_on_disk
 from textual.pilot import Pilot
 from textual.widgets import Static
 
@@ -25,6 +24,7 @@ from surveyapp.observation.session import NewRow, SessionDesk
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.views.progress import countdown_text, forecast_text, is_near
 from surveyapp_models.angles import AngleUnit
+from tests.tui.helpers_tui import SMALL, Clock, make_project, rows_on_disk
 
 KINDS = ("clamp", "scale_reversal", "transit")
 

@@ -8,7 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from helpers_tui import LARGE, SMALL
 from textual.widgets import Static
 
 from surveyapp import api
@@ -21,6 +20,7 @@ from surveyapp.tui import texts
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.widgets.constants import ConstantCanvas, ConstantPlot, draw_constant
 from surveyapp_models.angles import ARCSEC
+from tests.tui.helpers_tui import LARGE, SMALL
 
 PROJECTS = Path(__file__).resolve().parents[2] / "projects"
 CORE = Path(api.__file__).parents[1] / "core"

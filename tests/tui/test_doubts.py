@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers_tui import Clock, make_project
 
 from surveyapp.core.observing.doubts import Doubt, doubt_round
 from surveyapp.core.observing.steps import Step
@@ -18,6 +17,7 @@ from surveyapp.domain.readings import Face, Reading, ReadingKind, Side
 from surveyapp.observation.entry import expected, understand
 from surveyapp.observation.session import NewRow, SessionDesk
 from surveyapp_models.angles import ARCSEC
+from tests.tui.helpers_tui import Clock, make_project
 
 
 def observation(folder: Path, method: Method = "tracking") -> SessionDesk:

@@ -37,7 +37,7 @@ def test_interval_of_the_next_reading_holds_it_in_99_percent(n: int) -> None:
     # binomial, 600 draws: 594 expected, standard deviation 2.4; three points lean on the prior
     # of the damping, which is wider than the truth here: the interval may only be too wide
     assert inside >= 594 - 8
-    assert n <= 4 or half < 2.576 * 5.0 * 1.6
+    assert n <= 4 or (half is not None and half < 2.576 * 5.0 * 1.6)
 
 
 def test_two_points_already_tell_where_the_third_will_be() -> None:

@@ -8,7 +8,6 @@ from datetime import UTC, datetime, timedelta, timezone
 from pathlib import Path
 
 import pytest
-from helpers_tui import Clock, make_project, readings, rows_on_disk
 
 from surveyapp import api
 from surveyapp.core.observing.doubts import Doubt
@@ -19,6 +18,7 @@ from surveyapp.errors import SurveyError
 from surveyapp.observation import session as api_session
 from surveyapp.observation.entry import expected, understand
 from surveyapp.observation.session import NewRow, SessionDesk
+from tests.tui.helpers_tui import Clock, make_project, readings, rows_on_disk
 
 
 def observation(folder: Path, clock: Clock | None = None) -> SessionDesk:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from helpers_tui import SMALL, Clock, make_project, rows_on_disk
 from textual.pilot import Pilot
 from textual.widgets import Static
 
@@ -17,6 +16,7 @@ from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.session import SessionScreen
 from surveyapp.tui.widgets.entry import EntryLine
 from surveyapp.tui.widgets.ledger import Ledger
+from tests.tui.helpers_tui import SMALL, Clock, make_project, rows_on_disk
 
 BY_HAND = "3,2026-03-02T08:10:00+00:00,600.0,backsight,359-02-12,dms,R,,,,\n"
 

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers_tui import SMALL, Clock
 from textual.pilot import Pilot
 from textual.widgets import Select, Static
 
@@ -38,6 +37,7 @@ from surveyapp.tui.screens.session import SessionScreen
 from surveyapp.tui.widgets.entry import EntryLine
 from surveyapp.tui.widgets.instrument import InstrumentPane
 from surveyapp_models.angles import ARCSEC, AngleUnit, format_angle, wrap_pi
+from tests.tui.helpers_tui import SMALL, Clock
 
 METHODS: tuple[Method, ...] = ("tracking", "amplitude", "transit", "automatic")
 
@@ -228,7 +228,7 @@ async def test_practice_runs_the_same_session_screen_and_ends_with_the_truth(
             screen.query_one(EntryLine).text = format_angle(circle, AngleUnit.DMS, 1)
             await pilot.press("enter", "enter")
             await settle(pilot)
-        while screen.desk.step is not Step.RESULT:
+        while screen.desk.step.value != Step.RESULT.value:
             await pilot.press("f8")
         await pilot.press("f8")
         for _ in range(3):

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers_tui import SMALL, make_project, simulated
 from textual.pilot import Pilot
 from textual.widgets import Static
 
@@ -22,6 +21,7 @@ from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.result import ResultScreen
 from surveyapp.tui.views.result import result_headline, result_sections
 from surveyapp_models.angles import AngleUnit
+from tests.tui.helpers_tui import SMALL, make_project, simulated
 
 PROJECTS = Path(__file__).resolve().parents[2] / "projects"
 

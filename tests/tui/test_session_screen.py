@@ -7,7 +7,6 @@ import os
 from pathlib import Path
 
 import pytest
-from helpers_tui import SMALL, Clock, make_project, readings, rows_on_disk, simulated
 from textual.pilot import Pilot
 from textual.widgets import Static
 
@@ -25,6 +24,7 @@ from surveyapp.tui.screens.session import SessionScreen
 from surveyapp.tui.widgets.entry import EntryLine
 from surveyapp.tui.widgets.run import RunPane
 from surveyapp.tui.widgets.titlebar import TitleBar
+from tests.tui.helpers_tui import SMALL, Clock, make_project, readings, rows_on_disk, simulated
 
 
 async def settle(pilot: Pilot[int]) -> None:

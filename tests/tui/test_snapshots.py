@@ -10,15 +10,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers_tui import (
-    LARGE,
-    SMALL,
-    Clock,
-    make_calibrations,
-    make_network,
-    make_project,
-    simulated,
-)
 from textual.pilot import Pilot
 
 from surveyapp.core.observing.steps import Step
@@ -32,6 +23,15 @@ from surveyapp.tui import texts
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.confirm import ConfirmScreen
 from surveyapp.tui.widgets.instrument import InstrumentPane
+from tests.tui.helpers_tui import (
+    LARGE,
+    SMALL,
+    Clock,
+    make_calibrations,
+    make_network,
+    make_project,
+    simulated,
+)
 
 PROJECTS = Path(__file__).resolve().parents[2] / "projects"
 Snap = Callable[..., bool]

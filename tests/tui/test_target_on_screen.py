@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from helpers_tui import SMALL, Clock, make_project, simulated
 from textual.widgets import Static
 
 from surveyapp.core.observing.progress import Progress
@@ -14,6 +13,7 @@ from surveyapp.io.rulebooks import installed_rule_book_ids
 from surveyapp.observation.session import SessionDesk
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.views.progress import outlook_text, target_source_text
+from tests.tui.helpers_tui import SMALL, Clock, make_project, simulated
 
 ROOM = 56
 """Columns beside the list of steps in a terminal of 80."""

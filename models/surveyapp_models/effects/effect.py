@@ -16,8 +16,9 @@ import numpy as np
 from surveyapp_models.arrays import Floats
 
 Columns = Mapping[str, Floats]
-Subject = Literal["reversal_run", "campaign", "traverse", "compass", "tilt", "rate"]
-SUBJECTS: tuple[Subject, ...] = (
+SubjectId = str
+"""Id of a subject: an identifier, equal to the file of ``diagnosis/subjects`` that describes it."""
+SUBJECTS: tuple[SubjectId, ...] = (
     "reversal_run",
     "campaign",
     "traverse",
@@ -25,6 +26,7 @@ SUBJECTS: tuple[Subject, ...] = (
     "tilt",
     "rate",
 )
+"""Subjects that come with the program; a user's own may have any other id."""
 
 
 class Basis(Protocol):
@@ -190,7 +192,7 @@ class Effect:
 
     id: str
     title: str
-    subject: Subject
+    subject: SubjectId
     needs: tuple[Column, ...]
     coefficients: tuple[Coefficient, ...]
     basis: Basis
@@ -214,7 +216,7 @@ class Effect:
             raise ValueError(f"effect {self.id}: an amplitude law has exactly one coefficient")
         if (self.law is not None) != (self.acts_on == "amplitude"):
             raise ValueError(f"effect {self.id}: acts_on='amplitude' and law belong together")
-        if self.subject not in SUBJECTS:
+        if not self.subject.isidentifier():
             raise ValueError(f"effect {self.id}: unknown subject {self.subject!r}")
         if not self.coefficients:
             raise ValueError(f"effect {self.id}: at least one coefficient")
@@ -246,9 +248,3 @@ def mean_loss_time(half_swing: Floats, decay: Floats) -> Floats:
     safe = np.where(small, 1.0, product)
     ratio = np.where(small, 1.0 - 0.5 * product, -np.expm1(-safe) / safe)
     return np.asarray(half_swing * ratio)
-
-
-def inner_positions(positions: Floats, *, margin: int) -> Floats:
-    """Sorted different positions with at least ``margin`` of them left on either side."""
-    different = np.unique(positions)
-    return different[margin - 1 : different.size - margin]

@@ -72,8 +72,8 @@ class ClampedFit:
         A at the first turning point [div].
     log_decrement : float
         c per half swing.
-    first_turning_s, period_s : float
-        t0 and T [s]; NaN-free only where there are passages, else 0.
+    period_s : float
+        T [s]; 0 where there are no passages.
     reading_residuals : ndarray, shape (n,)
         [div].
     passage_residuals : ndarray, shape (m,)
@@ -91,7 +91,6 @@ class ClampedFit:
     middle_div: float
     amplitude_div: float
     log_decrement: float
-    first_turning_s: float
     period_s: float
     reading_residuals: Floats
     passage_residuals: Floats
@@ -251,7 +250,6 @@ def fit_clamped(swing: ClampedSwing, *, period_s: float) -> ClampedFit:
         middle_div=float(parameters[0]),
         amplitude_div=float(parameters[1]),
         log_decrement=float(parameters[2]),
-        first_turning_s=float(parameters[3]),
         period_s=float(parameters[4]),
         reading_residuals=v_readings,
         passage_residuals=v_times,

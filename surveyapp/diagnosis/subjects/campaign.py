@@ -104,6 +104,8 @@ def campaign(
     offset = float(np.median(values))
     return Case(
         subject="campaign",
+        title="campaign",
+        value_name="the constant",
         observations=values - offset,
         base=np.ones((n, 1)),
         base_names=("constant",),

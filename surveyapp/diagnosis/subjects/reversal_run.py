@@ -84,6 +84,8 @@ def reversal_run(points: TurningPoints, extra: tuple[Effect, ...] = ()) -> Case:
     temperature = points.reference_temperature_c
     return Case(
         subject="reversal_run",
+        title="run",
+        value_name="north over the run",
         observations=y,
         base=np.ones((n, 1)),
         base_names=("north",),

@@ -104,6 +104,8 @@ def traverse(
     columns = {**observation_columns(network, model, values), TRANSFORM: transform @ whitener}
     return Case(
         subject="traverse",
+        title="traverse",
+        value_name="the place of the least certain point",
         observations=transform @ right,
         base=base,
         base_names=(f"place of {weakest}",),
