@@ -19,8 +19,9 @@ from surveyapp_models.arrays import Floats
 from surveyapp_models.constants import EARTH_RATE
 
 NAMES = ("north", "bias", "collimation", "elevation")
-UNDETERMINED = 1e-6
-"""Share of a parameter's column that the other parameters do not express."""
+UNDETERMINED = 1e-3
+"""Singular value, as a share of the largest, below which a direction is not told by the rows: a
+thousandth of the earth rate per radian, 0.015 deg/h."""
 _NORMAL_95 = 1.959963984540054
 
 
@@ -119,7 +120,7 @@ def solve_north(
     estimate = np.array([approximate_north, 0.0, 0.0, 0.0])
     prior = None if constant is None else max(constant_sigma, 1e-9)
     noise = rate_sigma if rate_sigma is not None and rate_sigma > 0.0 else 1e-9
-    free = _determined(positions, estimate, scale, latitude, offsets, prior, noise)
+    basis = _determined(positions, estimate, scale, latitude, offsets, prior)
     design = np.zeros((0, 4))
     for _ in range(30):
         at = [
@@ -128,14 +129,12 @@ def solve_north(
         ]
         design, rest = _rows(positions, estimate, scale, latitude, offsets, prior, noise)
         rest[: measured.size] += (measured - at) / noise
-        step, *_ = np.linalg.lstsq(design[:, free], rest, rcond=None)
-        change = np.zeros(4)
-        change[free] = step
-        estimate = estimate + change * scale
+        step, *_ = np.linalg.lstsq(design @ basis, rest, rcond=None)
+        estimate = estimate + basis @ step * scale
         if float(np.abs(step).max(initial=0.0)) < 1e-13:
             break
     at = [predicted(p, estimate, latitude=latitude, offset=o) for p, o in _both(positions, offsets)]
-    return _result(measured - at, estimate, scale, design, free, noise, rate_sigma, prior)
+    return _result(measured - at, estimate, scale, design, basis, noise, rate_sigma, prior)
 
 
 def _both(positions: Sequence[Position], offsets: Floats) -> zip[tuple[Position, float]]:
@@ -197,17 +196,13 @@ def _determined(
     latitude: float,
     offsets: Floats,
     prior: float | None,
-    noise: float,
-) -> list[int]:
-    """Parameters to solve: collimation, then elevation stay 0 where the rows do not tell them."""
-    moved = estimate + np.array([0.01, 0.0, 0.01, 0.01])  # away from exact symmetry
-    design, _ = _rows(positions, moved, scale, latitude, offsets, prior, noise)
-    for free in ([0, 1, 2, 3], [0, 1, 3], [0, 1, 2], [0, 1]):
-        part = design[:, free]
-        part = part / np.maximum(np.linalg.norm(part, axis=0), 1e-300)
-        if part.shape[0] >= len(free) and np.linalg.svd(part, compute_uv=False)[-1] > 1e-4:
-            return free
-    return [0, 1]
+) -> Floats:
+    """Directions of the four unknowns that the rows tell, shape (4, k)."""
+    design, _ = _rows(positions, estimate, scale, latitude, offsets, None, EARTH_RATE)
+    if prior is not None:
+        design = np.vstack([design, [0.0, 0.0, 0.0, 1.0]])
+    _, size, right = np.linalg.svd(design, full_matrices=False)
+    return np.asarray(right[size > UNDETERMINED * size[0]].T)
 
 
 def _result(
@@ -215,25 +210,17 @@ def _result(
     estimate: Floats,
     scale: Floats,
     design: Floats,
-    free: list[int],
+    basis: Floats,
     noise: float,
     rate_sigma: float | None,
     prior: float | None,
 ) -> FogNorth:
-    missing = {NAMES[k] for k in range(4) if k not in free}
-    if "collimation" in missing:
-        missing.add("bias")  # only their sum is in the rows
-    if "elevation" in missing:
-        missing.add("north")
-    dof = rest.size + (prior is not None) - len(free)
-    _, r = np.linalg.qr(design[:, free])
-    if np.abs(np.diag(r)).min() == 0.0 or design.shape[0] < len(free):
-        missing.update(NAMES)
-        spread = np.full(4, np.nan)
-    else:
-        spread = np.full(4, np.nan)
-        inverse = np.linalg.solve(r, np.eye(len(free)))
-        spread[free] = np.sqrt(np.sum(inverse**2, axis=1)) * scale[free]
+    known = np.sum(basis**2, axis=1) > 1.0 - 1e-6
+    missing = {name for name, told in zip(NAMES, known, strict=True) if not told}
+    dof = rest.size + (prior is not None) - basis.shape[1]
+    _, r = np.linalg.qr(design @ basis)
+    inverse = basis @ np.linalg.solve(r, np.eye(basis.shape[1]))
+    spread = np.sqrt(np.sum(inverse**2, axis=1)) * scale
     factor, quantile = _judged(rest, noise, rate_sigma, dof)
     sigma = [None if factor is None else float(s * factor) for s in spread]
     value = [None if name in missing else float(v) for name, v in zip(NAMES, estimate, strict=True)]

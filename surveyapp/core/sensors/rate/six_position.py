@@ -21,27 +21,28 @@ AXES = "xyz"
 
 @dataclass(frozen=True, slots=True)
 class PositionMeans:
-    """Mean outputs of the three gyros in one position, turned both ways.
+    """Outputs of the three gyros in one position, turned both ways.
 
     Parameters
     ----------
     position : str
         ``x+`` = body x up along the table's axis.
-    clockwise, anticlockwise : ndarray, shape (3,)
-        Mean outputs [rad/s].
-    sigma_clockwise, sigma_anticlockwise : ndarray, shape (3,)
-        [rad/s]
-    rate_clockwise, rate_anticlockwise : float
-        Magnitudes of the table's rate [rad/s].
+    slope : ndarray, shape (3,)
+        Output per clockwise rate of the table [1].
+    rest : ndarray, shape (3,)
+        Output without the table: bias and vertical earth rate [rad/s]; NaN where less than a
+        whole turn leaves the level earth rate in it.
+    sigma_slope, sigma_rest : ndarray, shape (3,)
+    group : int
+        Round of the programme: the body is seated anew in each.
     """
 
     position: str
-    clockwise: Floats
-    anticlockwise: Floats
-    sigma_clockwise: Floats
-    sigma_anticlockwise: Floats
-    rate_clockwise: float
-    rate_anticlockwise: float
+    slope: Floats
+    rest: Floats
+    sigma_slope: Floats
+    sigma_rest: Floats
+    group: int = 0
 
     @property
     def axis(self) -> int:
@@ -58,25 +59,33 @@ class PositionMeans:
 
         An axis that points up reads minus the table's clockwise rate.
         """
-        total = self.rate_clockwise + self.rate_anticlockwise
-        return self.up * (self.anticlockwise - self.clockwise) / total
+        return -self.up * self.slope
 
-    def column_sigma(self) -> Floats:
-        """Standard deviations of ``column``, shape (3,)."""
-        total = self.rate_clockwise + self.rate_anticlockwise
-        return np.hypot(self.sigma_clockwise, self.sigma_anticlockwise) / total
 
-    def rest(self) -> Floats:
-        """What is left without the table: bias and vertical earth rate, shape (3,) [rad/s]."""
-        one, other = self.rate_clockwise, self.rate_anticlockwise
-        return (other * self.clockwise + one * self.anticlockwise) / (one + other)
+def position_means(
+    position: str, *, rates: Floats, means: Floats, sigmas: Floats, group: int = 0
+) -> PositionMeans:
+    """Straight line of mean outputs over the table's rates.
 
-    def rest_sigma(self) -> Floats:
-        """Standard deviations of ``rest``, shape (3,) [rad/s]."""
-        one, other = self.rate_clockwise, self.rate_anticlockwise
-        return np.hypot(other * self.sigma_clockwise, one * self.sigma_anticlockwise) / (
-            one + other
-        )
+    Parameters
+    ----------
+    position : str
+    rates : ndarray, shape (k,)
+        Clockwise from above, both signs [rad/s].
+    means, sigmas : ndarray, shape (k, 3)
+        [rad/s]
+    group : int
+    """
+    slope, rest = np.zeros(3), np.zeros(3)
+    sigma_slope, sigma_rest = np.zeros(3), np.zeros(3)
+    for i in range(3):
+        weight = 1.0 / np.maximum(sigmas[:, i], 1e-15)
+        design = np.column_stack([rates, np.ones(rates.size)]) * weight[:, None]
+        q, r = np.linalg.qr(design)
+        slope[i], rest[i] = np.linalg.solve(r, q.T @ (means[:, i] * weight))
+        spread = np.sqrt(np.sum(np.linalg.solve(r, np.eye(2)) ** 2, axis=1))
+        sigma_slope[i], sigma_rest[i] = spread
+    return PositionMeans(position, slope, rest, sigma_slope, sigma_rest, group)
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,7 +159,7 @@ def solve_six_positions(
             continue
         count = len(here)
         matrix[:, axis] = np.mean([m.column() for m in here], axis=0)
-        noise = np.sqrt(np.sum([m.column_sigma() ** 2 for m in here], axis=0)) / count
+        noise = np.sqrt(np.sum([m.sigma_slope**2 for m in here], axis=0)) / count
         sigma[:, axis] = _with_flips(noise, axis, count, flip_sigma, relative_rate_sigma)
         bias[axis], sigma_bias[axis] = _own_bias(here, axis, matrix[axis, axis], vertical_rate)
     return GyroTriad(matrix, bias, sigma, sigma_bias)
@@ -176,15 +185,15 @@ def _own_bias(
     """Bias of a gyro from its own axis up and down: the vertical earth rate cancels."""
     rests = {up: [m for m in here if m.up == up] for up in (1.0, -1.0)}
     if rests[1.0] and rests[-1.0]:
-        sides = [np.mean([m.rest()[axis] for m in side]) for side in rests.values()]
+        sides = [np.mean([m.rest[axis] for m in side]) for side in rests.values()]
         variance = [
-            sum(m.rest_sigma()[axis] ** 2 for m in side) / len(side) ** 2 for side in rests.values()
+            sum(m.sigma_rest[axis] ** 2 for m in side) / len(side) ** 2 for side in rests.values()
         ]
         return float(np.mean(sides)), 0.5 * math.sqrt(float(sum(variance)))
     if vertical is None:
         return math.nan, math.nan
-    free = [m.rest()[axis] - m.up * scale * vertical for m in here]
-    variance_one = sum(m.rest_sigma()[axis] ** 2 for m in here) / len(here) ** 2
+    free = [m.rest[axis] - m.up * scale * vertical for m in here]
+    variance_one = sum(m.sigma_rest[axis] ** 2 for m in here) / len(here) ** 2
     return float(np.mean(free)), math.sqrt(float(variance_one))
 
 
