@@ -37,8 +37,10 @@ from surveyapp.api.project import (
     open_project,
     simulate,
 )
+from surveyapp.api.sensors import LogOptions, calibrate, open_sensor_log
 from surveyapp.api.unfinished import unfinished, without_unfinished
 from surveyapp.domain.adjustment import AdjustmentResult
+from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import Check, OrientationResult
@@ -68,6 +70,9 @@ __all__ = [
     "subjects",
     "check",
     "diagnose",
+    "calibrate",
+    "open_sensor_log",
+    "LogOptions",
     "batch",
     "batch_rows",
     "report",
@@ -81,6 +86,7 @@ __all__ = [
     "export_json",
     "export_zip",
     "AdjustmentResult",
+    "Calibration",
     "InstrumentCard",
     "Project",
     "Check",

@@ -39,6 +39,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("adjust", "adjust", "traverse or .gkf network to coordinates, sigmas and tests"),
     Command("report", "report", "the survey record as PDF, or a blank field-book form"),
     Command("diagnose", "diagnose", "which effect does the model lack, and how sure is that"),
+    Command("calibrate", "calibrate", "a sensor log to parameters, sigmas and a sensor card"),
     Command("close", "close", "seal a project or a session with a hash chain in the ledger"),
     Command("reopen", "reopen", "open what was closed; the ledger keeps the reason"),
     Command("compare", "compare", "what changed between two results, and because of what"),

@@ -12,6 +12,7 @@ from typing import Literal
 
 from surveyapp.domain.instrument import AdoptedEffect, Instrument
 from surveyapp.domain.readings import FieldBook
+from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp_models.angles import ARCSEC, AngleUnit
 
 Method = Literal["tracking", "amplitude", "transit", "automatic"]
@@ -198,6 +199,7 @@ class Project:
     tables : mapping
         The parsed TOML of tables that other readers interpret (traverse, penetration, shaft,
         sensor_log), by name.
+    sensor_logs : tuple of SensorLogEntry
     warnings : tuple of ResultWarning
     """
 
@@ -212,6 +214,7 @@ class Project:
     digest: str = ""
     path: str = ""
     tables: dict[str, object] = field(default_factory=dict)
+    sensor_logs: tuple[SensorLogEntry, ...] = ()
     warnings: tuple[ResultWarning, ...] = ()
 
     def station(self, name: str) -> Station:

@@ -29,6 +29,7 @@ from surveyapp.io.project_tables import (
     read_station,
     unique,
 )
+from surveyapp.io.sensor_logs.tables import read_sensor_logs
 from surveyapp.io.tables import Findings, Table, parse_toml
 from surveyapp_models.angles import AngleUnit
 
@@ -196,6 +197,7 @@ def _read_tables(
     if typing is not None:
         tables["angle_typing"] = typing
     _read_other_files(top, files, lines)
+    sensor_logs = read_sensor_logs(top, lines.get("sensor_log", ()))
     project = Project(
         name=top.text("name") or files.path.resolve().name,
         stations=tuple(stations),
@@ -207,6 +209,7 @@ def _read_tables(
         centring=read_centring(top) or Centring(),
         path=str(files.path),
         tables=tables,
+        sensor_logs=sensor_logs,
     )
     top.get("note")
     tables.update({key: top.data[key] for key in top.unread()})
