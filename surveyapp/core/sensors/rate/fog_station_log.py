@@ -1,4 +1,4 @@
-"""``calibrate fog-station``: a table log to the instrument constant, in the shape of the contract."""
+"""``calibrate fog-station``: a table log to the instrument constant and its scatter."""
 
 from __future__ import annotations
 
@@ -255,7 +255,7 @@ def _warnings(sets: list[BothWays], found: Constant, relative: float | None) -> 
         warnings.append(ResultWarning("no_table_rate_sigma", text))
     if max(abs(s.elevation) for s in sets if s.pass_id == sets[0].pass_id) > STEEP:
         text = (
-            f"the elevation of {math.degrees(found.elevation):.2f} degrees is above 10 degrees: the "
+            f"the elevation of {math.degrees(found.elevation):.2f} degrees is above 10: the "
             "error of the table's rate enters by its tangent; level the gyro better or add a pass"
         )
         warnings.append(ResultWarning("elevation_above_10", text))

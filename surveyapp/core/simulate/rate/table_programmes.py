@@ -124,7 +124,7 @@ def _one_position(
     time = begin_s + (np.arange(nominal.size) + 0.5) * dt
     gyro = unit.gyro.output(rates, forces=forces, rng=rng) + unit.drift * time[:, None]
     acc = unit.accelerometer.output(forces, rng=rng)
-    columns: dict[str, Floats] = {"time_s": time}
+    columns: dict[str, Floats] = {"time_s": np.asarray(time, dtype=np.float64)}
     columns |= {f"gyr_{a}_rad_s": gyro[:, i] for i, a in enumerate("xyz")}
     columns |= {f"acc_{a}_m_s2": acc[:, i] for i, a in enumerate("xyz")}
     columns["table_rate_deg_s"] = np.rad2deg(nominal)
