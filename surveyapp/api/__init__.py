@@ -28,6 +28,7 @@ from surveyapp.api.office import (
     report_text,
 )
 from surveyapp.api.orientation import demo, generator_of, orient, plan
+from surveyapp.api.penetration import predict
 from surveyapp.api.project import (
     SOFTWARE,
     Folder,
@@ -68,6 +69,7 @@ __all__ = [
     "compass_rule",
     "variance_components",
     "SubjectKeyword",
+    "predict",
     "subjects",
     "check",
     "diagnose",

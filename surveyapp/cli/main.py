@@ -49,6 +49,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("batch", "batch", "many projects, one row each; failures are told, not fatal"),
     Command("new", "new", "make a new project folder"),
     Command("models", "models", "instrument cards and what is known of them"),
+    Command("predict", "predict", "how far two headings will miss each other, and what helps"),
     Command("plan", "plan", "method, points and minutes for a wanted interval at this latitude"),
     Command("simulate", "simulate", "a simulated project with any effect, its truth apart"),
     Command("practise", "practise", "observe a simulated instrument, then see the truth"),

@@ -57,6 +57,8 @@ class Station:
         Height [m].
     fixed : bool
     deflection : Deflection
+    planned : bool
+        Not yet built; an adjustment leaves it out.
     """
 
     name: str
@@ -67,6 +69,7 @@ class Station:
     h: float | None = None
     fixed: bool = False
     deflection: Deflection = field(default_factory=Deflection)
+    planned: bool = False
 
     @property
     def has_grid_position(self) -> bool:

@@ -145,6 +145,7 @@ def read_station(table: Table) -> Station:
         h=table.number("h", low=_HEIGHT_LIMITS_M[0], high=_HEIGHT_LIMITS_M[1]),
         fixed=table.boolean("fixed"),
         deflection=_deflection(table),
+        planned=table.boolean("planned"),
     )
     table.get("note")
     table.warn_unknown()

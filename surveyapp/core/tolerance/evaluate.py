@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from surveyapp.core.tolerance.formula import FormulaError, evaluate, holds
-from surveyapp.core.tolerance.quantities import quantity
+from surveyapp.core.tolerance.quantities import PARAMETER, quantity
 from surveyapp.domain.results import Check
 from surveyapp.domain.rulebook import Limit, RuleBook
 
@@ -93,6 +93,8 @@ def rule_book_checks(book: RuleBook, measured: Sequence[Measured]) -> tuple[Chec
     checks = []
     for limit in book.limits:
         items = by_quantity.get(limit.quantity)
+        if not items and quantity(limit.quantity).subject == PARAMETER:
+            continue
         if not items:
             items = [
                 Measured(limit.quantity, None, text=f"missing: {quantity(limit.quantity).needs}")

@@ -1,0 +1,44 @@
+"""Breakthroughs for scripts, re-exported by ``surveyapp.api``: how far will two headings miss."""
+
+from __future__ import annotations
+
+from surveyapp.api.orientation import oriented
+from surveyapp.api.project import SOFTWARE, Folder, opened
+from surveyapp.api.unfinished import without_unfinished
+from surveyapp.domain.penetration_result import Prediction
+from surveyapp.domain.project import Project
+
+
+def predict(
+    project: Project | Folder, *, plan: int | None = None, monte_carlo: bool = True
+) -> Prediction:
+    """Predict the miss at the meeting point of a project's headings.
+
+    Parameters
+    ----------
+    project : Project or path
+    plan : int or None
+        Place this many further gyro sides as well; no Monte Carlo then.
+    monte_carlo : bool
+        Simulate surveys beside the covariance.
+
+    Raises
+    ------
+    SurveyError
+        If there is no ``[penetration]``, or with every reason why it cannot be predicted.
+    """
+    from surveyapp.core.penetration.prediction import prediction
+    from surveyapp.workflows.predicting import ready_mine
+
+    project = opened(project)
+    kept = without_unfinished(project)
+    orientation = oriented(kept) if kept.sessions else None
+    ready = ready_mine(kept, orientation, plan_sides=plan)
+    return prediction(
+        ready.mine,
+        ready.rule_book,
+        project=project.name,
+        software=SOFTWARE,
+        digest=project.digest,
+        warnings=ready.warnings,
+    )
