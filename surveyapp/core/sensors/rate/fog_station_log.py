@@ -40,6 +40,8 @@ OPTIONAL = (
     "pass",
     "temperature_c",
 )
+NO_SCALE_ERROR = 0.1
+"""Relative error of a scale factor that no gyro has: the rule is wrong then."""
 STEEP = math.radians(10.0)
 """Elevation above which the source asks to level the gyro better first [rad]."""
 
@@ -86,7 +88,21 @@ def calibrate_fog_station(
     if problems:
         raise SurveyError(_told_once(problems))
     found = combine(sets, rule=rule, relative_rate_sigma=relative_rate_sigma or 0.0)
+    if found.scale is not None and abs(found.scale) > NO_SCALE_ERROR:
+        raise SurveyError(_against_rule(log, rule))
     return _calibration(log, sets, found, rule, relative_rate_sigma, sense_warnings(motion))
+
+
+def _against_rule(log: SensorLog, rule: Rule) -> Problem:
+    other = "decreases" if rule == "increases" else "increases"
+    return Problem(
+        "the stated rule contradicts the passes",
+        f"{log.path}, --reading-from-elevation",
+        rule,
+        other,
+        "from one pass to the other the vertical circle and the elevation changed in opposite "
+        "ways: look it up at the instrument; or were two sets exchanged?",
+    )
 
 
 def _told_once(problems: list[Problem]) -> list[Problem]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -117,6 +117,9 @@ def stretches_of(log: SensorLog, motion: TableMotion, labels: Sequence[str]) -> 
         kept = stretch
         for values in gyros:
             kept = settled(kept, values)
+        if not motion.nominal:
+            seconds = log.columns["time_s"][kept.stop - 1] - log.columns["time_s"][kept.start]
+            kept = replace(kept, rate=float(kept.angles[-1] - kept.angles[0]) / float(seconds))
         found.append(kept)
     return found
 

@@ -87,12 +87,15 @@ class TableMotion:
         Whether the angles were recorded; else they are the rates summed up.
     reversed_sense : bool
         Whether the nominal rates had the opposite sign of the recorded angles and were turned.
+    nominal : bool
+        Whether the rates were stated; else they are the slope of the angles.
     """
 
     rates: Floats
     angles: Floats
     encoder: bool
     reversed_sense: bool = False
+    nominal: bool = True
 
 
 def table_motion(
@@ -118,7 +121,7 @@ def table_motion(
     angles = np.unwrap(np.deg2rad(angle_deg))
     measured = np.gradient(angles, time_s) if angles.size > 1 else np.zeros(angles.size)
     if rate_deg_s is None:
-        return TableMotion(_calmed(measured), angles, encoder=True)
+        return TableMotion(_calmed(measured), angles, encoder=True, nominal=False)
     rates = np.deg2rad(rate_deg_s)
     agrees = float(np.sum(rates * measured)) >= 0.0
     unsigned = bool(np.all(rates >= 0.0) and measured.min() < -0.5 * float(rates.max(initial=0.0)))
