@@ -7,6 +7,7 @@ Each subject has a module of its own behind this one, which is all that scripts 
 from __future__ import annotations
 
 from surveyapp.api.batch import batch, batch_rows
+from surveyapp.api.importing import import_file
 from surveyapp.api.judgement import SubjectKeyword, check, diagnose, subjects
 from surveyapp.api.network import (
     adjust,
@@ -43,6 +44,7 @@ from surveyapp.api.sensors import LogOptions, calibrate, open_sensor_log
 from surveyapp.api.unfinished import unfinished, without_unfinished
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.calibration import Calibration
+from surveyapp.domain.fieldfile import ImportResult
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import Check, OrientationResult
@@ -87,11 +89,13 @@ __all__ = [
     "close",
     "reopen",
     "compare",
+    "import_file",
     "export_csv",
     "export_gkf",
     "export_json",
     "export_zip",
     "AdjustmentResult",
+    "ImportResult",
     "Calibration",
     "InstrumentCard",
     "Project",

@@ -45,6 +45,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("close", "close", "seal a project or a session with a hash chain in the ledger"),
     Command("reopen", "reopen", "open what was closed; the ledger keeps the reason"),
     Command("compare", "compare", "what changed between two results, and because of what"),
+    Command("import", "import_file", "field files of total stations and gyros into a project"),
     Command("export", "export", "results and projects as csv, json or zip"),
     Command("batch", "batch", "many projects, one row each; failures are told, not fatal"),
     Command("new", "new", "make a new project folder"),
