@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -296,33 +297,37 @@ def _calibration(
         sha256=log.sha256,
         temperature_c=(low, high),
         constants={"reference_temperature_c": at},
-        extra={
-            "nodes": [
-                {
-                    "temperature_c": n.temperature_c,
-                    "parameters": [p.to_dict() for p in n.parameters],
-                }
-                for n in nodes
-            ],
-            "predicted": [
-                {
-                    "temperature_c": t,
-                    "parameters": [p.to_dict() for p in _predicted(nodes, model, t)],
-                }
-                for t in options.predict_at
-            ],
-            "chosen": model,
-            "compensation": [
-                {
-                    "model": c.model,
-                    "held_out_rms": c.held_out_rms,
-                    "admissible": c.admissible,
-                }
-                for c in comparison
-            ],
-            "accelerometer_rank": _ranks(log, options),
-        },
+        extra=_extra(log, nodes, options, comparison, model),
     )
+
+
+def _extra(
+    log: SensorLog,
+    nodes: Sequence[Node],
+    options: TemperatureOptions,
+    comparison: Sequence[Compensation],
+    model: ModelName,
+) -> dict[str, Any]:
+    """The keys that only this programme has."""
+    return {
+        "nodes": [
+            {"temperature_c": n.temperature_c, "parameters": [p.to_dict() for p in n.parameters]}
+            for n in nodes
+        ],
+        "predicted": [
+            {
+                "temperature_c": t,
+                "parameters": [p.to_dict() for p in _predicted(nodes, model, t)],
+            }
+            for t in options.predict_at
+        ],
+        "chosen": model,
+        "compensation": [
+            {"model": c.model, "held_out_rms": c.held_out_rms, "admissible": c.admissible}
+            for c in comparison
+        ],
+        "accelerometer_rank": _ranks(log, options),
+    }
 
 
 def _ranks(log: SensorLog, options: TemperatureOptions) -> dict[str, int] | None:
