@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from surveyapp.api.orientation import oriented
 from surveyapp.api.project import SOFTWARE, Folder, opened
 from surveyapp.api.unfinished import without_unfinished
@@ -27,6 +29,7 @@ def predict(
     SurveyError
         If there is no ``[penetration]``, or with every reason why it cannot be predicted.
     """
+    from surveyapp.core.penetration.planning import candidates_of, plan_sides
     from surveyapp.core.penetration.prediction import prediction
     from surveyapp.workflows.predicting import ready_mine
 
@@ -34,7 +37,7 @@ def predict(
     kept = without_unfinished(project)
     orientation = oriented(kept) if kept.sessions else None
     ready = ready_mine(kept, orientation, plan_sides=plan)
-    return prediction(
+    found = prediction(
         ready.mine,
         ready.rule_book,
         project=project.name,
@@ -42,3 +45,9 @@ def predict(
         digest=project.digest,
         warnings=ready.warnings,
     )
+    if plan is not None:
+        allowed = None if found.tolerance is None else found.tolerance.lateral_m
+        candidates = candidates_of(ready.mine, ready.defaults)
+        placed = plan_sides(ready.mine, candidates, plan, allowed, found.factor)
+        return replace(found, plan=placed)
+    return found
