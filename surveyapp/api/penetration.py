@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import Executor
 from dataclasses import replace
 
 from surveyapp.api.orientation import oriented
@@ -12,7 +13,11 @@ from surveyapp.domain.project import Project
 
 
 def predict(
-    project: Project | Folder, *, plan: int | None = None, monte_carlo: bool = True
+    project: Project | Folder,
+    *,
+    plan: int | None = None,
+    monte_carlo: bool = True,
+    executor: Executor | None = None,
 ) -> Prediction:
     """Predict the miss at the meeting point of a project's headings.
 
@@ -23,6 +28,8 @@ def predict(
         Place this many further gyro sides as well; no Monte Carlo then.
     monte_carlo : bool
         Simulate surveys beside the covariance.
+    executor : concurrent.futures.Executor or None
+        Who computes the simulated surveys; None: this process.
 
     Raises
     ------
@@ -32,6 +39,7 @@ def predict(
     from surveyapp.core.penetration.planning import candidates_of, plan_sides
     from surveyapp.core.penetration.prediction import prediction
     from surveyapp.workflows.predicting import ready_mine
+    from surveyapp.workflows.simulating import simulated
 
     project = opened(project)
     kept = without_unfinished(project)
@@ -50,4 +58,6 @@ def predict(
         candidates = candidates_of(ready.mine, ready.defaults)
         placed = plan_sides(ready.mine, candidates, plan, allowed, found.factor)
         return replace(found, plan=placed)
+    if monte_carlo:
+        return replace(found, simulated=simulated(ready.mine, executor))
     return found
