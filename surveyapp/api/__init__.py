@@ -39,6 +39,7 @@ from surveyapp.api.project import (
     simulate,
 )
 from surveyapp.api.sensors import LogOptions, calibrate, open_sensor_log
+from surveyapp.api.shafts import shaft
 from surveyapp.api.unfinished import unfinished, without_unfinished
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.calibration import Calibration
@@ -69,6 +70,7 @@ __all__ = [
     "variance_components",
     "SubjectKeyword",
     "predict",
+    "shaft",
     "subjects",
     "check",
     "diagnose",
