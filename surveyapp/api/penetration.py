@@ -5,15 +5,13 @@ from __future__ import annotations
 from concurrent.futures import Executor
 from dataclasses import replace
 
-from surveyapp.api.orientation import oriented
-from surveyapp.api.project import SOFTWARE, Folder, opened
-from surveyapp.api.unfinished import without_unfinished
+from surveyapp.api.orientation import Source, oriented
+from surveyapp.api.project import SOFTWARE
 from surveyapp.domain.penetration_result import Prediction
-from surveyapp.domain.project import Project
 
 
 def predict(
-    project: Project | Folder,
+    source: Source,
     *,
     plan: int | None = None,
     monte_carlo: bool = True,
@@ -23,7 +21,7 @@ def predict(
 
     Parameters
     ----------
-    project : Project or path
+    source : Project, path or Computed
     plan : int or None
         Place this many further gyro sides as well; no Monte Carlo then.
     monte_carlo : bool
@@ -41,16 +39,15 @@ def predict(
     from surveyapp.workflows.predicting import ready_mine
     from surveyapp.workflows.simulating import simulated
 
-    project = opened(project)
-    kept = without_unfinished(project)
-    orientation = oriented(kept) if kept.sessions else None
-    ready = ready_mine(kept, orientation, plan_sides=plan)
+    computed = oriented(source, even_unfinished=True)
+    kept = computed.orientation.project
+    ready = ready_mine(kept, computed.result() if kept.sessions else None, plan_sides=plan)
     found = prediction(
         ready.mine,
         ready.rule_book,
-        project=project.name,
+        project=kept.name,
         software=SOFTWARE,
-        digest=project.digest,
+        digest=kept.digest,
         warnings=ready.warnings,
     )
     if plan is not None:
