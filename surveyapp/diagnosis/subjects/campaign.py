@@ -11,6 +11,7 @@ from surveyapp.core.orientation.campaign_columns import BLOCK_GAP_DAYS, block_na
 from surveyapp.diagnosis.action import POSITION, Action, last_rows
 from surveyapp.diagnosis.case import Case
 from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.subject import Subject
 from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
@@ -38,6 +39,8 @@ class Determination:
         Degrees Celsius, rad, rad, rad, seconds since spin-up.
     label : str
         For messages.
+    subject : Subject or None
+        The session and target that it comes from.
     """
 
     value: float
@@ -52,6 +55,7 @@ class Determination:
     north_reading: float | None = None
     running_s: float | None = None
     label: str = ""
+    subject: Subject | None = None
 
 
 TEMPERATURE_STEP_K = 8.0
@@ -190,6 +194,7 @@ def campaign(
         offset=offset,
         instrument=instrument,
         identity=f"campaign of {instrument}" if instrument else "campaign",
+        members=tuple(d.subject for d in determinations if d.subject is not None),
         labels=tuple(d.label or f"determination {i + 1}" for i, d in enumerate(determinations)),
         grid_labels=labels,
         warnings=tuple(warnings),
