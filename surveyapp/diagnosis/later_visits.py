@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.core.prediction.average import Determinations, predict
-from surveyapp.core.prediction.priors import DEFAULT_PRIORS, Priors
 from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.outlook import HeldOut, PredictionErrors
+from surveyapp.domain.priors import DEFAULT_PRIORS, Priors
 from surveyapp_models.arrays import Floats
 
 Rows = NDArray[np.intp]

@@ -16,12 +16,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from surveyapp.core.prediction.members import Members, members
-from surveyapp.core.prediction.priors import DEFAULT_PRIORS, GROSS, Priors
 from surveyapp.core.statistics.mixture import student_cdf
 from surveyapp.diagnosis.action import POSITION, Action, completed
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.later_visits import campaign_data, is_campaign
 from surveyapp.diagnosis.outlook import ActionResult
+from surveyapp.domain.priors import DEFAULT_PRIORS, GROSS, Priors
 from surveyapp_models.arrays import Floats
 
 DRAWS = 200

@@ -17,11 +17,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surveyapp.core.prediction.priors import NU0
 from surveyapp.diagnosis.candidates import Candidate, all_candidates
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.compare import orthonormal_design
 from surveyapp.diagnosis.fits import fit_members
+from surveyapp.domain.priors import NU0
 from surveyapp_models.arrays import Floats
 
 SPREADS = (0.05, 0.3, 1.0)
@@ -149,9 +149,21 @@ def pool(cases: Sequence[Case], rng: np.random.Generator) -> Pooled:
     for name, values in zip(NOISES, (noises[:split], noises[split:]), strict=True):
         title = {"random_walk": "a north that wanders", "ar1": "correlated noise"}[name]
         found.append(PooledEffect(name, title, _log_mean(values), None, None, None, "", len(cases)))
+    found = [item for item in found if _plausible(cases, item)]
     found.sort(key=lambda item: -item.evidence)
     fired = any(item.p is not None and item.p <= LEVEL for item in found)
     return Pooled(tuple(c.identity for c in cases), tuple(found), _named(found), fired)
+
+
+def _plausible(cases: Sequence[Case], item: PooledEffect) -> bool:
+    """Whether the common coefficient lies in its physical range, two sigmas of grace."""
+    if item.coefficient is None or item.sigma is None:
+        return True
+    effect = next(e for case in cases for e in case.effects if e.id == item.effect)
+    limits = effect.coefficients[0]
+    low = 0.0 if effect.one_sided else limits.low
+    grace = 2.0 * item.sigma
+    return low - grace <= item.coefficient <= limits.high + grace
 
 
 def _named(found: Sequence[PooledEffect]) -> PooledEffect | None:
@@ -294,9 +306,7 @@ def _noises(case: Case, q: Floats, residual: Floats, how: tuple[float, float]) -
     t = case.position - case.position.min()
     span = max(float(t.max()), 1e-12)
     u = t / span
-    kernels: list[tuple[Floats, tuple[float, ...]]] = [
-        (np.minimum(u[:, None], u[None, :]), WALKS)
-    ]
+    kernels: list[tuple[Floats, tuple[float, ...]]] = [(np.minimum(u[:, None], u[None, :]), WALKS)]
     step = np.abs(u[:, None] - u[None, :]) * (n - 1)
     kernels += [(rho**step, CORRELATED) for rho in CORRELATIONS]
     free = np.linalg.svd(np.eye(n) - q @ q.T)[0][:, : n - q.shape[1]]

@@ -260,6 +260,7 @@ class Diagnosis:
                 {**line.to_dict(self.scale), "frequency_unit": self.frequency_unit}
                 for line in self.lines
             ],
+            "pooled": None,
             "prediction": None
             if self.prediction is None
             else self.prediction.to_dict(unit=self.unit, scale=self.scale),
