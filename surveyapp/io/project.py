@@ -30,6 +30,7 @@ from surveyapp.io.project_tables import (
     read_station,
     unique,
 )
+from surveyapp.io.rulebooks import station_sigma_of
 from surveyapp.io.sensor_logs.tables import read_sensor_logs
 from surveyapp.io.tables import Findings, Table, parse_toml
 from surveyapp_models.angles import AngleUnit
@@ -208,7 +209,7 @@ def _read_tables(
         sessions=tuple(sessions),
         crs=crs,
         grid=read_mine_grid(top, unit, crs),
-        station_sigma_m=top.number("station_sigma_m", low=0.0, high=1e3),
+        station_sigma_m=_station_sigma(top, rule_book, files.path),
         angle_unit=unit,
         rule_book=rule_book,
         centring=read_centring(top) or Centring(),
@@ -220,6 +221,12 @@ def _read_tables(
     tables.update({key: top.data[key] for key in top.unread()})
     top.warn_unknown(*RAW_TABLES)
     return project
+
+
+def _station_sigma(top: Table, rule_book: str | None, folder: Path) -> float | None:
+    """The project's own, else the rule book's."""
+    own = top.number("station_sigma_m", low=0.0, high=1e3)
+    return own if own is not None else station_sigma_of(rule_book, base=folder)
 
 
 def _read_sessions(

@@ -82,16 +82,28 @@ def read_rule_book(name_or_path: str, *, base: Path) -> RuleBook:
         source=table.text("source", required=True, multiline=True) or "",
         limits=limits,
         note=table.text("note", multiline=True) or "",
+        station_sigma_m=table.number("station_sigma_m", low=0.0, high=1e3),
     )
     unread = table.unread()
     if unread:
         table.problem(
             f"{shown(unread[0])} is not known in a rule book",
             "",
-            "id, title, source, note and [[limit]] tables",
+            "id, title, source, note, station_sigma_m and [[limit]] tables",
         )
     findings.raise_if_any()
     return book
+
+
+def station_sigma_of(name_or_path: str | None, *, base: Path) -> float | None:
+    """``station_sigma_m`` of a rule book; None where it states none, or cannot be read."""
+    if name_or_path is None:
+        return None
+    try:
+        data = parse_toml(rule_book_text(name_or_path, base=base), where="rule book")
+    except SurveyError:
+        return None  # told where its limits are asked for
+    return as_number(data.get("station_sigma_m"))
 
 
 def _unique(table: Table, names: Sequence[str]) -> None:
