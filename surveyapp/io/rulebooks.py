@@ -95,17 +95,6 @@ def read_rule_book(name_or_path: str, *, base: Path) -> RuleBook:
     return book
 
 
-def station_sigma_of(name_or_path: str | None, *, base: Path) -> float | None:
-    """``station_sigma_m`` of a rule book; None where it states none, or cannot be read."""
-    if name_or_path is None:
-        return None
-    try:
-        data = parse_toml(rule_book_text(name_or_path, base=base), where="rule book")
-    except SurveyError:
-        return None  # told where its limits are asked for
-    return as_number(data.get("station_sigma_m"))
-
-
 def _unique(table: Table, names: Sequence[str]) -> None:
     for name in sorted({n for n in names if n and names.count(n) > 1}):
         table.problem("two limits have one id", name, "each id once")
