@@ -24,6 +24,7 @@ class CalibrationSubject:
 
 
 SUBJECTS: Final = (
+    CalibrationSubject("compass", "compass", "electronic compass: hard and soft iron, swing"),
     CalibrationSubject("tilt", "tilt", "tilt sensor: two axes, or one on a dividing head"),
 )
 """Every kind that can be calibrated."""
