@@ -14,6 +14,7 @@ from surveyapp.errors import Problem, SurveyError, nearest_names
 
 if TYPE_CHECKING:
     from surveyapp.io.simulated import SimulatedFiles
+    from surveyapp.workflows.computing import Computed
 
 Folder = str | os.PathLike[str]
 
@@ -33,9 +34,11 @@ def open_project(folder: Folder) -> Project:
     return read_project(Path(folder))
 
 
-def opened(project: Project | Folder) -> Project:
+def opened(source: Project | Folder | Computed) -> Project:
     """The project itself, read if it is given by its folder."""
-    return project if isinstance(project, Project) else open_project(project)
+    if isinstance(source, Project):
+        return source
+    return open_project(source) if isinstance(source, str | os.PathLike) else source.project
 
 
 def require(name: str, known: Iterable[str], kind: str, more: str = "") -> None:
@@ -45,7 +48,7 @@ def require(name: str, known: Iterable[str], kind: str, more: str = "") -> None:
         raise SurveyError(
             Problem(
                 what=f"there is no {kind} of this name",
-                where=f"--{kind}",
+                where=kind,
                 found=name,
                 expected=f"the name of a {kind} of the project",
                 hint=". ".join(filter(None, [nearest_names(name, names), more])),
@@ -100,7 +103,7 @@ def simulate(
     from surveyapp.io.simulated import write_simulated
 
     if seed < 0:
-        raise SurveyError(Problem("the seed is negative", "--seed", str(seed), "0 or more"))
+        raise SurveyError(Problem("the seed is negative", "seed", str(seed), "0 or more"))
     files, truth = simulate_kind(kind, effects=effects, seed=seed)
     return write_simulated(Path(out), files, truth)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from surveyapp.core.checks.blunders import azimuth_warnings
 from surveyapp.core.orientation.calibration_sessions import centring_of, rounds_of
@@ -16,73 +17,97 @@ from surveyapp.domain.project import Project, ResultWarning, Station, grid_dista
 from surveyapp.errors import Problem, SurveyError
 
 
-def oriented_lines(
-    project: Project,
-    reduced: Sequence[ReducedSession],
-    constants: Sequence[InstrumentConstant],
-    geometry: Mapping[tuple[str, str], LineGeometry],
-    scatters: Mapping[str, RunScatter],
-    stations: Mapping[str, Station],
-    only: str | None,
-) -> tuple[tuple[OrientedLine, ...], list[ResultWarning]]:
-    """Orient every line of the survey sessions; A-B and B-A are two lines.
+@dataclass(frozen=True, slots=True)
+class SurveyedLines:
+    """The reduced sessions of a project with what their lines need.
 
     Parameters
     ----------
-    only : str or None
-        Use this session alone.
-
-    Raises
-    ------
-    SurveyError
-        If a session asks for a constant that does not exist.
+    project : Project
+    reduced : sequence of ReducedSession
+    constants : sequence of InstrumentConstant
+    geometry : mapping
+        By session and target.
+    scatters : mapping
+        By instrument.
+    stations : mapping
+        By name, with positions in the grid.
     """
-    calibration_ids = frozenset(s.id for s in project.sessions if s.purpose == "calibration")
-    by_instrument = {constant.instrument.id: constant for constant in constants}
-    orders = {identity: _order(project, identity) for identity in by_instrument}
-    groups: dict[tuple[str, str, str], list[tuple[ReducedSession, Uncertain]]] = {}
-    for item in reduced:
-        session = item.session
-        if session.purpose != "survey" or (only is not None and session.id != only):
-            continue
-        for target in item.targets:
-            if target.gyro_azimuth is not None:
-                key = (session.station, target.target, session.instrument)
-                groups.setdefault(key, []).append((item, target.gyro_azimuth))
-    lines: list[OrientedLine] = []
-    warnings: list[ResultWarning] = []
-    problems: list[Problem] = []
-    for (_, target_name, instrument), members in groups.items():
-        try:
-            rounds = [
-                _round(
-                    item,
-                    azimuth,
-                    (by_instrument[instrument], scatters[instrument]),
-                    orders[instrument],
-                    stations=stations,
-                )
-                for item, azimuth in members
-            ]
-        except SurveyError as error:
-            problems += error.problems
-            continue
-        first = members[0][0].session
-        lines.append(
-            orient_line(
-                geometry[first.id, target_name],
-                rounds,
-                instrument=instrument,
-                centring=centring_of(project, first),
-                calibration_sessions=calibration_ids,
-                agreement_of=[azimuth for _, azimuth in members],
+
+    project: Project
+    reduced: Sequence[ReducedSession]
+    constants: Sequence[InstrumentConstant]
+    geometry: Mapping[tuple[str, str], LineGeometry]
+    scatters: Mapping[str, RunScatter]
+    stations: Mapping[str, Station]
+
+    def oriented(
+        self, only: str | None = None
+    ) -> tuple[tuple[OrientedLine, ...], list[ResultWarning]]:
+        """Orient every line of the survey sessions; A-B and B-A are two lines.
+
+        Parameters
+        ----------
+        only : str or None
+            Use this session alone.
+
+        Raises
+        ------
+        SurveyError
+            If a session asks for a constant that does not exist.
+        """
+        known = {
+            constant.instrument.id: (
+                constant,
+                self.scatters[constant.instrument.id],
+                _order(self.project, constant.instrument.id),
             )
-        )
-        warnings += [warning for item in rounds for warning in item.chosen.warnings]
-        warnings += _line_warnings(lines[-1])
-    if problems:
-        raise SurveyError(problems)
-    return tuple(lines), warnings
+            for constant in self.constants
+        }
+        calibrated = frozenset(s.id for s in self.project.sessions if s.purpose == "calibration")
+        lines: list[OrientedLine] = []
+        warnings: list[ResultWarning] = []
+        problems: list[Problem] = []
+        for (_, target, instrument), members in self._groups(only).items():
+            try:
+                rounds = [
+                    _round(item, azimuth, known[instrument], stations=self.stations)
+                    for item, azimuth in members
+                ]
+            except SurveyError as error:
+                problems += error.problems
+                continue
+            first = members[0][0].session
+            lines.append(
+                orient_line(
+                    self.geometry[first.id, target],
+                    rounds,
+                    instrument=instrument,
+                    centring=centring_of(self.project, first),
+                    calibration_sessions=calibrated,
+                    agreement_of=[azimuth for _, azimuth in members],
+                )
+            )
+            warnings += [warning for item in rounds for warning in item.chosen.warnings]
+            warnings += _line_warnings(lines[-1])
+        if problems:
+            raise SurveyError(problems)
+        return tuple(lines), warnings
+
+    def _groups(
+        self, only: str | None
+    ) -> dict[tuple[str, str, str], list[tuple[ReducedSession, Uncertain]]]:
+        """Survey sessions with their gyro azimuth, by station, target and instrument."""
+        groups: dict[tuple[str, str, str], list[tuple[ReducedSession, Uncertain]]] = {}
+        for item in self.reduced:
+            session = item.session
+            if session.purpose != "survey" or (only is not None and session.id != only):
+                continue
+            for target in item.targets:
+                if target.gyro_azimuth is not None:
+                    key = (session.station, target.target, session.instrument)
+                    groups.setdefault(key, []).append((item, target.gyro_azimuth))
+        return groups
 
 
 def _order(project: Project, instrument: str) -> SessionOrder:
@@ -95,13 +120,12 @@ def _order(project: Project, instrument: str) -> SessionOrder:
 def _round(
     item: ReducedSession,
     azimuth: Uncertain,
-    known: tuple[InstrumentConstant, RunScatter],
-    order: SessionOrder,
+    known: tuple[InstrumentConstant, RunScatter, SessionOrder],
     *,
     stations: Mapping[str, Station],
 ) -> Round:
     session = item.session
-    constant, scatter = known
+    constant, scatter, order = known
 
     def distance_to(name: str) -> float | None:
         return grid_distance_m(stations[session.station], stations[name])
@@ -123,14 +147,14 @@ def _line_warnings(line: OrientedLine) -> list[ResultWarning]:
     warnings = []
     if result.true_azimuth is None:
         text = f"{name}: the instrument {result.instrument} has no constant: no true azimuth"
-        warnings.append(ResultWarning("no_constant", text))
+        warnings.append(ResultWarning("no_constant", text, result.subject))
     if result.convergence is None:
         text = f"{name}: no crs or no position: no convergence, no grid azimuth"
-        warnings.append(ResultWarning("no_grid", text))
+        warnings.append(ResultWarning("no_grid", text, result.subject))
     elif result.arc_to_chord is None:
         text = f"{name}: the target has no position: arc-to-chord taken as zero"
-        warnings.append(ResultWarning("arc_to_chord_unknown", text))
+        warnings.append(ResultWarning("arc_to_chord_unknown", text, result.subject))
     if result.distance_m is None:
         text = f"{name}: its length is not known: centring is not in its sigma"
-        warnings.append(ResultWarning("centring_unknown", text))
+        warnings.append(ResultWarning("centring_unknown", text, result.subject))
     return [*warnings, *azimuth_warnings(result)]
