@@ -7,14 +7,19 @@ predicts held-out blocks significantly better. The gate is the sigma of a level 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from surveyapp.core.sensors.ellipsoid import MODELS, SOFT, Ellipsoid, distances, fit_ellipsoid
+from surveyapp.core.sensors.compass_models import (
+    BLOCK_S,
+    ModelTrial,
+    block_rows,
+    choose,
+    try_model,
+)
+from surveyapp.core.sensors.ellipsoid import MODELS, SOFT, Ellipsoid
 from surveyapp.core.sensors.heading_gate import heading_difference, heading_sigma, level_points
-from surveyapp.core.sensors.linear import alternate_blocks
 from surveyapp.domain.calibration import (
     Calibration,
     CalibrationModel,
@@ -29,12 +34,6 @@ from surveyapp.domain.sensor_log import SensorLog
 from surveyapp_models.arrays import Floats
 from surveyapp_models.compass.heading import DEFAULT_DIP, dip_of
 
-BLOCK_S: Final = 2.0
-"""Length of a held-out block [s]."""
-
-BETTER, FORESEEN = 2.0, 1.0
-"""A richer model must predict blocks and tenths better by so many standard errors of the gain."""
-
 UNDERSTATED: Final = 2.0
 """Halves that differ by more than so many sigma show that the covariance understates itself."""
 
@@ -42,23 +41,8 @@ OFFSET_LIMIT_UT: Final = 2.0
 """Sigma of a hard iron up to which it counts as determined (levelling.md)."""
 
 FEWEST_ROWS: Final = 20
-TENTHS: Final = 10
-TENTHS_ROWS: Final = 1500
 AZIMUTHS, BANDS = 12, 6
 """Cells of the picture of the coverage: equal in area."""
-
-
-@dataclass(frozen=True, slots=True)
-class ModelTrial:
-    """A model with its fits of the whole record and of both halves.
-
-    ``blocks`` are the mean squares of the held-out blocks [uT^2].
-    """
-
-    fit: Ellipsoid
-    halves: tuple[Ellipsoid, Ellipsoid]
-    held_rms: float
-    blocks: Floats
 
 
 def calibrate_ellipsoid(log: SensorLog, *, limit: float) -> Calibration:
@@ -79,74 +63,13 @@ def calibrate_ellipsoid(log: SensorLog, *, limit: float) -> Calibration:
     block = block_rows(log)
     if log.size < FEWEST_ROWS:
         return _refused_short(log, points)
-    trials = [_trial(points, model, block) for model in MODELS]
+    trials = [try_model(points, model, block) for model in MODELS]
     chosen = choose(points, trials)
     dip = record_dip(log, trials[chosen].fit)
     sigmas = [_judged(trial, dip) for trial in trials]
     chosen, sigma = _gate(trials, chosen, (sigmas, dip, limit))
     verdict, known = _verdict(trials[chosen], sigma, limit)
     return _result(log, points, (trials, chosen, sigmas), (verdict, known, sigma, dip))
-
-
-def block_rows(log: SensorLog) -> int:
-    """Rows of a held-out block of about 2 s; at least ten blocks where the record allows it."""
-    rate = log.rate_hz if log.rate_hz is not None else 20.0
-    return max(min(round(BLOCK_S * rate), log.size // 10), 1)
-
-
-def _trial(points: Floats, model: str, block: int) -> ModelTrial:
-    fit = fit_ellipsoid(points, model)
-    held = np.full(len(points), np.nan)
-    halves = []
-    for used, left in alternate_blocks(len(points), block):
-        half = fit_ellipsoid(points[used], model, start=fit.theta if fit.converged else None)
-        held[left] = distances(points[left], half.theta)
-        halves.append(half)
-    number = np.arange(len(points)) // block
-    counts = np.bincount(number)
-    squares = np.bincount(number, weights=held**2) / counts
-    return ModelTrial(
-        fit,
-        (halves[0], halves[1]),
-        float(np.sqrt(np.mean(held**2))),
-        squares,
-    )
-
-
-def tenths(points: Floats, fit: Ellipsoid) -> Floats:
-    """Mean squares of contiguous tenths, each predicted from the other nine [uT^2], shape (10,).
-
-    What a model says of directions that it has not seen; of a long record every k-th row.
-    """
-    part = points[:: max(len(points) // TENTHS_ROWS, 1)]
-    number = np.arange(len(part)) * TENTHS // len(part)
-    squares = np.empty(TENTHS)
-    for tenth in range(TENTHS):
-        used = number != tenth
-        half = fit_ellipsoid(part[used], fit.model, start=fit.theta)
-        squares[tenth] = np.mean(distances(part[~used], half.theta) ** 2)
-    return squares
-
-
-def choose(points: Floats, trials: list[ModelTrial]) -> int:
-    """The simplest model that no richer one beats, on the held-out blocks and on the tenths."""
-    chosen = 0
-    for index in range(1, len(trials)):
-        if not trials[index].fit.converged:
-            continue
-        if not _gains(trials[chosen].blocks - trials[index].blocks, BETTER):
-            continue
-        gain = tenths(points, trials[chosen].fit) - tenths(points, trials[index].fit)
-        if _gains(gain, FORESEEN):
-            chosen = index
-    return chosen
-
-
-def _gains(gain: Floats, errors: float) -> bool:
-    """Whether the mean of a gain exceeds so many standard errors."""
-    if gain.size < 2:
-        return False
-    return float(np.mean(gain)) > errors * float(np.std(gain, ddof=1)) / math.sqrt(gain.size)
 
 
 def _gate(
