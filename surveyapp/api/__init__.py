@@ -47,6 +47,7 @@ from surveyapp.api.project import (
     open_project,
     simulate,
 )
+from surveyapp.api.rate import north, plan_fog_station, spectrum
 from surveyapp.api.sensors import LogOptions, calibrate, open_sensor_log
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.calibration import Calibration
@@ -83,6 +84,9 @@ __all__ = [
     "check",
     "diagnose",
     "calibrate",
+    "plan_fog_station",
+    "north",
+    "spectrum",
     "open_sensor_log",
     "LogOptions",
     "batch",

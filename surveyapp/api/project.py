@@ -79,20 +79,27 @@ def new_project(
 
 
 def simulate(
-    kind: str, out: Folder, *, effects: Sequence[str] = (), seed: int = 1
+    kind: str,
+    out: Folder,
+    *,
+    effects: Sequence[str] = (),
+    seed: int = 1,
+    programme: str | None = None,
 ) -> SimulatedFiles:
     """Write a simulated project, and its truth beside it.
 
     Parameters
     ----------
     kind : str
-        ``reversal-run`` or ``campaign``.
+        ``reversal-run``, ``campaign``, ``rate``, ``fog-station`` ...
     out : path
         A folder that does not exist or is empty.
     effects : sequence of str
         ``ID=VALUE[,option=value]`` each.
     seed : int
         The same seed, the same files.
+    programme : str, optional
+        Of a rate sensor: ``six-position``, ``temperature`` ...
 
     Raises
     ------
@@ -104,7 +111,7 @@ def simulate(
 
     if seed < 0:
         raise SurveyError(Problem("the seed is negative", "seed", str(seed), "0 or more"))
-    files, truth = simulate_kind(kind, effects=effects, seed=seed)
+    files, truth = simulate_kind(kind, effects=effects, seed=seed, programme=programme)
     return write_simulated(Path(out), files, truth)
 
 

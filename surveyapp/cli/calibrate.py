@@ -16,6 +16,8 @@ from surveyapp.errors import Problem, SurveyError, nearest_names
 KINDS: Final = {
     "compass": "calibrate_compass",
     "tilt": "calibrate_tilt",
+    "rate": "calibrate_rate",
+    "fog-station": "calibrate_fog_station",
 }
 """Kind to the module of its options."""
 

@@ -173,7 +173,7 @@ def _read_tables(top: _Top, repair: bool | None) -> Project:
     )
     sessions = read_sessions(top.tables("orientation"), files, names, repair=repair)
     for instrument, card in zip(instruments, cards, strict=True):
-        names.check_choice(card, instrument.constant_choice, instrument.id)
+        names.check_choice(card, instrument.constant_choice or "pooled", instrument.id)
         if instrument.card.id and is_path(str(card.get("card"))):
             files.read(str(card.get("card")), card.where)
     rule_book, rules = _rules(top)

@@ -43,6 +43,16 @@ def block_rows(log: SensorLog) -> int:
 
 
 def try_model(points: Floats, model: str, block: int) -> ModelTrial:
+    """Fit a model to the whole record and to both halves of its blocks.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 3)
+        [uT]
+    model : str
+    block : int
+        Rows of a block.
+    """
     fit = fit_ellipsoid(points, model)
     held = np.full(len(points), np.nan)
     halves = []
