@@ -64,6 +64,7 @@ def network(source: Project | Folder, *, traverse: str | None = None) -> Network
     """Network of a project's traverses or of a ``.gkf`` file, as ``adjust`` takes it."""
     from dataclasses import replace
 
+    from surveyapp.core.checks.grid_checks import refuse_unfit_grid
     from surveyapp.core.network.oriented import oriented_lines
     from surveyapp.core.orientation.unfinished import waiting_sides
     from surveyapp.io.importers.gkf import read_gkf
@@ -75,6 +76,8 @@ def network(source: Project | Folder, *, traverse: str | None = None) -> Network
             return read_gkf(path)
         source = open_project(path)
     kept = without_unfinished(source)
+    if kept.sessions:
+        refuse_unfit_grid(kept)
     left_out = kept.warnings[len(source.warnings) :]
     lines, constants, warnings = oriented_lines(oriented(kept).lines if kept.sessions else ())
     found = network_of(source, traverse, lines, constants, waiting_sides(source, kept))

@@ -11,6 +11,7 @@ from datetime import date
 from typing import Literal
 
 from surveyapp.domain.instrument import AdoptedEffect, Instrument
+from surveyapp.domain.mine_grid import MineGrid, StatedConvergence
 from surveyapp.domain.readings import FieldBook
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp_models.angles import ARCSEC, AngleUnit
@@ -57,6 +58,10 @@ class Station:
         Height [m].
     fixed : bool
     deflection : Deflection
+    sigma_m : float or None
+        Standard deviation of each coordinate against the neighbouring stations [m].
+    convergence : StatedConvergence or None
+        As the record prints it.
     planned : bool
         Not yet built; an adjustment leaves it out.
     """
@@ -69,6 +74,8 @@ class Station:
     h: float | None = None
     fixed: bool = False
     deflection: Deflection = field(default_factory=Deflection)
+    sigma_m: float | None = None
+    convergence: StatedConvergence | None = None
     planned: bool = False
 
     @property
@@ -119,6 +126,8 @@ class OrientationSession:
     target : str or None
     azimuth_known : float or None
         Known grid azimuth of the line [rad].
+    azimuth_known_sigma : float or None
+        Its standard deviation [rad]; None: from the coordinates' sigma.
     constant_choice : str or None
         Overrides the instrument's.
     date : datetime.date or None
@@ -132,6 +141,10 @@ class OrientationSession:
         Reading resolution [rad].
     eccentric : Eccentric or None
     effects : tuple of AdoptedEffect
+    convergence : StatedConvergence or None
+        As the record prints it.
+    recentred : bool
+        The instrument was centred anew for this session: its centring error is its own.
     override : tuple of (str, object)
         Further keys of the table, kept for those who know them.
     """
@@ -145,6 +158,7 @@ class OrientationSession:
     book_path: str = ""
     target: str | None = None
     azimuth_known: float | None = None
+    azimuth_known_sigma: float | None = None
     constant_choice: str | None = None
     date: date | None = None
     order: float | None = None
@@ -154,6 +168,8 @@ class OrientationSession:
     resolution: float | None = None
     eccentric: Eccentric | None = None
     effects: tuple[AdoptedEffect, ...] = ()
+    convergence: StatedConvergence | None = None
+    recentred: bool = False
     override: tuple[tuple[str, object], ...] = ()
 
 
@@ -190,6 +206,10 @@ class Project:
     sessions : tuple of OrientationSession
     crs : str or None
         As written.
+    grid : MineGrid or None
+        The mine's own grid; wins over ``crs``, which is then its base.
+    station_sigma_m : float or None
+        Standard deviation of a station's coordinates where it states none [m].
     angle_unit : AngleUnit
     rule_book : str or None
         Id of an installed rule book or a path.
@@ -211,6 +231,8 @@ class Project:
     instruments: tuple[Instrument, ...] = ()
     sessions: tuple[OrientationSession, ...] = ()
     crs: str | None = None
+    grid: MineGrid | None = None
+    station_sigma_m: float | None = None
     angle_unit: AngleUnit = AngleUnit.DMS
     rule_book: str | None = None
     centring: Centring = field(default_factory=Centring)

@@ -21,6 +21,7 @@ from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.cards import is_path
 from surveyapp.io.fieldbook.reading import interpret, move_tail_aside, split_tail
 from surveyapp.io.files import decode, read_bytes, shown, shown_path
+from surveyapp.io.grid_tables import read_mine_grid, refuse_two_convergences
 from surveyapp.io.project_tables import (
     Names,
     read_centring,
@@ -175,7 +176,7 @@ def _read_tables(
     top.get("format")
     unit = AngleUnit(top.choice("angle_unit", [str(u) for u in AngleUnit]) or AngleUnit.DMS)
     findings = files.findings
-    stations = [read_station(t) for t in top.tables("station", lines.get("station", ()))]
+    stations = [read_station(t, unit) for t in top.tables("station", lines.get("station", ()))]
     cards = top.tables("instrument", lines.get("instrument", ()))
     instruments = [read_instrument(t, files.path) for t in cards]
     names = Names(
@@ -197,13 +198,17 @@ def _read_tables(
     if typing is not None:
         tables["angle_typing"] = typing
     _read_other_files(top, files, lines)
+    crs = top.text("crs", multiline=True)
+    refuse_two_convergences(stations, sessions, findings)
     sensor_logs = read_sensor_logs(top, lines.get("sensor_log", ()))
     project = Project(
         name=top.text("name") or files.path.resolve().name,
         stations=tuple(stations),
         instruments=tuple(instruments),
         sessions=tuple(sessions),
-        crs=top.text("crs", multiline=True),
+        crs=crs,
+        grid=read_mine_grid(top, unit, crs),
+        station_sigma_m=top.number("station_sigma_m", low=0.0, high=1e3),
         angle_unit=unit,
         rule_book=rule_book,
         centring=read_centring(top) or Centring(),

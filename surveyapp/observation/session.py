@@ -334,11 +334,11 @@ def progress(project: Project, session: str) -> Progress:
     session : str
         Id of the session.
     """
-    from surveyapp.core.geodesy import open_grid, position_of
+    from surveyapp.core.geodesy import grid_of, position_of
     from surveyapp.core.observing.by_method import progress_of
 
     item = project.session(session)
-    grid = open_grid(project.crs) if project.crs is not None else None
+    grid = grid_of(project)
     position = position_of(project.station(item.station), grid)
     card = project.instrument(item.instrument).card
     rng = api.generator_of(project)

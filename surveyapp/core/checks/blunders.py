@@ -13,10 +13,11 @@ from typing import Final
 from surveyapp.core.geodesy import Grid
 from surveyapp.core.orientation.lines import LineGeometry
 from surveyapp.core.swing.sights import SightSet
-from surveyapp.domain.project import OrientationSession, ResultWarning
+from surveyapp.domain.mine_grid import StatedConvergence
+from surveyapp.domain.project import OrientationSession, Project, ResultWarning, Station
 from surveyapp.domain.results import LineResult
 from surveyapp.errors import Problem, SurveyError
-from surveyapp_models.angles import wrap_pi
+from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, wrap_pi
 
 MAX_COLLIMATION: Final = math.radians(0.2)
 """No theodolite is as badly adjusted; a slip of one degree in one of four sights makes 0.25. A
@@ -25,6 +26,10 @@ SHORTEST_LINE_M: Final = 1.0
 """Below it lies the shortest focusing distance: two stations at one place."""
 LARGEST_CONSTANT: Final = math.radians(1.0)
 """Printed constants are minutes of arc (10'51" at Johannesburg); more is more likely a slip."""
+SIGMAS_OF_CONVERGENCE: Final = 4.0
+"""A stated convergence further from the computed one is another one (6 in 100000 by chance)."""
+LEAST_CONVERGENCE_LIMIT: Final = 0.1 * ARCSEC
+"""Old tables were computed by series to their last digit."""
 LONGEST_LINE_M: Final = 50_000.0
 """Nobody sights further with a gyro-theodolite: coordinates in the wrong order or grid do."""
 
@@ -70,6 +75,40 @@ def refuse_one_place(geometry: Mapping[tuple[str, str], LineGeometry]) -> None:
         for (session, _), line in geometry.items()
         if line.distance_m is not None and line.distance_m < SHORTEST_LINE_M
     }
+    if problems:
+        raise SurveyError(problems.values())
+
+
+def stated_convergence(session: OrientationSession, station: Station) -> StatedConvergence | None:
+    """The convergence stated for a session: its own, else that of its station."""
+    return session.convergence if session.convergence is not None else station.convergence
+
+
+def refuse_other_convergence(
+    project: Project, geometry: Mapping[tuple[str, str], LineGeometry]
+) -> None:
+    """Refuse a printed convergence that is not the one of the grid: one of the two is wrong.
+
+    Raises
+    ------
+    SurveyError
+        With all such stations together.
+    """
+    problems = {}
+    for (name, _), line in geometry.items():
+        session = project.session(name)
+        stated = stated_convergence(session, project.station(session.station))
+        if stated is None or line.convergence is None:
+            continue
+        apart = wrap_pi(stated.value - line.convergence)
+        if abs(apart) > max(SIGMAS_OF_CONVERGENCE * stated.sigma, LEAST_CONVERGENCE_LIMIT):
+            problems[session.station] = Problem(
+                what=f"the convergence at {session.station} is given twice and differently",
+                where=f"session {session.id}",
+                found=f'stated {apart * RHO_ARCSEC:+.2f}" off the one of the grid',
+                expected="the same, or only one of the two",
+                hint="Is it the right crs, and has the stated convergence its right sign?",
+            )
     if problems:
         raise SurveyError(problems.values())
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from surveyapp.core.checks.always_on import always_on_checks
 from surveyapp.core.checks.instrument_checks import instrument_checks
 from surveyapp.core.checks.session_checks import statistical_checks
 from surveyapp.core.orientation.instrument_constant import InstrumentConstant
@@ -47,6 +48,7 @@ def outcome(
     checks = [
         *statistical_checks(orientation),
         *instrument_checks(orientation),
+        *always_on_checks(orientation),
         *more_checks,
     ]
     if only is not None:

@@ -12,14 +12,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from surveyapp.core.checks.adopted_checks import check_adopted
-from surveyapp.core.checks.blunders import place_warnings, refuse_one_place
+from surveyapp.core.checks.blunders import (
+    place_warnings,
+    refuse_one_place,
+    refuse_other_convergence,
+    stated_convergence,
+)
 from surveyapp.core.geodesy import (
     MAX_LATITUDE_DEG,
     WARN_LATITUDE_DEG,
     Grid,
     Position,
+    grid_of,
     latitude_problem,
-    open_grid,
     position_of,
 )
 from surveyapp.core.orientation.adopted import apply_adopted
@@ -102,7 +107,7 @@ def orient_project(
     SurveyError
         With the problems of all sessions together.
     """
-    grid = open_grid(project.crs) if project.crs is not None else None
+    grid = grid_of(project)
     positions = {station.name: position_of(station, grid) for station in project.stations}
     stations = {
         station.name: _with_position(station, positions[station.name])
@@ -123,6 +128,7 @@ def orient_project(
     }
     geometry = _geometries(reduced, stations, grid, positions)
     refuse_one_place(geometry)
+    refuse_other_convergence(project, geometry)
     warnings += place_warnings(list(geometry.values()), grid)
     constants = []
     for instrument in project.instruments:
@@ -308,5 +314,6 @@ def _geometries(
                 grid=grid,
                 positions=positions,
                 zenith=zenith,
+                stated=stated_convergence(session, stations[session.station]),
             )
     return result
