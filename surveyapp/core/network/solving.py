@@ -16,11 +16,21 @@ from surveyapp.core.network.approximate import approximate, approximations
 from surveyapp.core.network.gaussnewton import Converged, NotConverged, iterate, refuse
 from surveyapp.core.network.model import Model
 from surveyapp.core.network.undetermined import refuse_undetermined
+from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.project import ResultWarning
-from surveyapp.domain.traverse import Network
-from surveyapp.errors import SurveyError
+from surveyapp.domain.traverse import Network, Status
+from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.arrays import Floats
 
+_IN_THE_PLANE = frozenset(
+    {
+        ObservationKind.DIRECTION,
+        ObservationKind.ANGLE,
+        ObservationKind.AZIMUTH,
+        ObservationKind.GYRO,
+        ObservationKind.DISTANCE,
+    }
+)
 DECIDED = 10.83
 """Difference of v'Pv from which the worse of two solutions is refuted (chi-square, 0.1 %)."""
 MOST_TRIALS = 16
@@ -51,6 +61,7 @@ def solve_network(network: Network, model: Model) -> Converged:
 
 def solutions(network: Network, model: Model) -> Solution:
     """The best solution of a network, and its mirror image if nothing decides against it."""
+    refuse_coincident(network, model)
     names = tuple(point.name for point in network.points)
     starts = approximations(network, model)
     first = next(starts)
@@ -71,6 +82,45 @@ def solutions(network: Network, model: Model) -> Solution:
     states = [state for state in states if not len(state.solved.undetermined)]
     best = min(states, key=lambda state: state.sum_of_squares)
     return Solution(best, _rival(network, best, states))
+
+
+def refuse_coincident(network: Network, model: Model) -> None:
+    """Refuse sights in the plane between two fixed points at one place: they have no direction.
+
+    Raises
+    ------
+    SurveyError
+        Naming every such pair.
+    """
+    fixed = {
+        p.name: (p.e, p.n)
+        for p in network.points
+        if p.status_e is Status.FIXED and p.status_n is Status.FIXED
+    }
+    found: dict[frozenset[str], str] = {}
+    for obs in model.observations:
+        if obs.kind not in _IN_THE_PLANE:
+            continue
+        for name in (obs.to, obs.back):
+            here, there = fixed.get(obs.at), fixed.get(name)
+            if here is None or there is None or None in (*here, *there):
+                continue
+            gap = abs(complex(*there) - complex(*here))  # type: ignore[arg-type]
+            if gap < SAME_M:
+                found.setdefault(frozenset((obs.at, name)), obs.where)
+    if found:
+        raise SurveyError(
+            [
+                Problem(
+                    "Two stations at one place are sighted from each other",
+                    where,
+                    " and ".join(sorted(pair)),
+                    "points that lie apart",
+                    "Is one of them mistyped, or the same point under two names?",
+                )
+                for pair, where in found.items()
+            ]
+        )
 
 
 def _few(network: Network, starts: Iterable[Floats]) -> list[Floats]:
