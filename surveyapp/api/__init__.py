@@ -28,7 +28,15 @@ from surveyapp.api.office import (
     report,
     report_text,
 )
-from surveyapp.api.orientation import demo, generator_of, orient, plan
+from surveyapp.api.orientation import (
+    Source,
+    compute,
+    demo,
+    generator_of,
+    orient,
+    plan,
+    unfinished,
+)
 from surveyapp.api.penetration import predict
 from surveyapp.api.project import (
     SOFTWARE,
@@ -39,28 +47,29 @@ from surveyapp.api.project import (
     open_project,
     simulate,
 )
+from surveyapp.api.rate import north, plan_fog_station, spectrum
 from surveyapp.api.sensors import LogOptions, calibrate, open_sensor_log
-from surveyapp.api.unfinished import unfinished, without_unfinished
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.fieldfile import ImportResult
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import Project
-from surveyapp.domain.results import Check, OrientationResult
+from surveyapp.domain.results import Check, OrientationResult, Subject, Verdicts
 from surveyapp.domain.traverse import Network
 from surveyapp.errors import Problem, SurveyError
 
 __all__ = [
     "Folder",
+    "Source",
     "SOFTWARE",
     "open_project",
     "new_project",
     "simulate",
     "models",
     "model",
-    "unfinished",
-    "without_unfinished",
     "plan",
+    "unfinished",
+    "compute",
     "orient",
     "demo",
     "generator_of",
@@ -75,6 +84,9 @@ __all__ = [
     "check",
     "diagnose",
     "calibrate",
+    "plan_fog_station",
+    "north",
+    "spectrum",
     "open_sensor_log",
     "LogOptions",
     "batch",
@@ -96,6 +108,8 @@ __all__ = [
     "InstrumentCard",
     "Project",
     "Check",
+    "Subject",
+    "Verdicts",
     "OrientationResult",
     "Network",
     "Problem",

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from surveyapp.api.orientation import oriented
-from surveyapp.api.project import SOFTWARE, Folder, opened
-from surveyapp.api.unfinished import without_unfinished
+from surveyapp.api.orientation import Source, oriented
+from surveyapp.api.project import SOFTWARE
 from surveyapp.domain.penetration_result import Prediction
-from surveyapp.domain.project import Project
 
 
-def predict(
-    project: Project | Folder, *, plan: int | None = None, monte_carlo: bool = True
-) -> Prediction:
+def predict(source: Source, *, plan: int | None = None, monte_carlo: bool = True) -> Prediction:
     """Predict the miss at the meeting point of a project's headings.
 
     Parameters
     ----------
-    project : Project or path
+    source : Project, path or Computed
     plan : int or None
         Place this many further gyro sides as well; no Monte Carlo then.
     monte_carlo : bool
@@ -30,15 +26,14 @@ def predict(
     from surveyapp.core.penetration.prediction import prediction
     from surveyapp.workflows.predicting import ready_mine
 
-    project = opened(project)
-    kept = without_unfinished(project)
-    orientation = oriented(kept) if kept.sessions else None
-    ready = ready_mine(kept, orientation, plan_sides=plan)
+    found = oriented(source, even_unfinished=True)
+    kept = found.orientation.project
+    ready = ready_mine(kept, found.result() if kept.sessions else None, plan_sides=plan)
     return prediction(
         ready.mine,
         ready.rule_book,
-        project=project.name,
+        project=kept.name,
         software=SOFTWARE,
-        digest=project.digest,
+        digest=kept.digest,
         warnings=ready.warnings,
     )

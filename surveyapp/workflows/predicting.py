@@ -23,13 +23,11 @@ from surveyapp.domain.penetration import Penetration
 from surveyapp.domain.project import Project, ResultWarning, Station
 from surveyapp.domain.results import OrientationResult
 from surveyapp.domain.rulebook import RuleBook
+from surveyapp.domain.traverse_book import Traverse
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.penetration.measured import header_sigmas, measured_rows
 from surveyapp.io.penetration.table import read_penetration
-from surveyapp.io.project_checks import project_rule_book
 from surveyapp.io.tables import Findings, Table
-from surveyapp.io.traverse.book import traverse_rows
-from surveyapp.io.traverse.header import TraverseHeader, traverse_headers
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,40 +97,23 @@ def ready_mine(
     plan = penetration_plan(project, gathered.findings)
     stations = {station.name: station for station in project.stations}
     plan = _with_latitude(project, plan, stations)
-    headers = _headers(gathered)
+    headers = {item.name: item for item in project.traverses}
     lost = _measure(gathered, plan, headers, orientation)
     constants, unknown = _constants(project, plan, gathered.measured, orientation)
     problems = gathered.findings.problems
     problems += refusals(plan, _known(project, plan, headers, gathered.measured))
     problems += _angle_problems(plan, gathered.measured)
     problems += _plan_problems(plan, gathered.measured, plan_sides)
-    book = _rule_book(project, gathered.findings)
     gathered.findings.raise_if_any()
     mine = build_mine(plan, stations, constants, gathered.measured)
     warnings = (*project.warnings, *gathered.findings.warnings, *unknown, *lost)
-    return ReadyMine(mine, book, (*warnings, *carried(plan, stations)))
-
-
-def _rule_book(project: Project, findings: Findings) -> RuleBook | None:
-    try:
-        return project_rule_book(project)
-    except SurveyError as refused:
-        findings.absorb(refused)
-        return None
-
-
-def _headers(gathered: _Gathered) -> dict[str, TraverseHeader]:
-    try:
-        return {header.name: header for header in traverse_headers(gathered.project)}
-    except SurveyError as refused:
-        gathered.findings.absorb(refused)
-        return {}
+    return ReadyMine(mine, project.rules, (*warnings, *carried(plan, stations)))
 
 
 def _measure(
     gathered: _Gathered,
     plan: Penetration,
-    headers: Mapping[str, TraverseHeader],
+    headers: Mapping[str, Traverse],
     orientation: OrientationResult | None,
 ) -> list[ResultWarning]:
     """Rows of the traverses of all headings; what does not enter is told."""
@@ -146,16 +127,11 @@ def _measure(
             if named:  # the sigmas of the traverses named are the default of all
                 gathered.measured[heading.name] = MeasuredRows((), {}, {}, header_sigmas(named[0]))
             continue
-        try:
-            rows = traverse_rows(gathered.project, header)
-        except SurveyError as refused:
-            gathered.findings.absorb(refused)
-            continue
         if not placed(heading, stations):
             continue
         measured, lost = measured_rows(
             heading,
-            (header, rows),
+            header,
             stations,
             lines,
             deflection_apart=plan.deflection is not None,
@@ -204,7 +180,7 @@ def _constants(
 def _known(
     project: Project,
     plan: Penetration,
-    headers: Mapping[str, TraverseHeader],
+    headers: Mapping[str, Traverse],
     measured: Mapping[str, MeasuredRows],
 ) -> Known:
     raw = project.tables.get("shaft")

@@ -16,6 +16,7 @@ from surveyapp.core.swing.sights import SightSet
 from surveyapp.domain.mine_grid import StatedConvergence
 from surveyapp.domain.project import OrientationSession, Project, ResultWarning, Station
 from surveyapp.domain.results import LineResult
+from surveyapp.domain.subject import Subject
 from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, wrap_pi
 
@@ -123,7 +124,9 @@ def place_warnings(lines: Sequence[LineGeometry], grid: Grid | None) -> list[Res
                 f"line {name} is {line.distance_m / 1000.0:.0f} km long by its coordinates: "
                 "are they in the right order, and in this grid?"
             )
-            warnings[name] = ResultWarning("line_long", text)
+            warnings[name] = ResultWarning(
+                "line_long", text, Subject.side(line.start.name, line.end.name)
+            )
         at = line.position
         if grid is None or at.latitude is None or at.longitude is None:
             continue
@@ -133,7 +136,8 @@ def place_warnings(lines: Sequence[LineGeometry], grid: Grid | None) -> list[Res
                 f"{math.degrees(at.longitude):.2f}) lies beside the area of {grid.name}: are the "
                 "coordinates in the right order, and is it the right crs?"
             )
-            warnings[f"{line.start.name} of {name}"] = ResultWarning("outside_grid", text)
+            subject = Subject.of("station", line.start.name)
+            warnings[f"{line.start.name} of {name}"] = ResultWarning("outside_grid", text, subject)
     return list({warning.text: warning for warning in warnings.values()}.values())
 
 
@@ -146,7 +150,7 @@ def azimuth_warnings(line: LineResult) -> list[ResultWarning]:
             f"{name}: the instrument constant is {math.degrees(line.constant):+.4f} degrees: is "
             "the known azimuth right, and were sight and target the right ones?"
         )
-        warnings.append(ResultWarning("constant_large", text))
+        warnings.append(ResultWarning("constant_large", text, line.subject))
     if line.grid_azimuth is not None and line.existing_azimuth is not None:
         apart = wrap_pi(line.grid_azimuth.value - line.existing_azimuth)
         if abs(apart) > LARGEST_CONSTANT:
@@ -154,5 +158,5 @@ def azimuth_warnings(line: LineResult) -> list[ResultWarning]:
                 f"{name}: the grid azimuth lies {math.degrees(apart):+.4f} degrees off the "
                 "coordinates: was this the target, and are the coordinates in the right order?"
             )
-            warnings.append(ResultWarning("far_from_coordinates", text))
+            warnings.append(ResultWarning("far_from_coordinates", text, line.subject))
     return warnings

@@ -15,6 +15,7 @@ from surveyapp.core.geodesy.plane import Differential
 from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import Check
+from surveyapp.domain.subject import Subject
 from surveyapp.errors import Problem, SurveyError
 
 SCALE_MARGIN: Final = 0.1
@@ -96,11 +97,15 @@ def _place_checks(grid: Grid, positions: dict[str, Position]) -> list[Check]:
     scale, angle = 1.0 + scaled.scale_error, math.degrees(bent.local.distortion) * 60.0
     checks = [
         _check(
-            "scale", scaled.station, abs(scale - 1.0), SCALE_MARGIN, f"scale factor {scale:.6f}"
+            "scale",
+            Subject.of("station", scaled.station),
+            abs(scale - 1.0),
+            SCALE_MARGIN,
+            f"scale factor {scale:.6f}",
         ),
         _check(
             "angles",
-            bent.station,
+            Subject.of("station", bent.station),
             angle,
             MOST_DISTORTION_ARCMIN,
             f"the grid changes angles by up to {angle:.3f}'",
@@ -111,27 +116,28 @@ def _place_checks(grid: Grid, positions: dict[str, Position]) -> list[Check]:
         degrees = math.degrees(turned.local.convergence)
         text = f"convergence of the transverse Mercator {degrees:+.4f} degrees"
         limit = MOST_CONVERGENCE_DEG
-        checks.append(_check("convergence", turned.station, abs(degrees), limit, text, unit="deg"))
+        subject = Subject.of("station", turned.station)
+        checks.append(_check("convergence", subject, abs(degrees), limit, text, unit="deg"))
     return checks
 
 
 def _chord_check(orientation: Orientation) -> list[Check]:
     sides = [
-        (f"{line.result.station}-{line.result.target}", line.result.arc_to_chord)
+        (Subject.side(line.result.station, line.result.target), line.result.arc_to_chord)
         for line in orientation.lines
     ]
-    known = [(name, chord) for name, chord in sides if chord is not None]
+    known = [(side, chord) for side, chord in sides if chord is not None]
     if not known:
         return []
-    name, chord = max(known, key=lambda side: abs(side[1]))
+    side, chord = max(known, key=lambda item: abs(item[1]))
     minutes = math.degrees(chord) * 60.0
     text = f"arc-to-chord of the side {minutes:+.4f}'"
     limit = MOST_ARC_TO_CHORD_ARCMIN
-    return [_check("arc_to_chord", name, abs(minutes), limit, text, unit="arcmin")]
+    return [_check("arc_to_chord", side, abs(minutes), limit, text, unit="arcmin")]
 
 
 def _check(
-    rule: str, where: str, value: float, limit: float, text: str, *, unit: str = ""
+    rule: str, subject: Subject, value: float, limit: float, text: str, *, unit: str = ""
 ) -> Check:
     passed = value <= limit
     return Check(
@@ -142,6 +148,7 @@ def _check(
         confirmed=True,
         passed=passed,
         unit=unit,
-        where=where,
+        where=subject.text,
         text=text if passed else f"{text}: {_QUESTION}",
+        subject=subject,
     )

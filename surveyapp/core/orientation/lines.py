@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from surveyapp.core.geodesy import (
     Azimuth,
@@ -258,7 +258,7 @@ def _on_grid(
         .without_deflection(deflection.value)
         .to_grid(convergence=geometry.convergence, arc_to_chord=geometry.arc_to_chord or 0.0)
     )
-    return Uncertain(moved.value, (true - deflection - geometry.convergence_error).parts)
+    return replace(true - deflection - geometry.convergence_error, value=moved.value)
 
 
 def budget(item: Uncertain, calibration_sessions: frozenset[str]) -> tuple[BudgetLine, ...]:

@@ -189,11 +189,7 @@ def _header(
 
 
 def _check_free(project: Project, name: str) -> None:
-    tables = project.tables.get("traverse", [])
-    names = (
-        [t.get("name") for t in tables if isinstance(t, dict)] if isinstance(tables, list) else []
-    )
-    if name in names:
+    if name in [item.name for item in project.traverses]:
         raise SurveyError(
             Problem(
                 "the project has a traverse of this name",

@@ -17,8 +17,7 @@ from surveyapp.domain.observations import ObservationKind as K
 from surveyapp.domain.penetration import AssumedSigmas, Heading
 from surveyapp.domain.project import Station
 from surveyapp.domain.results import LineResult
-from surveyapp.io.traverse.header import TraverseHeader
-from surveyapp.io.traverse.rows import TraverseRow
+from surveyapp.domain.traverse_book import Traverse, TraverseRow
 
 
 @dataclass(slots=True)
@@ -26,7 +25,7 @@ class _Collected:
     """Rows of one heading while they are collected."""
 
     heading: Heading
-    header: TraverseHeader
+    header: Traverse
     stations: Mapping[str, Station]
     place: dict[str, int]
     rows: list[Row] = field(default_factory=list)
@@ -57,7 +56,7 @@ class _Collected:
         )
 
 
-def header_sigmas(header: TraverseHeader) -> AssumedSigmas:
+def header_sigmas(header: Traverse) -> AssumedSigmas:
     """Sigmas of a traverse's header, for what it has not yet observed."""
     return AssumedSigmas(
         header.sigma_angle,
@@ -71,7 +70,7 @@ def header_sigmas(header: TraverseHeader) -> AssumedSigmas:
 
 def measured_rows(
     heading: Heading,
-    book: tuple[TraverseHeader, Sequence[TraverseRow]],
+    header: Traverse,
     stations: Mapping[str, Station],
     lines: Iterable[LineResult],
     *,
@@ -83,7 +82,8 @@ def measured_rows(
     ----------
     heading : Heading
         All its stations have coordinates.
-    book : TraverseHeader, sequence of TraverseRow
+    header : Traverse
+        With the rows of its book.
     stations : mapping
     lines : iterable of LineResult
         What the sessions have oriented.
@@ -91,7 +91,7 @@ def measured_rows(
         Whether the project states a field of deflections: then their share of the sigma of a
         gyro side is taken out of it.
     """
-    header, rows = book
+    rows = header.rows
     place = {name: i for i, name in enumerate(heading.route)}
     found = _Collected(heading, header, stations, place)
     for row in rows:
