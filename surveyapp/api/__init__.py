@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from surveyapp.api.batch import batch, batch_rows
 from surveyapp.api.importing import import_file
-from surveyapp.api.judgement import SubjectKeyword, check, diagnose, subjects
+from surveyapp.api.judgement import check, diagnose, subjects
 from surveyapp.api.network import (
     adjust,
     adjust_network,
@@ -55,6 +55,7 @@ from surveyapp.domain.fieldfile import ImportResult
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import Check, OrientationResult, Subject, Verdicts
+from surveyapp.domain.subject import SubjectKeyword
 from surveyapp.domain.traverse import Network
 from surveyapp.errors import Problem, SurveyError
 

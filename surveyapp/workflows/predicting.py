@@ -243,7 +243,7 @@ def _plan_problems(
     return [
         Problem(
             "more gyro sides are asked for than sides are free" if sides > 0 else "no sides asked",
-            "--plan",
+            "plan",
             str(sides),
             f"1 to {free}",
         )
