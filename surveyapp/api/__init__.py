@@ -49,6 +49,7 @@ from surveyapp.api.project import (
 )
 from surveyapp.api.rate import north, plan_fog_station, spectrum
 from surveyapp.api.sensors import LogOptions, calibrate, open_sensor_log
+from surveyapp.api.shafts import shaft
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.fieldfile import ImportResult
@@ -81,6 +82,7 @@ __all__ = [
     "variance_components",
     "SubjectKeyword",
     "predict",
+    "shaft",
     "subjects",
     "check",
     "diagnose",
