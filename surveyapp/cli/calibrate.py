@@ -15,6 +15,8 @@ from surveyapp.errors import Problem, SurveyError, nearest_names
 
 KINDS: Final = {
     "tilt": "calibrate_tilt",
+    "rate": "calibrate_rate",
+    "fog-station": "calibrate_fog_station",
 }
 """Kind to the module of its options."""
 

@@ -23,8 +23,6 @@ from surveyapp.diagnosis.subjects.traverse import traverse as traverse_problem
 from surveyapp.domain.project import Project
 from surveyapp.domain.traverse import Network
 from surveyapp.errors import Problem, SurveyError, nearest_names
-from surveyapp.io.traverse.book import traverse_rows
-from surveyapp.io.traverse.header import traverse_headers
 from surveyapp_models.effects.effect import Effect
 
 Networks = Callable[[str], Network]
@@ -63,18 +61,8 @@ def subjects_of(project: Project) -> tuple[Subject, ...]:
         count = sum(session.instrument == instrument.id for session in project.sessions)
         if count >= LEAST_CAMPAIGN:
             found.append(Subject("--campaign", instrument.id, count))
-    return (*found, *_traverses(project))
-
-
-def _traverses(project: Project) -> list[Subject]:
-    """Traverses with the rows of their books; a faulty one is told when it is diagnosed."""
-    try:
-        return [
-            Subject("--traverse", header.name, len(traverse_rows(project, header)))
-            for header in traverse_headers(project)
-        ]
-    except SurveyError:
-        return []
+    found += [Subject("--traverse", item.name, len(item.rows)) for item in project.traverses]
+    return tuple(found)
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,16 +138,16 @@ def choose(orientation: Orientation, request: Request, networks: Networks | None
 
 
 def _chosen_traverse(project: Project, request: Request, networks: Networks | None) -> Chosen:
-    headers = {header.name: header for header in traverse_headers(project)}
+    traverses = {item.name: item for item in project.traverses}
 
     def problem(name: str, option: str) -> Case:
-        _require(name, list(headers), option, "traverse")
+        _require(name, list(traverses), option, "traverse")
         if networks is None:
             raise ValueError("a traverse needs its network")
         return traverse_problem(
             networks(name),
             name=f"traverse {name}",
-            atmosphere_applied=headers[name].atmosphere_applied,
+            atmosphere_applied=traverses[name].atmosphere_applied,
             extra=request.effects,
         )
 

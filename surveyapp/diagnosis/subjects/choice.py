@@ -14,7 +14,7 @@ import numpy as np
 
 from surveyapp.core.checks.adopted_checks import occurrences
 from surveyapp.core.orientation.adopted import SOURCE
-from surveyapp.core.orientation.campaign_columns import Circumstances, circumstances, in_blocks
+from surveyapp.core.orientation.campaign_columns import Circumstances, facts_of
 from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.core.statistics.repeated import SHARED
 from surveyapp.core.swing.run_model import ModelledNorth
@@ -181,7 +181,7 @@ def determinations(orientation: Orientation, instrument: str) -> tuple[Determina
     The sigma is that of what belongs to one determination alone: centring, deflection and the
     known azimuth are the line's own, and whether a line stands off is to be found, not assumed.
     """
-    by_key = _circumstances(orientation, instrument)
+    by_key = facts_of(orientation.sessions, instrument, orientation.positions)
     constant = next(c for c in orientation.constants if c.instrument.id == instrument)
     found = []
     for calibration in constant.calibrations:
@@ -192,30 +192,6 @@ def determinations(orientation: Orientation, instrument: str) -> tuple[Determina
         label = f"{calibration.session} ({calibration.line})"
         found.append(_determination(calibration.value.value, own, facts, label))
     return _in_time(found if found else _azimuths(orientation, instrument, by_key))
-
-
-def _circumstances(
-    orientation: Orientation, instrument: str
-) -> dict[tuple[str, str], Circumstances]:
-    """Circumstances of every gyro azimuth of one instrument, by session and target."""
-    places = [
-        (item, target)
-        for item in orientation.sessions
-        if item.session.instrument == instrument
-        for target in item.targets
-    ]
-    facts = in_blocks(
-        [
-            circumstances(
-                item, target, latitude=orientation.positions[item.session.station].latitude
-            )
-            for item, target in places
-        ]
-    )
-    return {
-        (item.session.id, target.target): fact
-        for (item, target), fact in zip(places, facts, strict=True)
-    }
 
 
 def _in_time(items: Sequence[Determination]) -> tuple[Determination, ...]:

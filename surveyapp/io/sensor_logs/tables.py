@@ -30,6 +30,8 @@ OPTIONS: Final = (
     "flip_sigma_arcsec",
     "room",
     "index_axis",
+    "predict_at",
+    "gravity_m_s2",
     "method",
 )
 """Further keys that a subject may read; they are passed on as they stand."""

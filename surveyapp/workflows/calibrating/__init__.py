@@ -25,6 +25,8 @@ class CalibrationSubject:
 
 SUBJECTS: Final = (
     CalibrationSubject("tilt", "tilt", "tilt sensor: two axes, or one on a dividing head"),
+    CalibrationSubject("rate", "rate", "gyros and accelerometers on a table or by hand"),
+    CalibrationSubject("fog-station", "fog_station", "fibre-optic gyro on a total station"),
 )
 """Every kind that can be calibrated."""
 
