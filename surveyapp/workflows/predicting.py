@@ -32,10 +32,15 @@ from surveyapp.io.tables import Findings, Table
 
 @dataclass(frozen=True, slots=True)
 class ReadyMine:
-    """A mine ready for prediction, with its rule book and what its reader must know."""
+    """A mine ready for prediction, with its rule book and what its reader must know.
+
+    ``defaults`` holds the instrument and the sigma [rad] of a further gyro side in a heading that
+    has none.
+    """
 
     mine: Mine
     rule_book: RuleBook | None
+    defaults: dict[str, tuple[str, float]]
     warnings: tuple[ResultWarning, ...]
 
 
@@ -99,7 +104,9 @@ def ready_mine(
     plan = _with_latitude(project, plan, stations)
     headers = {item.name: item for item in project.traverses}
     lost = _measure(gathered, plan, headers, orientation)
-    constants, unknown = _constants(project, plan, gathered.measured, orientation)
+    defaults = _defaults(project, plan)
+    used = _used(plan, gathered.measured, defaults)
+    constants, unknown = _constants(project, used, orientation)
     problems = gathered.findings.problems
     problems += refusals(plan, _known(project, plan, headers, gathered.measured))
     problems += _angle_problems(plan, gathered.measured)
@@ -107,7 +114,8 @@ def ready_mine(
     gathered.findings.raise_if_any()
     mine = build_mine(plan, stations, constants, gathered.measured)
     warnings = (*project.warnings, *gathered.findings.warnings, *unknown, *lost)
-    return ReadyMine(mine, project.rules, (*warnings, *carried(plan, stations)))
+    warnings = (*warnings, *carried(plan, stations))
+    return ReadyMine(mine, project.rules, defaults, warnings)
 
 
 def _measure(
@@ -147,27 +155,24 @@ def _measure(
 
 
 def _constants(
-    project: Project,
-    plan: Penetration,
-    measured: Mapping[str, MeasuredRows],
-    orientation: OrientationResult | None,
+    project: Project, used: Mapping[str, bool], orientation: OrientationResult | None
 ) -> tuple[dict[str, float], list[ResultWarning]]:
-    """Sigma of the constant of every gyro in use [rad]: calibrations win over what is known."""
-    used = [side.instrument for side in plan.gyro]
-    for rows in measured.values():
-        used += [row.instrument for row in rows.rows if row.kind is RowKind.GYRO]
+    """Sigma of the constant of every gyro [rad]: calibrations win over what is known.
+
+    ``used`` tells whether a gyro observes already; one that only may be planned is not warned of.
+    """
     calibrated = {} if orientation is None else {c.instrument: c for c in orientation.constants}
     known = {item.id: item for item in project.instruments}
     found: dict[str, float] = {}
     warnings = []
-    for name in dict.fromkeys(used):
+    for name, observes in used.items():
         if name not in known:
             continue
         result, stated = calibrated.get(name), known[name].known_constant
         sigma = None if result is None or result.value is None else result.sigma
         if sigma is None or not math.isfinite(sigma):
             sigma = None if stated is None else stated[1]
-        if sigma is None:
+        if sigma is None and observes:
             text = (
                 f"instrument {name}: no constant is known, so its shared error counts as 0; "
                 "calibrate it, or give constant = { arcsec, sigma_arcsec }"
@@ -175,6 +180,37 @@ def _constants(
             warnings.append(ResultWarning("constant_sigma_unknown", text))
         found[name] = sigma or 0.0
     return found, warnings
+
+
+def _used(
+    plan: Penetration,
+    measured: Mapping[str, MeasuredRows],
+    defaults: Mapping[str, tuple[str, float]],
+) -> dict[str, bool]:
+    """Gyros of the mine, and whether they observe already or may only be planned."""
+    used = [side.instrument for side in plan.gyro]
+    for rows in measured.values():
+        used += [row.instrument for row in rows.rows if row.kind is RowKind.GYRO]
+    planned = [name for name, _ in defaults.values()]
+    return {**dict.fromkeys(planned, False), **dict.fromkeys(used, True)}
+
+
+def _defaults(project: Project, plan: Penetration) -> dict[str, tuple[str, float]]:
+    """Instrument and sigma of a further side in each heading: its first one, else the card's."""
+    found: dict[str, tuple[str, float]] = {}
+    cards = {item.id: item.card.sigma.azimuth for item in project.instruments}
+    for heading in plan.headings:
+        sides = {frozenset(side) for side in heading.sides}
+        own = [side for side in plan.gyro if frozenset((side.at, side.to)) in sides]
+        if own:
+            found[heading.name] = (own[0].instrument, own[0].sigma)
+            continue
+        # a heading without a gyro takes the one that the mine uses elsewhere, else any with a card
+        names = [*(side.instrument for side in plan.gyro), *cards]
+        sigma = next(((n, s) for n in names if (s := cards.get(n)) is not None), None)
+        if sigma is not None:
+            found[heading.name] = sigma
+    return found
 
 
 def _known(
@@ -243,7 +279,7 @@ def _plan_problems(
     return [
         Problem(
             "more gyro sides are asked for than sides are free" if sides > 0 else "no sides asked",
-            "--plan",
+            "plan",
             str(sides),
             f"1 to {free}",
         )

@@ -7,6 +7,7 @@ because they compare the data with themselves. Each alarms by chance in 1 % of c
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import product
 
 from surveyapp.core.orientation.instrument_constant import InstrumentConstant, agreement_text
@@ -238,12 +239,19 @@ def _forward_back(orientation: Orientation) -> list[Check]:
     for (station, target), lines in ways.items():
         if station > target:
             continue
-        for line, back in product(lines, ways.get((target, station), ())):
+        pairs = list(product(lines, ways.get((target, station), ())))
+        for line, back in pairs:
             if line.grid is not None and back.grid is not None:
                 difference = (line.grid - back.grid).shifted(math.pi)
-                own, other = line.result.instrument, back.result.instrument
-                names = own if own == other else f"{own} there, {other} back"
-                text = f"forward against back, the two ends of one line ({names})"
-                subject = line.result.subject
-                checks.append(_compare("line.forward_back", difference, subject, text=text))
+                checks.append(_there_and_back(line, back, difference, alone=len(pairs) == 1))
     return checks
+
+
+def _there_and_back(
+    line: OrientedLine, back: OrientedLine, difference: Uncertain, *, alone: bool
+) -> Check:
+    own, other = line.result.instrument, back.result.instrument
+    names = own if own == other else f"{own} there, {other} back"
+    text = f"forward against back, the two ends of one line ({names})"
+    check = _compare("line.forward_back", difference, line.result.subject, text=text)
+    return check if alone else replace(check, where=f"{check.where} ({names})")
