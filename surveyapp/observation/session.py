@@ -25,12 +25,12 @@ from surveyapp.core.observing.steps import (
 )
 from surveyapp.core.observing.target import Target, target_of
 from surveyapp.domain.project import OrientationSession, Project
-from surveyapp.domain.readings import FieldBook, Reading, ReadingKind
+from surveyapp.domain.readings import QUIET_KINDS, FieldBook, Reading, ReadingKind
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.fieldbook import append_row, book_columns, read_field_book
 from surveyapp.io.fieldbook.clock import SessionClock, Stamp, local_now, steady_seconds
-from surveyapp.io.fieldbook.problems import edited_problem, read_only_problem
+from surveyapp.io.fieldbook.problems import edited_problem, moment_problems, read_only_problem
 from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.io.filing.seals import is_closed
 
@@ -117,6 +117,7 @@ class Observation:
         try:
             self.project = api.open_project(self.folder)
             self._step: Step | None = None
+            self._half_swing: tuple[float | None] | None = None
             self._clocks = now, steady
             self._begin_behind_the_book()
         except BaseException:
@@ -207,14 +208,24 @@ class Observation:
         """Whether what is read now can no longer stand before the observation."""
         return swing_begun(self.book, self.session.method)
 
-    def record(self, row: NewRow, stamp: Stamp | None = None) -> int:
+    def latest_elapsed_s(self) -> float | None:
+        """Latest elapsed time that stands in the book [s], None where there is none."""
+        found = [row.elapsed_s for row in self.book.rows if row.elapsed_s is not None]
+        return max(found, default=None)
+
+    def record(self, row: NewRow, stamp: Stamp | None = None, *, timed: bool = True) -> int:
         """Append one row; it is on the disk when this returns.
+
+        Elapsed seconds never go back in a book: a reading of an earlier moment than a row above it
+        carries its time alone, and so do strikes and remarks, which measure nothing.
 
         Parameters
         ----------
         row : NewRow
         stamp : Stamp or None
             When the reading was taken; this moment if None.
+        timed : bool
+            False writes no moment at all: a book that is typed up afterwards.
 
         Returns
         -------
@@ -233,11 +244,12 @@ class Observation:
             self.read_again()
             raise SurveyError(edited_problem(self.path))
         moment = stamp or self.clock.stamp()
-        latest = max((r.elapsed_s for r in self.book.rows if r.elapsed_s is not None), default=0.0)
-        elapsed = max(moment.elapsed_s, latest)
+        latest = self.latest_elapsed_s()
+        quiet = row.kind in QUIET_KINDS and not row.note.startswith(STEP_NOTE)
+        back = latest is not None and round(moment.elapsed_s, 3) < latest
         cells = {
-            "time": moment.time.isoformat(timespec="milliseconds"),
-            "elapsed_s": f"{elapsed:.3f}",
+            "time": moment.time.isoformat(timespec="milliseconds") if timed else "",
+            "elapsed_s": "" if quiet or back or not timed else f"{moment.elapsed_s:.3f}",
             "kind": str(row.kind),
             "value": row.value,
             "unit": row.unit,
@@ -247,11 +259,16 @@ class Observation:
             "note": row.note,
         }
         try:
-            seq = append_row(self.path, self._fitting(cells), angle_unit=self.project.angle_unit)
+            seq = append_row(
+                self.path,
+                self._fitting(cells),
+                angle_unit=self.project.angle_unit,
+                also=moment_problems,
+            )
         finally:
             self._mark = self._file_mark()
         self._read_again(self.path)
-        if row.kind is not ReadingKind.STRIKE:
+        if row.kind not in QUIET_KINDS or row.note.startswith(STEP_NOTE):
             self._step = None
         return seq
 
@@ -277,12 +294,15 @@ class Observation:
         """Strike a row; it stays in the book, and the next of its kind takes its place."""
         return self.record(NewRow(ReadingKind.STRIKE, value=str(seq), note=reason))
 
+    def unstrike(self, seq: int, reason: str) -> int:
+        """Take a strike back: the row counts again where it stands, and both stay in the book."""
+        return self.record(NewRow(ReadingKind.UNSTRIKE, value=str(seq), note=reason))
+
     def last_live(self) -> Reading | None:
         """The latest reading that counts: what undo strikes."""
         struck = set(self.book.struck)
-        quiet = (ReadingKind.STRIKE, ReadingKind.NOTE)
         for row in reversed(self.book.rows):
-            if row.kind not in quiet and row.seq not in struck:
+            if row.kind not in QUIET_KINDS and row.seq not in struck:
                 return row
         return None
 
@@ -308,6 +328,15 @@ class Observation:
             return Aim(None, self.project.rule_book or "", error.problems[0].what)
         return Aim(target_of(self.session, book), "" if book is None else book.id)
 
+    def half_swing_s(self) -> float | None:
+        """Half swing that the card tells for this method and latitude [s], None where it does not.
+
+        Computed once: card and position do not change while a session is observed.
+        """
+        if self._half_swing is None:
+            self._half_swing = (half_swing_of(self.project, self.session),)
+        return self._half_swing[0]
+
     def remaining_s(self, progress: Progress) -> float | None:
         """Seconds to the next passage or turning point; None where not known or long past."""
         due, period = progress.due_s, progress.period_s
@@ -322,6 +351,21 @@ class Observation:
     def close(self) -> None:
         """Give the right to write back."""
         self._lock.release()
+
+
+def half_swing_of(project: Project, session: OrientationSession) -> float | None:
+    """Half swing of a session's instrument at its station [s], None where its card tells none."""
+    from surveyapp.core.geodesy import open_grid, position_of
+    from surveyapp.core.swing.card_physics import card_at
+
+    try:
+        grid = open_grid(project.crs) if project.crs is not None else None
+        latitude = position_of(project.station(session.station), grid).latitude
+    except SurveyError:
+        latitude = None
+    here = card_at(project.instrument(session.instrument).card, latitude)
+    period = here.tracking_s if session.method == "tracking" else here.clamped_s
+    return None if period is None else 0.5 * period.value
 
 
 def progress(project: Project, session: str) -> Progress:
