@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from surveyapp.diagnosis import Problem
+from surveyapp.diagnosis import Case
+from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import (
     Coefficient,
     Column,
@@ -17,27 +17,25 @@ from surveyapp_models.effects.effect import (
     GridParameter,
 )
 
-Array = NDArray[np.float64]
-
 STEP_S = 0.01
 SAMPLES = 100_000
 
 
-def _ramp(columns: Columns, /, **grid: float) -> Array:
+def _ramp(columns: Columns, /, **grid: float) -> Floats:
     t = columns["time_s"]
     return np.asarray((t - t.mean())[:, None] / 3600.0)
 
 
-def _warmth(columns: Columns, /, **grid: float) -> Array:
+def _warmth(columns: Columns, /, **grid: float) -> Floats:
     return np.asarray((columns["temperature_c"] - 20.0)[:, None])
 
 
-def _tone(columns: Columns, /, **grid: float) -> Array:
+def _tone(columns: Columns, /, **grid: float) -> Floats:
     phase = 2.0 * np.pi * grid["frequency"] * columns["time_s"]
     return np.column_stack([np.cos(phase), np.sin(phase)])
 
 
-def _bearing(columns: Columns, /, **grid: float) -> Array:
+def _bearing(columns: Columns, /, **grid: float) -> Floats:
     angle = columns["bearing"]
     return np.column_stack([np.cos(angle), np.sin(angle)])
 
@@ -79,17 +77,17 @@ TONE = effect(
 
 
 def rate_log(
-    values: Array,
-    time: Array | None = None,
+    values: Floats,
+    time: Floats | None = None,
     *,
     effects: tuple[Effect, ...] = (RAMP,),
-    columns: Mapping[str, Array] | None = None,
+    columns: Mapping[str, Floats] | None = None,
     **more: Any,
-) -> Problem:
+) -> Case:
     """A problem with one constant bias [deg/h]."""
     n = values.size
-    t = STEP_S * np.arange(n) if time is None else time
-    return Problem(
+    t = np.asarray(STEP_S * np.arange(n) if time is None else time, dtype=np.float64)
+    return Case(
         subject="rate",
         observations=values,
         base=np.ones((n, 1)),
@@ -107,25 +105,25 @@ def rate_log(
     )
 
 
-def white(n: int, g: np.random.Generator) -> Array:
+def white(n: int, g: np.random.Generator) -> Floats:
     """Independent samples."""
     return g.standard_normal(n)
 
 
-def autoregressive(n: int, g: np.random.Generator) -> Array:
+def autoregressive(n: int, g: np.random.Generator) -> Floats:
     """First-order autoregressive, correlation of neighbours 0.9."""
     from scipy.signal import lfilter
 
     return np.asarray(lfilter([1.0], [1.0, -0.9], g.standard_normal(n)), dtype=np.float64)
 
 
-def walk(n: int, g: np.random.Generator, size: float = 3.0) -> Array:
+def walk(n: int, g: np.random.Generator, size: float = 3.0) -> Floats:
     """White noise on a random walk that ends ``size`` standard deviations of a sample away."""
     steps = g.standard_normal(n) * size / np.sqrt(n)
     return np.asarray(g.standard_normal(n) + np.cumsum(steps))
 
 
-def flicker(n: int, g: np.random.Generator) -> Array:
+def flicker(n: int, g: np.random.Generator) -> Floats:
     """1/f noise, cut out of a record twice as long."""
     frequency = np.fft.rfftfreq(2 * n)
     frequency[0] = frequency[1]

@@ -11,13 +11,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-from surveyapp.diagnosis import Determination, Problem, TurningPoints
-from surveyapp.diagnosis.subjects.choice import campaign, reversal_run
+from surveyapp.diagnosis import Case, Determination, TurningPoints
+from surveyapp.diagnosis.subjects.campaign import campaign
+from surveyapp.diagnosis.subjects.reversal_run import reversal_run
 from surveyapp_models.angles import ARCSEC
+from surveyapp_models.arrays import Floats
 
-Array = NDArray[np.float64]
 STEPS = 160
 """Runge-Kutta steps in a half swing."""
 
@@ -56,9 +56,9 @@ class Truth:
 class Runs:
     """Simulated turning points of many runs of one truth."""
 
-    readings: Array
-    temperature: Array
-    north: Array
+    readings: Floats
+    temperature: Floats
+    north: Floats
 
 
 def simulate(truth: Truth, runs: int, seed: int) -> Runs:
@@ -74,7 +74,7 @@ def simulate(truth: Truth, runs: int, seed: int) -> Runs:
     friction = truth.friction * ARCSEC * np.pi**2 / 2.0
     drag = 0.75 * truth.drag
 
-    def field_at(t: float) -> Array:
+    def field_at(t: float) -> Floats:
         value = north(t)
         if truth.temperature:
             k = np.clip(t, 0.0, n + 1.0)
@@ -84,7 +84,7 @@ def simulate(truth: Truth, runs: int, seed: int) -> Runs:
             value = value + truth.temperature * (now - temperature[:, :n].mean(axis=1))
         return value * ARCSEC
 
-    def slope(t: float, a: Array, v: Array) -> tuple[Array, Array]:
+    def slope(t: float, a: Floats, v: Floats) -> tuple[Floats, Floats]:
         k = decay + truth.damping_change * (t > change) + truth.damping_growth * t
         moment = np.pi**2 * np.sin(a - field_at(t))
         return v, -2.0 * k * v - drag * v * np.abs(v) - friction * np.tanh(v / 1e-6) - moment
@@ -117,13 +117,13 @@ def simulate(truth: Truth, runs: int, seed: int) -> Runs:
     return Runs(readings * ARCSEC, temperature[:, :n], paths.mean(axis=1))
 
 
-def temperature_walk(n: int, runs: int, g: np.random.Generator) -> Array:
+def temperature_walk(n: int, runs: int, g: np.random.Generator) -> Floats:
     """Temperatures at whole half swings: 1 to 3 K more at the end, drafts of 0.5 K [K]."""
     trend = g.uniform(1.0, 3.0, (runs, 1)) * np.linspace(0.0, 1.0, n + 3)
     return trend + 0.5 * g.standard_normal((runs, n + 3))
 
 
-def noise_of(truth: Truth, runs: int, g: np.random.Generator) -> Array:
+def noise_of(truth: Truth, runs: int, g: np.random.Generator) -> Floats:
     """White noise, or AR(1) of the same variance."""
     white = g.standard_normal((runs, truth.size))
     if not truth.ar1:
@@ -133,7 +133,7 @@ def noise_of(truth: Truth, runs: int, g: np.random.Generator) -> Array:
     return white
 
 
-def midpoint(truth: Truth, runs: int, g: np.random.Generator) -> Callable[[float], Array]:
+def midpoint(truth: Truth, runs: int, g: np.random.Generator) -> Callable[[float], Floats]:
     """North of each run [arcsec] as a function of time."""
     n = truth.size
     sign = g.choice([-1.0, 1.0], runs)
@@ -145,7 +145,7 @@ def midpoint(truth: Truth, runs: int, g: np.random.Generator) -> Callable[[float
     end = begin + g.uniform(3.0, 5.0, runs) if truth.pulse else begin
     walk = np.cumsum(truth.walk * g.standard_normal((runs, n + 3)), axis=1)
 
-    def north(t: float) -> Array:
+    def north(t: float) -> Floats:
         value = truth.drift * t + truth.step * (t > when)
         value = value + truth.oscillation * np.cos(2.0 * np.pi * t / period + phase)
         value = value + truth.warm_up * np.exp(-t / tau)
@@ -155,7 +155,7 @@ def midpoint(truth: Truth, runs: int, g: np.random.Generator) -> Callable[[float
     return north
 
 
-def problems(truth: Truth, runs: int, seed: int) -> tuple[list[Problem], Array]:
+def problems(truth: Truth, runs: int, seed: int) -> tuple[list[Case], Floats]:
     """Problems of a line and the true north averaged over each run [rad]."""
     made = simulate(truth, runs, seed)
     with_temperature = truth.effect == "temperature"
@@ -187,7 +187,7 @@ class CampaignTruth:
     ar1: float = 0.0
 
 
-def campaign_problem(truth: CampaignTruth, seed: int) -> tuple[Problem, float]:
+def campaign_problem(truth: CampaignTruth, seed: int) -> tuple[Case, float]:
     """Simulate a campaign of three determinations a day; the constant averaged over it [rad]."""
     g = np.random.default_rng(seed)
     n = truth.size

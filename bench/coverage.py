@@ -94,7 +94,7 @@ def one_run(folder: Path, project: SimulatedProject) -> tuple[dict[str, float], 
         path.parent.mkdir(exist_ok=True)
         path.write_text(text, encoding="utf-8")
     result = api.orient(folder).to_dict()["sessions"][0]
-    truth = project_truth(project)["sessions"]["run-1"]  # type: ignore[index]
+    truth = project_truth(project)["sessions"]["run-1"]
     return tuple(
         {
             "error": wrap_pi(math.radians(result[name]["deg"] - truth[f"{name}_deg"])) * RHO_ARCSEC,

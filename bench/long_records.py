@@ -14,12 +14,13 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from bench._long_records import NOISES, SAMPLES, STEP_S, Array, rate_log, walk, white
+from bench._long_records import NOISES, SAMPLES, STEP_S, rate_log, walk, white
 from surveyapp.diagnosis import Diagnosis, diagnose
+from surveyapp_models.arrays import Floats
 
 RUNS = 100
 DRAWS = 1000
-CASES: dict[str, Callable[[int, np.random.Generator], Array]] = {
+CASES: dict[str, Callable[[int, np.random.Generator], Floats]] = {
     **NOISES,
     "white and the walk most like a drift": functools.partial(walk, size=0.045),
     "white and a small walk": functools.partial(walk, size=0.1),

@@ -17,7 +17,7 @@ import numpy as np
 from scipy.stats import beta
 
 from bench._records import CampaignTruth, Truth, campaign_problem, problems
-from surveyapp.diagnosis import Diagnosis, Problem, diagnose
+from surveyapp.diagnosis import Case, Diagnosis, diagnose
 from surveyapp.diagnosis.candidates import all_candidates, project
 from surveyapp.diagnosis.compare import orthonormal_design
 from surveyapp.diagnosis.fits import fit_members
@@ -248,7 +248,7 @@ def table(lines: Sequence[Line]) -> list[str]:
     return rows
 
 
-def seconds(make: Callable[[int], Problem], count: int) -> float:
+def seconds(make: Callable[[int], Case], count: int) -> float:
     """Mean seconds of a whole diagnosis with 4000 draws, each of another record."""
     made = [make(i) for i in range(count + 1)]
     diagnose(made[0], draws=100)

@@ -12,7 +12,7 @@ from statistics import median
 import numpy as np
 
 from surveyapp import api
-from surveyapp.core.swing.gyrofit import fit_swing
+from surveyapp.core.swing.gyrofit import fit_damped_swing
 from surveyapp.io.locations import samples_folder
 
 
@@ -41,7 +41,7 @@ def fit_against_lmfit() -> tuple[float, float]:
     def residual(p: lmfit.Parameters) -> object:
         return p["n"] + p["a"] * sides * np.exp(-p["c"] * k) - values
 
-    ours = seconds(lambda: fit_swing(values, k, sides), 200)
+    ours = seconds(lambda: fit_damped_swing(values, k, sides), 200)
     theirs = seconds(lambda: lmfit.minimize(residual, parameters), 20)
     return ours, theirs
 

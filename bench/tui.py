@@ -29,7 +29,7 @@ TITLE = b"surveyapp|Kill|tracking"
 def write_points(folder: Path, count: int) -> None:
     """A session that stands at its turning points with that many of them written."""
     make_project(folder)
-    seen = api_session.Observation(folder, "r1")
+    seen = api_session.SessionDesk(folder, "r1")
     seen.record(api_session.NewRow(ReadingKind.NOTE, note=f"{STEP_NOTE}{Step.SWING}"))
     rng = np.random.default_rng(45)
     for k in range(count):

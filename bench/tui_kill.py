@@ -99,7 +99,7 @@ def make_project(folder: Path) -> None:
     (folder / "observations").mkdir(parents=True)
     (folder / "project.toml").write_text(PROJECT, encoding="utf-8")
     (folder / "observations" / "r1.csv").write_text(",".join(COLUMNS) + "\n", encoding="utf-8")
-    seen = api_session.Observation(folder, "r1")
+    seen = api_session.SessionDesk(folder, "r1")
     seen.record(api_session.NewRow(ReadingKind.NOTE, note=f"{STEP_NOTE}{Step.SETUP}"))
     seen.close()
 
@@ -178,7 +178,7 @@ def _drain(child: pexpect.spawn[bytes]) -> None:
 
 def _judge(folder: Path, seed: int, acts: list[Act], confirmed: list[tuple[int, str]]) -> Outcome:
     faults = []
-    seen = api_session.Observation(folder, "r1")
+    seen = api_session.SessionDesk(folder, "r1")
     rows = seen.book.rows[1:]
     found = [(row.kind, row.note if row.kind is ReadingKind.NOTE else row.text) for row in rows]
     wanted = [(act.kind, act.text) for act in acts[: len(found)]]

@@ -11,18 +11,16 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.simulate.disturbing import damped_gyro
 from surveyapp.core.simulate.specification import SessionSpec
-from surveyapp.core.swing.gyrofit import fit_swing
+from surveyapp.core.swing.gyrofit import fit_damped_swing
 from surveyapp_models.angles import ARCSEC
+from surveyapp_models.arrays import Floats
 from surveyapp_models.gyro.integration import Disturbance, Start, TapeTop, integrate
 from surveyapp_models.gyro.moments import directive_moment
 from surveyapp_models.gyro.motion import Events, turning_points
 from surveyapp_models.gyro.periods import tracking_period_s
-
-Floats = NDArray[np.float64]
 
 RATIO = 0.99
 AMPLITUDE = math.radians(1.0)
@@ -48,7 +46,7 @@ class Filter:
     def vector(self) -> Floats:
         """Weights with sum 1."""
         values = np.array(self.weights)
-        return values / values.sum()
+        return np.asarray(values / values.sum())
 
 
 def schuler_weights(points: int) -> tuple[float, ...]:
@@ -124,7 +122,7 @@ def undisturbed(
         disturbance=Disturbance(torque=lambda t: moment * north(t)),
     )
     found: Events = turning_points(motion, count)
-    return found.azimuth[0] / ARCSEC, north(np.arange(count) * half) / ARCSEC
+    return found.azimuth[0] / ARCSEC, north(np.asarray(np.arange(count) * half)) / ARCSEC
 
 
 def bias_arcsec(weights: Floats, readings: Floats, north: Floats) -> float:
@@ -194,7 +192,7 @@ def least_squares_table() -> list[tuple[int, list[float]]]:
         k = np.arange(points, dtype=np.float64)
         sides = np.where(damped[:points] > 0.0, 1.0, -1.0)
         found = [
-            fit_swing(damped[:points] + noise[run, :points], k, sides).north
+            fit_damped_swing(damped[:points] + noise[run, :points], k, sides).north
             for run in range(FIT_RUNS)
         ]
         rows.append(
@@ -204,8 +202,8 @@ def least_squares_table() -> list[tuple[int, list[float]]]:
                     least_squares_cofactor(points),
                     least_squares_cofactor(points, drift=True) if points > 4 else math.nan,
                     float(np.std(found)) / SIGMA_ARCSEC,
-                    abs(fit_swing(damped[:points], k, sides).north),
-                    abs(fit_swing(lagging[:points], k, sides).north),
+                    abs(fit_damped_swing(damped[:points], k, sides).north),
+                    abs(fit_damped_swing(lagging[:points], k, sides).north),
                 ],
             )
         )

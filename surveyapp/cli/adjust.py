@@ -51,9 +51,6 @@ def run(options: argparse.Namespace) -> int:
     return 1 if result.global_test.passed is False else 0
 
 
-adjust_command = run
-
-
 def _compass(items: Sequence[CompassResult]) -> str:
     """Coordinates by the compass rule, with what was distributed."""
     parts = []

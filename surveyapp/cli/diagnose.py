@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from surveyapp.cli.output import heading, number, print_json, table
 
 if TYPE_CHECKING:
-    from surveyapp.diagnosis.result import Diagnosis, ModelResult, Quantity
+    from surveyapp.diagnosis.result import Diagnosis, Estimate, ModelResult
     from surveyapp.workflows.diagnosing import Diagnosed
 
 
@@ -65,10 +65,7 @@ def subjects_text(found: Diagnosed) -> str:
 
 def diagnosis_text(diagnosis: Diagnosis, words: Sequence[str]) -> str:
     """The whole diagnosis in words and tables."""
-    name = {"reversal_run": "run ", "campaign": "", "traverse": ""}.get(
-        diagnosis.subject, diagnosis.subject
-    )
-    parts = [heading(f"{name}{diagnosis.identity}: {diagnosis.verdict.replace('_', ' ')}")]
+    parts = [heading(f"{diagnosis.heading}: {diagnosis.verdict.replace('_', ' ')}")]
     parts.append("\n".join(textwrap.fill(text, 79) for text in words))
     parts.append(_models(diagnosis))
     parts.append(_candidates(diagnosis))
@@ -102,7 +99,7 @@ def _models(diagnosis: Diagnosis) -> str:
     return table(head, rows, indent=0) + "\n" + "\n".join(effects)
 
 
-def value_text(diagnosis: Diagnosis, quantity: Quantity) -> str:
+def value_text(diagnosis: Diagnosis, quantity: Estimate) -> str:
     """A value with its sigma, a direction in degrees-minutes-seconds."""
     from surveyapp_models.angles import AngleUnit, format_angle, wrap_two_pi
 

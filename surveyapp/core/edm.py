@@ -16,9 +16,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 EVIDENCE = 10.0
 """Difference of -2 log likelihood per sight mean above which one treatment of the atmosphere is

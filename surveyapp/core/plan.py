@@ -17,7 +17,7 @@ import numpy as np
 from surveyapp.core.geodesy import open_grid, position_of
 from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp.core.swing.card_physics import CardAt, card_at
-from surveyapp.core.swing.gyrofit import LEAST_SQUARES_FROM, fit_swing
+from surveyapp.core.swing.gyrofit import LEAST_SQUARES_FROM, fit_damped_swing
 from surveyapp.core.swing.swingfit import ClampedSwing, fit_clamped, passage_times
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import Project
@@ -172,7 +172,7 @@ def _turning_points(
     for points in range(LEAST_SQUARES_FROM, most + 1):
         index = np.arange(float(points))
         sides = np.where(index % 2 == 0, 1.0, -1.0)
-        fit = fit_swing(sides * np.exp(-DAMPING * index), index, sides)
+        fit = fit_damped_swing(sides * np.exp(-DAMPING * index), index, sides)
         own = math.sqrt(fit.cofactor[0, 0]) * spread * scale
         sigma, dof = _combined(own, points - 3, zero)
         minutes = _overhead(here, period) + 0.5 * (points - 1) * period / 60.0

@@ -1,14 +1,14 @@
 """Find the residual, name the effect, prove it: one engine for every subject.
 
-``reversal_run`` and ``campaign`` make a ``Problem`` of observations, ``diagnose`` returns a
+``reversal_run`` and ``campaign`` make a ``Case`` of observations, ``diagnose`` returns a
 ``Diagnosis``, ``plain_words`` tells it to a surveyor.
 """
 
 from __future__ import annotations
 
+from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.engine import diagnose
 from surveyapp.diagnosis.plain_words import plain_words
-from surveyapp.diagnosis.problem import Problem
 from surveyapp.diagnosis.result import Diagnosis
 from surveyapp.diagnosis.subjects.campaign import Determination, campaign
 from surveyapp.diagnosis.subjects.reversal_run import TurningPoints, reversal_run
@@ -16,7 +16,7 @@ from surveyapp.diagnosis.subjects.reversal_run import TurningPoints, reversal_ru
 __all__ = [
     "Determination",
     "Diagnosis",
-    "Problem",
+    "Case",
     "TurningPoints",
     "campaign",
     "diagnose",

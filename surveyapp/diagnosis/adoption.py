@@ -10,14 +10,15 @@ import numpy as np
 
 from surveyapp.core.checks.adopted_checks import numbered
 from surveyapp.core.orientation.campaign_columns import LABELLED
+from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.compare import Level
 from surveyapp.diagnosis.fits import Member
 from surveyapp.diagnosis.held_out import confirm_rms
 from surveyapp.diagnosis.loop import Search, margin_of
-from surveyapp.diagnosis.problem import Array, Problem
 from surveyapp.diagnosis.result import Adoption, NamedCoefficient
 from surveyapp.diagnosis.run_value import coefficients, rms
 from surveyapp.domain.instrument import AdoptedEffect
+from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Effect
 
 
@@ -40,7 +41,7 @@ def p_values(found: Search, identity: str) -> tuple[float | None, float | None]:
 
 
 def adoptions(
-    problem: Problem, found: Search, digest: str, confirm: Problem | None
+    problem: Case, found: Search, digest: str, confirm: Case | None
 ) -> tuple[Adoption, ...]:
     """Every effect that the engine names, as it is told and as it is written into a project."""
     if not found.adopted:
@@ -80,7 +81,7 @@ def adoptions(
 
 
 def _coefficients(
-    effect: Effect, members: Sequence[Member], numbers: tuple[Array, Array]
+    effect: Effect, members: Sequence[Member], numbers: tuple[Floats, Floats]
 ) -> tuple[tuple[NamedCoefficient, ...], tuple[tuple[float, ...], ...]]:
     """Coefficients of an effect and their covariance, in the units that they are told in."""
     values, covariance = numbers
@@ -130,7 +131,7 @@ def _numbered(
 
 
 def _valid(
-    problem: Problem, effect: Effect, point: Mapping[str, float]
+    problem: Case, effect: Effect, point: Mapping[str, float]
 ) -> tuple[tuple[str, float, float], ...]:
     """Range of each column that is a quantity; of a block of days the days."""
     chosen = {n.name: problem.columns[n.name] for n in effect.needs if n.name in problem.columns}
@@ -147,14 +148,14 @@ def _valid(
 
 
 def _reference(
-    problem: Problem, effect: Effect, point: Mapping[str, float]
+    problem: Case, effect: Effect, point: Mapping[str, float]
 ) -> tuple[tuple[str, float], ...]:
     if effect.reference is None:
         return ()
     return tuple(effect.reference(problem.columns, problem.references, **point).items())
 
 
-def _time(problem: Problem, effect: Effect) -> Literal["days", "order", ""]:
+def _time(problem: Case, effect: Effect) -> Literal["days", "order", ""]:
     """What its column of time counts, where it has one."""
     if all(need.name != "elapsed_days" for need in effect.needs):
         return ""

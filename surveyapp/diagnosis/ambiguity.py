@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.compare import added_signal, best_with
 from surveyapp.diagnosis.fits import Fit
 from surveyapp.diagnosis.loop import NOISE_WORDS, Search
-from surveyapp.diagnosis.problem import Problem
 from surveyapp.diagnosis.result import Ambiguity
 
 MOST_OPTIONS = 8
@@ -28,7 +28,7 @@ SEPARATING = {
 }
 
 
-def ambiguities(problem: Problem, found: Search) -> tuple[Ambiguity, ...]:
+def ambiguities(problem: Case, found: Search) -> tuple[Ambiguity, ...]:
     """What is left in the sets within the margin once the adopted names are taken out."""
     if not found.near:
         return ()
@@ -63,7 +63,7 @@ def ambiguities(problem: Problem, found: Search) -> tuple[Ambiguity, ...]:
     )
 
 
-def _separating(problem: Problem, identity: str) -> str:
+def _separating(problem: Case, identity: str) -> str:
     for effect in problem.effects:
         if effect.id == identity:
             return effect.separate_by

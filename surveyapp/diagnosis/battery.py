@@ -11,11 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.compare import orthonormal_design
 from surveyapp.diagnosis.fits import Fit
 from surveyapp.diagnosis.gate import rounding_of
 from surveyapp.diagnosis.nulls import Noise, residual_draws
-from surveyapp.diagnosis.problem import Array, Problem
+from surveyapp_models.arrays import Floats
 
 DRAWS = 1000
 LAGS = 4
@@ -31,7 +32,7 @@ class BatteryTest:
     p: float
 
 
-def channels(problem: Problem, residuals: Array) -> dict[str, Array]:
+def channels(problem: Case, residuals: Floats) -> dict[str, Floats]:
     """Channels of residuals (d, n): the only one, or amplitude and midpoint of a swing."""
     if problem.side is None:
         return {"residual": residuals}
@@ -39,13 +40,13 @@ def channels(problem: Problem, residuals: Array) -> dict[str, Array]:
     return {"amplitude": residuals * problem.side, "midpoint": schuler}
 
 
-def durbin_watson(v: Array) -> Array:
+def durbin_watson(v: Floats) -> Floats:
     """Distance of the Durbin-Watson statistic from 2."""
     total = np.maximum((v**2).sum(axis=1), 1e-300)
     return np.asarray(np.abs((np.diff(v, axis=1) ** 2).sum(axis=1) / total - 2.0))
 
 
-def ljung_box(v: Array) -> Array:
+def ljung_box(v: Floats) -> Floats:
     """Ljung and Box 1978 over up to four lags."""
     n = v.shape[1]
     total = np.maximum((v**2).sum(axis=1), 1e-300)
@@ -54,25 +55,25 @@ def ljung_box(v: Array) -> Array:
     return np.asarray(n * (n + 2.0) * np.sum(parts, axis=0))
 
 
-def runs(v: Array) -> Array:
+def runs(v: Floats) -> Floats:
     """Fewness or abundance of runs of equal sign, as a distance from the middle."""
     changes = (np.diff(np.signbit(v), axis=1)).sum(axis=1)
     return np.asarray(np.abs(changes - 0.5 * (v.shape[1] - 1)))
 
 
-def largest(v: Array) -> Array:
+def largest(v: Floats) -> Floats:
     """Largest standardized residual."""
     spread = np.sqrt(np.maximum((v**2).mean(axis=1), 1e-300))
     return np.asarray(np.abs(v).max(axis=1) / spread)
 
 
-def periodogram_peak(v: Array) -> Array:
+def periodogram_peak(v: Floats) -> Floats:
     """Highest peak of the periodogram relative to its sum."""
     power = np.abs(np.fft.rfft(v, axis=1)[:, 1:]) ** 2
     return np.asarray(power.max(axis=1) / np.maximum(power.sum(axis=1), 1e-300))
 
 
-def normality(v: Array) -> Array:
+def normality(v: Floats) -> Floats:
     """Jarque and Bera 1980, from skewness and kurtosis."""
     centred = v - v.mean(axis=1, keepdims=True)
     spread = np.sqrt(np.maximum((centred**2).mean(axis=1, keepdims=True), 1e-300))
@@ -91,7 +92,7 @@ STATISTICS = (
 )
 
 
-def run_battery(problem: Problem, fit: Fit, seed: int) -> tuple[BatteryTest, ...]:
+def run_battery(problem: Case, fit: Fit, seed: int) -> tuple[BatteryTest, ...]:
     """Apply every statistic to every channel of the residuals of a fit."""
     generator = np.random.default_rng(seed)
     q = orthonormal_design(fit)

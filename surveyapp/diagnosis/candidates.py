@@ -14,7 +14,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from surveyapp.diagnosis.problem import Array, Problem
+from surveyapp.diagnosis.case import Case
+from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Effect
 
 Kind = Literal["named", "shape"]
@@ -70,10 +71,10 @@ class Candidate:
     id: str
     kind: Kind
     points: tuple[Mapping[str, float], ...]
-    columns: Array
-    charge: Array
+    columns: Floats
+    charge: Floats
     effect: Effect | None = None
-    midpoint: Array | None = None
+    midpoint: Floats | None = None
     count: int = 1
     missing: str = ""
 
@@ -116,7 +117,7 @@ class Candidate:
         return NOT_SEPARABLE_LAW if self.is_law else NOT_SEPARABLE
 
 
-def swing_columns(problem: Problem, theta: Array | None) -> dict[str, Array]:
+def swing_columns(problem: Case, theta: Floats | None) -> dict[str, Floats]:
     """Columns of a problem with those of its swing as it is fitted now."""
     columns = dict(problem.columns)
     if problem.side is not None and problem.half_swing is not None and theta is not None:
@@ -129,7 +130,7 @@ def swing_columns(problem: Problem, theta: Array | None) -> dict[str, Array]:
     return columns
 
 
-def missing_columns(effect: Effect, columns: Mapping[str, Array]) -> str:
+def missing_columns(effect: Effect, columns: Mapping[str, Floats]) -> str:
     """Say what an effect lacks, or an empty text."""
     lacking = []
     for need in effect.needs:
@@ -150,7 +151,7 @@ CONSTANT_COLUMNS = frozenset(
 """Columns that may be constant."""
 
 
-def all_candidates(problem: Problem, theta: Array | None) -> tuple[Candidate, ...]:
+def all_candidates(problem: Case, theta: Floats | None) -> tuple[Candidate, ...]:
     """Every candidate of a problem at the present amplitude and damping of its swing."""
     columns = swing_columns(problem, theta)
     root = problem.root_weights
@@ -161,7 +162,7 @@ def all_candidates(problem: Problem, theta: Array | None) -> tuple[Candidate, ..
     return tuple(found)
 
 
-def _named(effect: Effect, columns: Mapping[str, Array], root: Array) -> list[Candidate]:
+def _named(effect: Effect, columns: Mapping[str, Floats], root: Floats) -> list[Candidate]:
     empty = np.zeros((0, root.size, len(effect.coefficients)))
     missing = missing_columns(effect, columns)
     if missing:
@@ -201,13 +202,13 @@ def _several(single: Candidate) -> list[Candidate]:
     return result
 
 
-def _shape(name: str, columns: list[Array], charge: int, root: Array) -> Candidate:
+def _shape(name: str, columns: list[Floats], charge: int, root: Floats) -> Candidate:
     stacked = np.stack(columns) * root[None, :, None]
     points = tuple({"index": float(i)} for i in range(len(columns)))
     return Candidate(name, "shape", points, stacked, np.full(len(columns), float(charge)))
 
 
-def _shapes(problem: Problem, columns: Mapping[str, Array], root: Array) -> list[Candidate]:
+def _shapes(problem: Case, columns: Mapping[str, Floats], root: Floats) -> list[Candidate]:
     """Generic shapes over the position; of a swing in its amplitude too."""
     position = problem.position
     if np.unique(position).size < 5:
@@ -245,7 +246,7 @@ def _shapes(problem: Problem, columns: Mapping[str, Array], root: Array) -> list
 
 
 def _pulse_shape(
-    problem: Problem, columns: Mapping[str, Array], root: Array
+    problem: Case, columns: Mapping[str, Floats], root: Floats
 ) -> tuple[Candidate, ...]:
     """The pulses that show in more than one reading: in one alone it is a slip."""
     stacked = np.stack(_pulses(problem.position, problem.side))
@@ -264,7 +265,7 @@ def _pulse_shape(
     return (replace(shape, midpoint=pure[spread]),)
 
 
-def _pulses(position: Array, side: Array | None, *, kicked: bool = True) -> list[Array]:
+def _pulses(position: Floats, side: Floats | None, *, kicked: bool = True) -> list[Floats]:
     """North, or the constant, off for two places or more and then back, shape (n, 1) each.
 
     At either end of the record only two places: what is off for longer there is a step. A shift
@@ -285,8 +286,8 @@ def _pulses(position: Array, side: Array | None, *, kicked: bool = True) -> list
 
 
 def _shifts(
-    position: Array, side: Array | None, place: float, *, kicked: bool
-) -> tuple[Array, ...]:
+    position: Floats, side: Floats | None, place: float, *, kicked: bool
+) -> tuple[Floats, ...]:
     """A shift after a place, at each phase of the half swing that follows it, shape (n,) each."""
     after = (position > place).astype(np.float64)
     if side is None:
@@ -296,7 +297,7 @@ def _shifts(
 
 
 def _periodic(
-    name: str, x: Array, cycles: tuple[float, float], root: Array, *, n: int
+    name: str, x: Floats, cycles: tuple[float, float], root: Floats, *, n: int
 ) -> Candidate:
     """Sine and cosine with a scanned number of cycles over the record."""
     low, high = cycles
@@ -308,7 +309,7 @@ def _periodic(
     return _shape(name, columns, 3, root)
 
 
-def orthonormal(columns: Array, share: float) -> tuple[Array, Array]:
+def orthonormal(columns: Floats, share: float) -> tuple[Floats, Floats]:
     """Orthonormalise the columns of each grid point.
 
     Parameters
@@ -351,12 +352,12 @@ class Projected:
     """
 
     candidate: Candidate
-    columns: Array
+    columns: Floats
     index: NDArray[np.intp]
     left: float
 
 
-def project(candidate: Candidate, q: Array) -> Projected:
+def project(candidate: Candidate, q: Floats) -> Projected:
     """Project a candidate on what an orthonormal basis ``q`` of the model leaves."""
     raw = candidate.columns
     if raw.shape[0] == 0:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from surveyapp.diagnosis.problem import Problem
-from surveyapp.errors import Problem as InputProblem
-from surveyapp.errors import SurveyError
+from surveyapp.diagnosis.case import Case
+from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.angles import wrap_pi_array
 
 LEAST_CONFIRMING_RUN = 6
@@ -19,7 +18,7 @@ EQUAL = 1e-9
 """Readings [rad], and other observations in printed units, that differ by less are the same."""
 
 
-def check_input(problem: Problem, confirm: Problem | None) -> None:
+def check_input(problem: Case, confirm: Case | None) -> None:
     """Raise a SurveyError with everything that is wrong with a problem and its second set."""
     faults = []
     least = problem.base_parameters + 1
@@ -27,7 +26,7 @@ def check_input(problem: Problem, confirm: Problem | None) -> None:
         least = 2
     if problem.size < least:
         faults.append(
-            InputProblem(
+            Problem(
                 "too few observations to diagnose anything",
                 problem.identity,
                 f"{problem.size}",
@@ -41,11 +40,11 @@ def check_input(problem: Problem, confirm: Problem | None) -> None:
         raise SurveyError(faults)
 
 
-def _second_set(problem: Problem, confirm: Problem) -> list[InputProblem]:
+def _second_set(problem: Case, confirm: Case) -> list[Problem]:
     """What is wrong with a second set: it must be of the same thing, and another record of it."""
     if confirm.subject != problem.subject:
         return [
-            InputProblem(
+            Problem(
                 "the second set is of another subject",
                 confirm.identity,
                 confirm.subject,
@@ -56,7 +55,7 @@ def _second_set(problem: Problem, confirm: Problem) -> list[InputProblem]:
     faults = []
     if confirm.instrument != problem.instrument:
         faults.append(
-            InputProblem(
+            Problem(
                 "the second set is of another instrument",
                 confirm.identity,
                 confirm.instrument or "no instrument",
@@ -75,7 +74,7 @@ def _second_set(problem: Problem, confirm: Problem) -> list[InputProblem]:
         least = max(least, LEAST_CONFIRMING_RUN)
     if confirm.size < least:
         faults.append(
-            InputProblem(
+            Problem(
                 "too few observations in the second set",
                 confirm.identity,
                 f"{confirm.size}",
@@ -86,8 +85,8 @@ def _second_set(problem: Problem, confirm: Problem) -> list[InputProblem]:
     return faults
 
 
-def _no_second(confirm: Problem, found: str) -> InputProblem:
-    return InputProblem(
+def _no_second(confirm: Case, found: str) -> Problem:
+    return Problem(
         "the second set is no second set: it would confirm whatever it chose",
         f"--confirm, {confirm.identity}",
         found,
@@ -96,7 +95,7 @@ def _no_second(confirm: Problem, found: str) -> InputProblem:
     )
 
 
-def repeats(problem: Problem, confirm: Problem) -> bool:
+def repeats(problem: Case, confirm: Case) -> bool:
     """Whether a second set holds the observations of the first, of a run also in part.
 
     Independent turning points differ by the noise of their readings and by their amplitude; a book

@@ -14,7 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surveyapp.diagnosis.candidates import Candidate, Projected, project
+from surveyapp.diagnosis.candidates import Candidate, project
+from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.fits import (
     Fit,
     Member,
@@ -26,7 +27,7 @@ from surveyapp.diagnosis.fits import (
     with_noise,
 )
 from surveyapp.diagnosis.nulls import reductions
-from surveyapp.diagnosis.problem import Array, Problem
+from surveyapp_models.arrays import Floats
 
 MARGIN = 4.0
 """BIC by which every rival must be worse (diagnosis.md step 4)."""
@@ -100,13 +101,13 @@ class Level:
         return min(simpler, key=lambda fit: (fit.parameters, fit.bic)) if simpler else best
 
 
-def base_level(problem: Problem) -> Level:
+def base_level(problem: Case) -> Level:
     """The model that stands, alone."""
     fit = fit_members(problem, ())
     return Level(0, (fit,), with_noise(problem, fit))
 
 
-def orthonormal_design(fit: Fit) -> Array:
+def orthonormal_design(fit: Fit) -> Floats:
     """Orthonormal basis of the columns of a fit, dependent ones dropped."""
     norms = np.sqrt((fit.design**2).sum(axis=0))
     unit = fit.design / np.where(norms > 0.0, norms, 1.0)
@@ -144,7 +145,7 @@ Draft = tuple[float, tuple[Member, ...], Fit]
 """Approximate BIC, members, and the set that was added to."""
 
 
-def next_level(problem: Problem, level: Level, candidates: Iterable[Candidate]) -> Level:
+def next_level(problem: Case, level: Level, candidates: Iterable[Candidate]) -> Level:
     """Best fit of every set that has one candidate more than the best sets of a level."""
     drafts = _drafts(problem, level, tuple(candidates))
     if not drafts:
@@ -168,7 +169,7 @@ def next_level(problem: Problem, level: Level, candidates: Iterable[Candidate]) 
 
 
 def _drafts(
-    problem: Problem, level: Level, pool: tuple[Candidate, ...]
+    problem: Case, level: Level, pool: tuple[Candidate, ...]
 ) -> dict[tuple[frozenset[str], int], Draft]:
     """Best addition for each set of names and each number of gross errors in it."""
     drafts: dict[tuple[frozenset[str], int], Draft] = {}
@@ -187,7 +188,7 @@ def _drafts(
     return drafts
 
 
-def settled_count(problem: Problem, counts: Mapping[int, Fit]) -> Fit:
+def settled_count(problem: Case, counts: Mapping[int, Fit]) -> Fit:
     """As many gross errors as each prove themselves beside the others.
 
     Fits of the same effects with more and more gross errors. A further one is taken for real when
@@ -219,7 +220,7 @@ def f_limit(p: float, upper: int, lower: int) -> float:
 
 
 def _best_addition(
-    problem: Problem, anchor: Fit, candidate: Candidate, q: Array
+    problem: Case, anchor: Fit, candidate: Candidate, q: Floats
 ) -> tuple[float, tuple[Member, ...]] | None:
     """Best grid point of a candidate beside an anchor and the approximate BIC there."""
     item = project(candidate, q)
@@ -242,7 +243,7 @@ def slip_bends(candidate: Candidate, fit: Fit) -> bool:
     return candidate.is_slip and is_spoilt(fit)
 
 
-def _refined(problem: Problem, members: tuple[Member, ...], anchor: Fit, *, every: bool) -> Fit:
+def _refined(problem: Case, members: tuple[Member, ...], anchor: Fit, *, every: bool) -> Fit:
     """Exact fit; the grid of every member is searched again beside the others."""
     start = anchor.theta
     fit = fit_members(problem, members, start)
@@ -293,7 +294,7 @@ def within_margin(level: Level) -> tuple[Fit, ...]:
     return tuple(sorted((*chosen, *rivals), key=lambda fit: (fit.bic, fit is not best)))
 
 
-def scored(problem: Problem, fit: Fit) -> Fit:
+def scored(problem: Case, fit: Fit) -> Fit:
     """The fit with its scans paid for by the evidence.
 
     A scan over G points of which only one explains the record costs 2 log G; one of which many do
@@ -316,7 +317,7 @@ def scored(problem: Problem, fit: Fit) -> Fit:
     return dataclasses.replace(fit, score=score)
 
 
-def _profile(problem: Problem, fit: Fit, member: Member, others: tuple[Member, ...]) -> Array:
+def _profile(problem: Case, fit: Fit, member: Member, others: tuple[Member, ...]) -> Floats:
     """Sum of squares at each separable grid point of a member beside the others."""
     if member.candidate.is_law and fit.theta is not None:
         return scan_law(problem, member.candidate, others, fit.theta)
@@ -348,7 +349,7 @@ def spans(rival: Fit, fit: Fit) -> bool:
     return bool(np.all(np.sqrt((left**2).sum(axis=0)) <= allowed))
 
 
-def added_signal(fit: Fit) -> Array:
+def added_signal(fit: Fit) -> Floats:
     """Fitted contribution of each member, beside the base (weighted), shape (n, members)."""
     laws = 1 if fit.law is not None else 0
     swing = 0 if fit.theta is None else 2 + laws
@@ -368,25 +369,6 @@ def added_signal(fit: Fit) -> Array:
     return np.column_stack(signals) if signals else np.zeros((fit.design.shape[0], 0))
 
 
-def common_names(sets: Iterable[Fit]) -> frozenset[str]:
-    """Ids that are in every set."""
-    keys = [fit.key for fit in sets]
-    return frozenset.intersection(*keys) if keys else frozenset()
-
-
-def best_without(level: Level, identity: str) -> Fit | None:
-    """Best set of a level that does not contain an effect."""
-    return next((fit for fit in level.every if identity not in fit.key), None)
-
-
 def best_with(level: Level, identity: str) -> Fit | None:
     """Best set of a level that contains an effect."""
     return next((fit for fit in level.every if identity in fit.key), None)
-
-
-def by_id(items: Iterable[Projected]) -> Mapping[str, list[int]]:
-    """Positions of the candidates of each id (gross errors have several)."""
-    found: dict[str, list[int]] = {}
-    for i, item in enumerate(items):
-        found.setdefault(item.candidate.id, []).append(i)
-    return found

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from surveyapp.diagnosis.adoption import adoptions, p_values
 from surveyapp.diagnosis.ambiguity import ambiguities
 from surveyapp.diagnosis.battery import run_battery
+from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.checks import check_input
 from surveyapp.diagnosis.compare import Level
 from surveyapp.diagnosis.fits import Fit, unit_variance
@@ -22,15 +22,14 @@ from surveyapp.diagnosis.long_records.record import (
     with_lines,
 )
 from surveyapp.diagnosis.loop import DEFAULT_DRAWS, Search, rivals_delta, search
-from surveyapp.diagnosis.problem import Problem
 from surveyapp.diagnosis.result import (
     Ambiguity,
     CandidateResult,
     CandidateVerdict,
     DatumValue,
     Diagnosis,
+    Estimate,
     ModelResult,
-    Quantity,
     Verdict,
 )
 from surveyapp.diagnosis.run_value import (
@@ -44,16 +43,16 @@ from surveyapp.domain.project import ResultWarning
 
 
 def diagnose(
-    problem: Problem, *, confirm: Problem | None = None, draws: int = DEFAULT_DRAWS
+    problem: Case, *, confirm: Case | None = None, draws: int = DEFAULT_DRAWS
 ) -> Diagnosis:
     """Find what the model of a record lacks, and prove it.
 
     Parameters
     ----------
-    problem : Problem
+    problem : Case
         Made by ``reversal_run`` or ``campaign``, or by another subject. Of more than 400
         observations in time order the lines are taken out and block means are diagnosed.
-    confirm : Problem, optional
+    confirm : Case, optional
         A second, independent set of the same subject and instrument.
     draws : int
         Monte Carlo draws of each null distribution.
@@ -79,8 +78,8 @@ def diagnose(
 
 
 def _diagnosed(
-    problem: Problem,
-    confirm: Problem | None,
+    problem: Case,
+    confirm: Case | None,
     draws: int,
     *,
     record: LongRecord | None = None,
@@ -119,12 +118,13 @@ def _diagnosed(
         battery=battery,
         ledger=ledger_entry(problem, found, battery, digest=digest, draws=draws),
         residuals_before=_residuals(problem, base),
-        residuals_after=_residuals(problem, found.after),
         residuals_best=_residuals(problem, best),
+        title=problem.title or problem.subject.replace("_", " "),
+        value_name=problem.value_name,
     )
 
 
-def _widened(problem: Problem, found: Search, averaged: Value, verdict: Verdict) -> Value:
+def _widened(problem: Case, found: Search, averaged: Value, verdict: Verdict) -> Value:
     """The averaged value, not more certain than what remains without a name allows.
 
     What no cause explains is not taken out of the sigma: it is the sigma of the named model, with
@@ -150,11 +150,11 @@ def _widened(problem: Problem, found: Search, averaged: Value, verdict: Verdict)
     return averaged
 
 
-def _quantity(problem: Problem, value: Value) -> Quantity:
-    return Quantity(problem.offset + value.value, value.sigma, value.interval95)
+def _quantity(problem: Case, value: Value) -> Estimate:
+    return Estimate(problem.offset + value.value, value.sigma, value.interval95)
 
 
-def _model(problem: Problem, fit: Fit, confirm: Problem | None) -> ModelResult:
+def _model(problem: Case, fit: Fit, confirm: Case | None) -> ModelResult:
     error = rms(problem, fit)
     dof = problem.size - fit.parameters
     sigma0 = math.sqrt(fit.sum_of_squares / dof) if dof > 0 else None
@@ -177,11 +177,11 @@ def _model(problem: Problem, fit: Fit, confirm: Problem | None) -> ModelResult:
     )
 
 
-def _residuals(problem: Problem, fit: Fit) -> tuple[float, ...]:
+def _residuals(problem: Case, fit: Fit) -> tuple[float, ...]:
     return tuple(float(v) for v in fit.residual / problem.root_weights)
 
 
-def denied(problem: Problem, base: Fit) -> bool:
+def denied(problem: Case, base: Fit) -> bool:
     """Whether the scatter denies the stated sigmas, where these serve: chi-square at 5 %."""
     from scipy.special import chdtrc
 
@@ -190,7 +190,7 @@ def denied(problem: Problem, base: Fit) -> bool:
     return known is not None and dof >= 1 and float(chdtrc(dof, base.sum_of_squares / known)) < GATE
 
 
-def _verdict(problem: Problem, found: Search, ambiguous: tuple[Ambiguity, ...]) -> Verdict:
+def _verdict(problem: Case, found: Search, ambiguous: tuple[Ambiguity, ...]) -> Verdict:
     """The weakest that applies."""
     if found.levels[-1].depth == 0:
         fired = found.gates[-1].fired or denied(problem, found.levels[0].fits[0])
@@ -202,7 +202,7 @@ def _verdict(problem: Problem, found: Search, ambiguous: tuple[Ambiguity, ...]) 
     return "not_separable" if ambiguous else "explained"
 
 
-def _candidates(problem: Problem, found: Search) -> tuple[CandidateResult, ...]:
+def _candidates(problem: Case, found: Search) -> tuple[CandidateResult, ...]:
     result = []
     refused = dict(found.refused)
     near = {i for fit in found.near for i in fit.key}
@@ -252,12 +252,12 @@ def _competing_level(found: Search, identity: str) -> Level | None:
     return last
 
 
-def _remedies(problem: Problem, found: Search) -> tuple[str, ...]:
+def _remedies(problem: Case, found: Search) -> tuple[str, ...]:
     wanted = {i for fit in found.near for i in fit.key} | set(found.adopted)
     return tuple(e.remedy for e in problem.effects if e.id in wanted)
 
 
-def _warnings(problem: Problem, found: Search) -> list[ResultWarning]:
+def _warnings(problem: Case, found: Search) -> list[ResultWarning]:
     result = []
     if problem.sigma_known:
         result.append(
@@ -288,8 +288,3 @@ def _warnings(problem: Problem, found: Search) -> list[ResultWarning]:
         ResultWarning("not_adopted", f"{identity}: {reason}") for identity, reason in found.refused
     ]
     return result
-
-
-def to_json(diagnosis: Diagnosis) -> dict[str, Any]:
-    """Same as ``diagnosis.to_dict()``, for callers that prefer a function."""
-    return diagnosis.to_dict()

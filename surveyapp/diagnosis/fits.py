@@ -13,9 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from surveyapp.diagnosis.candidates import Candidate
-from surveyapp.diagnosis.problem import Array, Problem
+from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.stochastic import EXTRA_PARAMETERS, NoiseFit, best_noises
 from surveyapp.diagnosis.swing import fit_swing, starting_values, tangent, triangular
+from surveyapp_models.arrays import Floats
 
 DEPENDENT = 1e-6
 """Relative singular value below which columns are one and the same."""
@@ -36,7 +37,7 @@ class Member:
         return dict(self.candidate.points[self.g])
 
     @property
-    def columns(self) -> Array:
+    def columns(self) -> Floats:
         """Weighted columns (n, q)."""
         return np.asarray(self.candidate.columns[self.g])
 
@@ -74,10 +75,10 @@ class Fit:
     """
 
     members: tuple[Member, ...]
-    linear: Array
-    theta: Array | None
-    design: Array
-    residual: Array
+    linear: Floats
+    theta: Floats | None
+    design: Floats
+    residual: Floats
     parameters: float
     bic: float
     score: float
@@ -112,12 +113,12 @@ class Fit:
         return next((m for m in self.members if m.candidate.is_law), None)
 
 
-def information(problem: Problem, residual: Array, parameters: float) -> float:
+def information(problem: Case, residual: Floats, parameters: float) -> float:
     """BIC = n log(v'Pv / n) + p log n, not below what rounding leaves; with known sigmas chi^2."""
     return float(bic_of(problem, np.array(residual @ residual), parameters))
 
 
-def unit_variance(problem: Problem) -> float | None:
+def unit_variance(problem: Case) -> float | None:
     """Variance of an observation of mean weight where stated sigmas serve, else None [SI^2]."""
     if not problem.sigma_known or problem.sigma is None:
         return None
@@ -126,7 +127,7 @@ def unit_variance(problem: Problem) -> float | None:
     return float(np.mean(problem.sigma**2))
 
 
-def bic_of(problem: Problem, rss: Array, parameters: float | Array) -> Array:
+def bic_of(problem: Case, rss: Floats, parameters: float | Floats) -> Floats:
     """BIC of sums of squares [SI^2]."""
     n = problem.size
     known = unit_variance(problem)
@@ -137,12 +138,12 @@ def bic_of(problem: Problem, rss: Array, parameters: float | Array) -> Array:
     return np.asarray(n * np.log(mean / problem.scale**2) + parameters * np.log(n))
 
 
-def fit_members(problem: Problem, members: Iterable[Member], start: Array | None = None) -> Fit:
+def fit_members(problem: Case, members: Iterable[Member], start: Floats | None = None) -> Fit:
     """Least squares of the base model with the given members at their grid points.
 
     Parameters
     ----------
-    problem : Problem
+    problem : Case
     members : iterable of Member
         At most one amplitude law.
     start : ndarray, shape (3,), optional
@@ -180,7 +181,7 @@ def fit_members(problem: Problem, members: Iterable[Member], start: Array | None
     return Fit(every, linear, theta, np.hstack([X, D]), residual, parameters, bic, bic)
 
 
-def independent(problem: Problem, members: Iterable[Member]) -> bool:
+def independent(problem: Case, members: Iterable[Member]) -> bool:
     """Whether the columns of the base and of all members beside it can be told apart."""
     root = problem.root_weights
     additive = [m.columns for m in members if not m.candidate.is_law]
@@ -192,7 +193,7 @@ def independent(problem: Problem, members: Iterable[Member]) -> bool:
     return bool(s[-1] > DEPENDENT * s[0])
 
 
-def _amplitude(problem: Problem, theta: Array, law: Member | None) -> Array:
+def _amplitude(problem: Case, theta: Floats, law: Member | None) -> Floats:
     if problem.half_swing is None:
         return np.zeros(problem.size)
     if law is None or law.candidate.effect is None or law.candidate.effect.law is None:
@@ -202,8 +203,8 @@ def _amplitude(problem: Problem, theta: Array, law: Member | None) -> Array:
 
 
 def scan_law(
-    problem: Problem, candidate: Candidate, others: tuple[Member, ...], start: Array
-) -> Array:
+    problem: Case, candidate: Candidate, others: tuple[Member, ...], start: Floats
+) -> Floats:
     """Sum of squares at each grid point of an amplitude law beside other members, shape (g,)."""
     if problem.side is None or problem.half_swing is None or candidate.effect is None:
         return np.zeros(0)
@@ -234,8 +235,8 @@ def is_spoilt(fit: Fit) -> bool:
 
 
 def scan_exact(
-    problem: Problem, candidate: Candidate, others: tuple[Member, ...], start: Array
-) -> Array:
+    problem: Case, candidate: Candidate, others: tuple[Member, ...], start: Floats
+) -> Floats:
     """Sum of squares at each grid point with the whole model fitted anew, shape (g,).
 
     Each fit begins at the best swing of the others, and at the one without what the point explains.
@@ -253,7 +254,7 @@ def scan_exact(
     return found
 
 
-def with_noise(problem: Problem, fit: Fit) -> tuple[Fit, ...]:
+def with_noise(problem: Case, fit: Fit) -> tuple[Fit, ...]:
     """The same model with each stochastic rival beside its members; none without any order."""
     if not problem.ordered:
         return ()

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from surveyapp.diagnosis.candidates import Candidate, Projected, project
+from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.compare import may_join, orthonormal_design, slip_bends
 from surveyapp.diagnosis.fits import Fit, scan_exact, scan_law, unit_variance
 from surveyapp.diagnosis.nulls import Noise, null_of, ratio, reductions
-from surveyapp.diagnosis.problem import Array, Problem
+from surveyapp_models.arrays import Floats
 
 GATE = 0.05
 """Family p at which the search goes on (diagnosis.md step 3)."""
@@ -61,7 +62,7 @@ class Gate:
         return self.p_family <= GATE
 
 
-def rounding_of(problem: Problem, fit: Fit) -> float:
+def rounding_of(problem: Case, fit: Fit) -> float:
     """Reading resolution in units of the noise, in coarse steps so that nulls are kept."""
     if problem.resolution <= 0.0:
         return 0.0
@@ -73,7 +74,7 @@ def rounding_of(problem: Problem, fit: Fit) -> float:
     return 0.0 if share < FINE else float(2.0 ** (np.round(2.0 * np.log2(share)) / 2.0))
 
 
-def statistic(problem: Problem, fit: Fit, item: Projected, q: Array) -> float:
+def statistic(problem: Case, fit: Fit, item: Projected, q: Floats) -> float:
     """Largest reduction of the sum of squares over the grid, relative to what is left."""
     reduction = float(reductions(item, fit.residual).max(initial=0.0))
     candidate = item.candidate
@@ -90,12 +91,12 @@ def statistic(problem: Problem, fit: Fit, item: Projected, q: Array) -> float:
     return float(ratio(np.array(reduction), np.array(fit.sum_of_squares), floor))
 
 
-def open_gate(problem: Problem, fit: Fit, pool: Iterable[Candidate], draws: int) -> Gate:
+def open_gate(problem: Case, fit: Fit, pool: Iterable[Candidate], draws: int) -> Gate:
     """Test every candidate beside a model.
 
     Parameters
     ----------
-    problem : Problem
+    problem : Case
     fit : Fit
     pool : iterable of Candidate
     draws : int

@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.diagnosis.candidates import Candidate, swing_columns
+from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.fits import Fit, Member, fit_members, independent, unit_variance
-from surveyapp.diagnosis.problem import Array, Problem
 from surveyapp.diagnosis.swing import fit_swing, starting_values
+from surveyapp_models.arrays import Floats
 
 FOLD_POSITIONS = 8
 """Grid points of each member, next to its own on the grid, among which a fold may choose."""
@@ -26,7 +27,7 @@ FORECAST_SHARE = 0.75
 """Share of the record from which the rest is predicted."""
 
 
-def flagged(fit: Fit) -> Array:
+def flagged(fit: Fit) -> Floats:
     """Observations that the fit takes for gross errors, as a mask (n,) of 0 and 1."""
     mask = np.zeros(fit.residual.size)
     for member in fit.members:
@@ -38,13 +39,13 @@ def flagged(fit: Fit) -> Array:
     return mask
 
 
-def uncontrolled(problem: Problem) -> Array:
+def uncontrolled(problem: Case) -> Floats:
     """Observations that no other one controls, as a mask (n,): the result's own of a traverse."""
     q, _ = np.linalg.qr(problem.base * problem.root_weights[:, None])
     return np.asarray(1.0 - np.einsum("np,np->n", q, q) < 1e-6, dtype=np.float64)
 
 
-def _alternatives(problem: Problem, fit: Fit) -> list[Fit]:
+def _alternatives(problem: Case, fit: Fit) -> list[Fit]:
     found = [fit]
     for member in fit.members:
         points = len(member.candidate.points)
@@ -60,12 +61,12 @@ def _alternatives(problem: Problem, fit: Fit) -> list[Fit]:
     return found
 
 
-def leave_one_out(problem: Problem, fit: Fit, skip: Array | None = None) -> float | None:
+def leave_one_out(problem: Case, fit: Fit, skip: Floats | None = None) -> float | None:
     """Root mean square error [SI] of predicting each observation from the others.
 
     Parameters
     ----------
-    problem : Problem
+    problem : Case
     fit : Fit
     skip : ndarray, shape (n,), optional
         1 where an observation is not predicted (gross errors), in addition to the fit's own.
@@ -94,19 +95,19 @@ def leave_one_out(problem: Problem, fit: Fit, skip: Array | None = None) -> floa
     return float(np.sqrt(np.mean(error**2)))
 
 
-def unforetold(fit: Fit) -> Array:
+def unforetold(fit: Fit) -> Floats:
     """Observations that a fit does not predict, as a mask (n,): flagged, or alone."""
     q, _ = np.linalg.qr(fit.design)
     alone = 1.0 - np.einsum("np,np->n", q, q) <= LEAST_CONTROL
     return np.asarray(np.maximum(flagged(fit), alone.astype(np.float64)))
 
 
-def _foretold(problem: Problem, errors: Array, left: Array) -> Array:
+def _foretold(problem: Case, errors: Floats, left: Floats) -> Floats:
     """Error of each observation, foretold by the grid points that its own fold makes likely.
 
     Parameters
     ----------
-    problem : Problem
+    problem : Case
     errors : ndarray, shape (g, n)
         Of each grid point; infinite where it is not determined without the observation.
     left : ndarray, shape (g, n)
@@ -128,8 +129,8 @@ def _foretold(problem: Problem, errors: Array, left: Array) -> Array:
     return np.where(total > 0.0, mean / np.where(total > 0.0, total, 1.0), np.inf)
 
 
-def _subset(problem: Problem, rows: NDArray[np.intp]) -> Problem:
-    def cut(values: Array | None) -> Array | None:
+def _subset(problem: Case, rows: NDArray[np.intp]) -> Case:
+    def cut(values: Floats | None) -> Floats | None:
         return None if values is None else values[rows]
 
     return dataclasses.replace(
@@ -145,7 +146,7 @@ def _subset(problem: Problem, rows: NDArray[np.intp]) -> Problem:
     )
 
 
-def forecast(problem: Problem, fit: Fit) -> float | None:
+def forecast(problem: Case, fit: Fit) -> float | None:
     """Root mean square error [SI] of predicting the last quarter from the first three.
 
     None where an effect of the fit cannot be determined from the first three quarters.
@@ -176,14 +177,14 @@ def forecast(problem: Problem, fit: Fit) -> float | None:
     return float(np.sqrt(np.mean((problem.observations - predicted)[rest] ** 2)))
 
 
-def _single(member: Member, columns: Array) -> Candidate:
+def _single(member: Member, columns: Floats) -> Candidate:
     c = member.candidate
     return dataclasses.replace(
         c, points=(c.points[member.g],), columns=columns, charge=c.charge[member.g : member.g + 1]
     )
 
 
-def _predict(problem: Problem, members: tuple[Member, ...], trained: Fit) -> Array:
+def _predict(problem: Case, members: tuple[Member, ...], trained: Fit) -> Floats:
     """Unweighted prediction of all observations of a problem from a fit to some of them."""
     root = problem.root_weights
     order = sorted(members, key=lambda m: m.candidate.is_law)
@@ -198,7 +199,7 @@ def _predict(problem: Problem, members: tuple[Member, ...], trained: Fit) -> Arr
     )
 
 
-def amplitude_of(half_swing: Array, theta: Array, law: Member | None) -> Array:
+def amplitude_of(half_swing: Floats, theta: Floats, law: Member | None) -> Floats:
     """Amplitude at each turning point under a law."""
     if law is None or law.candidate.effect is None or law.candidate.effect.law is None:
         return np.asarray(theta[0] * np.exp(-theta[1] * half_swing))
@@ -206,12 +207,12 @@ def amplitude_of(half_swing: Array, theta: Array, law: Member | None) -> Array:
     return law.candidate.effect.law(half_swing, first, decay, c, **law.point)
 
 
-def confirm_rms(second: Problem, fit: Fit | None) -> float | None:
+def confirm_rms(second: Case, fit: Fit | None) -> float | None:
     """Root mean square [SI] on a second set: effects as found on the first, base fitted anew.
 
     Parameters
     ----------
-    second : Problem
+    second : Case
         Did not choose anything.
     fit : Fit or None
         Of the first set; None = the base model alone.
@@ -264,7 +265,7 @@ def _base_size(fit: Fit) -> int:
     return fit.linear.size - additive
 
 
-def _columns_on(second: Problem, member: Member, named: dict[str, Array]) -> Array | None:
+def _columns_on(second: Case, member: Member, named: dict[str, Floats]) -> Floats | None:
     """Columns of a member on another set, unweighted; None where they cannot be formed."""
     candidate, effect = member.candidate, member.candidate.effect
     if effect is None:

@@ -9,15 +9,15 @@ import math
 from typing import Any
 
 from surveyapp.diagnosis.battery import BatteryTest
+from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.fits import Fit
 from surveyapp.diagnosis.loop import Search
-from surveyapp.diagnosis.problem import Problem
 
 SCHEMA = "surveyapp.ledger.diagnosis/1"
 
 
 def ledger_entry(
-    problem: Problem,
+    problem: Case,
     found: Search,
     battery: tuple[BatteryTest, ...],
     *,
@@ -62,7 +62,7 @@ def ledger_entry(
     }
 
 
-def _trial(problem: Problem, fit: Fit) -> dict[str, Any]:
+def _trial(problem: Case, fit: Fit) -> dict[str, Any]:
     return {
         "effects": list(fit.effects),
         "grid": [member.point for member in fit.members],

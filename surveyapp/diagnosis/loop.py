@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from surveyapp.diagnosis.candidates import Candidate, all_candidates
+from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.compare import (
     MARGIN,
     Level,
@@ -27,7 +28,6 @@ from surveyapp.diagnosis.compare import (
 from surveyapp.diagnosis.fits import Fit, fit_members, with_noise
 from surveyapp.diagnosis.gate import GATE, Gate, open_gate
 from surveyapp.diagnosis.held_out import confirm_rms, flagged, leave_one_out, unforetold
-from surveyapp.diagnosis.problem import Problem
 from surveyapp.diagnosis.run_value import plausible
 
 DEFAULT_DRAWS = 4000
@@ -94,7 +94,7 @@ def deepest(size: int) -> int:
     return next((depth for least, depth in DEPTHS if size >= least), 1)
 
 
-def search(problem: Problem, *, draws: int, confirm: Problem | None) -> Search:
+def search(problem: Case, *, draws: int, confirm: Case | None) -> Search:
     """Run steps 2 to 6 of the algorithm."""
     levels = [base_level(problem)]
     base = levels[0].fits[0]
@@ -145,7 +145,7 @@ def _chosen(level: Level, near: tuple[Fit, ...]) -> Fit | None:
     return next((fit for fit in near if fit.noise is None), near[0] if near else None)
 
 
-def _possible(problem: Problem, level: Level) -> tuple[Level, set[str]]:
+def _possible(problem: Case, level: Level) -> tuple[Level, set[str]]:
     """Drop sets with too many parameters or coefficients outside their physical range."""
     kept, dropped = [], set()
     for fit in level.fits:
@@ -162,7 +162,7 @@ def _possible(problem: Problem, level: Level) -> tuple[Level, set[str]]:
 
 
 def _names(
-    problem: Problem, levels: list[Level], near: tuple[Fit, ...], *, confirmed: bool
+    problem: Case, levels: list[Level], near: tuple[Fit, ...], *, confirmed: bool
 ) -> list[str]:
     """Ids of named effects that are in every set within the margin."""
     if problem.size < LEAST_TO_NAME:
@@ -182,11 +182,11 @@ class Proofs:
 
     pool: tuple[Candidate, ...]
     draws: int
-    confirm: Problem | None
+    confirm: Case | None
 
 
 def _proved(
-    problem: Problem, best: Fit, names: list[str], base: Fit, proofs: Proofs
+    problem: Case, best: Fit, names: list[str], base: Fit, proofs: Proofs
 ) -> tuple[tuple[str, ...], tuple[tuple[str, str], ...], Fit]:
     """Keep the names that predict better and are missed when removed; fit them jointly."""
     refused: list[tuple[str, str]] = []
@@ -201,16 +201,14 @@ def _proved(
     return (), tuple(refused), base
 
 
-def reduced(problem: Problem, fit: Fit, names: Iterable[str]) -> Fit:
+def reduced(problem: Case, fit: Fit, names: Iterable[str]) -> Fit:
     """The same fit with only the members of the given ids."""
     keep = set(names)
     members = [m for m in fit.members if m.candidate.id in keep]
     return fit_members(problem, members, fit.theta if fit.theta is not None else None)
 
 
-def _failure(
-    problem: Problem, after: Fit, names: list[str], proofs: Proofs
-) -> tuple[str, str] | None:
+def _failure(problem: Case, after: Fit, names: list[str], proofs: Proofs) -> tuple[str, str] | None:
     """First adopted effect that fails a proof and why, else None."""
     mask = unforetold(after)
     with_all = leave_one_out(problem, after, mask)
@@ -251,7 +249,7 @@ def partly_missing(name: str, pool: Iterable[Candidate]) -> str:
     return ""
 
 
-def significant(problem: Problem, without: Fit, name: str, proofs: Proofs) -> bool:
+def significant(problem: Case, without: Fit, name: str, proofs: Proofs) -> bool:
     """Whether noise would rarely show an effect as strong, anywhere in its own scan.
 
     The gate may have been opened by another candidate. One that the model without it cannot be
@@ -262,7 +260,7 @@ def significant(problem: Problem, without: Fit, name: str, proofs: Proofs) -> bo
     return not own or own[0] is None or own[0] <= GATE
 
 
-def unconfirmed(confirm: Problem, after: Fit, without: Fit) -> str | None:
+def unconfirmed(confirm: Case, after: Fit, without: Fit) -> str | None:
     """Why a second set does not confirm an effect, else None."""
     here, there = confirm_rms(confirm, after), confirm_rms(confirm, without)
     if here is None or there is None:
@@ -270,7 +268,7 @@ def unconfirmed(confirm: Problem, after: Fit, without: Fit) -> str | None:
     return "the second set is predicted no better with it" if here >= there else None
 
 
-def imitating_noise(problem: Problem, after: Fit, without: Fit) -> str | None:
+def imitating_noise(problem: Case, after: Fit, without: Fit) -> str | None:
     """Kind of noise that explains the record without an effect nearly as well, else None."""
     rivals = [fit for fit in with_noise(problem, without) if fit.bic < after.bic + NOISE_MARGIN]
     best = min(rivals, key=lambda fit: fit.bic, default=None)

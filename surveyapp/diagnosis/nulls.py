@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from surveyapp.diagnosis.candidates import Projected
-from surveyapp.diagnosis.problem import Array
+from surveyapp_models.arrays import Floats
 
 CHUNK = 500_000
 """Numbers held at once while the draws are scanned."""
@@ -35,11 +35,11 @@ class Null:
         A p value counts divided by its weight.
     """
 
-    statistics: Array
-    smallest: Array
-    weights: Array
+    statistics: Floats
+    smallest: Floats
+    weights: Floats
 
-    def p_values(self, observed: Array) -> Array:
+    def p_values(self, observed: Floats) -> Floats:
         """P of each candidate: share of draws at least as large, never 0."""
         draws = self.statistics.shape[1]
         above = [
@@ -48,7 +48,7 @@ class Null:
         ]
         return np.asarray((1.0 + np.array(above, dtype=np.float64)) / (draws + 1.0))
 
-    def family(self, p: Array) -> Array:
+    def family(self, p: Floats) -> Floats:
         """Westfall-Young p of each candidate: how often noise shows one as small anywhere."""
         draws = self.smallest.size
         weighted = p / self.weights
@@ -79,12 +79,12 @@ class Noise:
 
     draws: int
     rounding: float
-    root: Array
+    root: Floats
     known: bool = False
-    colour: Array | None = None
+    colour: Floats | None = None
 
 
-def null_of(projected: tuple[Projected, ...], q: Array, noise: Noise) -> Null:
+def null_of(projected: tuple[Projected, ...], q: Floats, noise: Noise) -> Null:
     """Null of a family of candidates beside one model.
 
     Parameters
@@ -108,7 +108,7 @@ def null_of(projected: tuple[Projected, ...], q: Array, noise: Noise) -> Null:
     return known
 
 
-def _key(projected: tuple[Projected, ...], q: Array, noise: Noise) -> bytes:
+def _key(projected: tuple[Projected, ...], q: Floats, noise: Noise) -> bytes:
     digest = hashlib.sha256()
     for part in (q @ q.T, noise.root, np.array([noise.draws, noise.rounding, noise.known])):
         digest.update(np.ascontiguousarray(np.round(part, 9)).tobytes())
@@ -120,7 +120,7 @@ def _key(projected: tuple[Projected, ...], q: Array, noise: Noise) -> bytes:
     return digest.digest()
 
 
-def residual_draws(q: Array, noise: Noise, generator: np.random.Generator) -> Array:
+def residual_draws(q: Floats, noise: Noise, generator: np.random.Generator) -> Floats:
     """Residuals (draws, n) of noise that passed through rounding and the model's projector."""
     sample = generator.standard_normal((noise.draws, q.shape[0]))
     if noise.colour is not None:
@@ -130,7 +130,7 @@ def residual_draws(q: Array, noise: Noise, generator: np.random.Generator) -> Ar
     return np.asarray(sample - (sample @ q) @ q.T)
 
 
-def _simulate(projected: tuple[Projected, ...], q: Array, noise: Noise, key: bytes) -> Null:
+def _simulate(projected: tuple[Projected, ...], q: Floats, noise: Noise, key: bytes) -> Null:
     generator = np.random.default_rng(int.from_bytes(key[:16], "big"))
     residuals = residual_draws(q, noise, generator)
     floor = (q.shape[0] - q.shape[1]) * noise.rounding**2 / 12.0
@@ -148,12 +148,12 @@ def _simulate(projected: tuple[Projected, ...], q: Array, noise: Noise, key: byt
     return Null(order, np.sort(smallest), weights)
 
 
-def ratio(reduction: Array, total: Array, floor: float) -> Array:
+def ratio(reduction: Floats, total: Floats, floor: float) -> Floats:
     """Reduction of the sum of squares relative to what is left, at least the rounding's."""
     return np.asarray(reduction / np.maximum(np.maximum(total - reduction, floor), 1e-300))
 
 
-def _largest(item: Projected, residuals: Array) -> Array:
+def _largest(item: Projected, residuals: Floats) -> Floats:
     """Largest reduction over the grid for each draw; single precision is enough to rank draws."""
     g, n, q = item.columns.shape
     draws = residuals.shape[0]
@@ -175,7 +175,7 @@ def _largest(item: Projected, residuals: Array) -> Array:
     return result
 
 
-def reductions(item: Projected, residual: Array) -> Array:
+def reductions(item: Projected, residual: Floats) -> Floats:
     """Reduction of the sum of squares at each separable grid point, shape (g,)."""
     along = np.einsum("gnq,n->gq", item.columns, residual)
     if item.candidate.one_sided:

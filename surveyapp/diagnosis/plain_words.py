@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.long_records.lines import SpectralLine
-from surveyapp.diagnosis.problem import Problem
-from surveyapp.diagnosis.result import Adoption, Diagnosis, ModelResult, Quantity
+from surveyapp.diagnosis.result import Adoption, Diagnosis, Estimate, ModelResult
 from surveyapp_models.effects.effect import Effect
 
 NOISE_AND_SHAPES = {
@@ -26,11 +26,6 @@ NOISE_AND_SHAPES = {
     "amplitude_smooth": "a change of the damping without a known cause",
     "amplitude_step": "a sudden change of the amplitude without a known cause",
     "outlier": "a single determination that stands off",
-}
-RESULT_NAMES = {
-    "reversal_run": "north over the run",
-    "campaign": "the constant",
-    "traverse": "the place of the least certain point",
 }
 
 
@@ -71,7 +66,7 @@ def plain_words(
     return said
 
 
-def words_of(result: Diagnosis, problem: Problem) -> list[str]:
+def words_of(result: Diagnosis, problem: Case) -> list[str]:
     """Same as ``plain_words`` with the effects and labels of a problem."""
     return plain_words(result, problem.effects, problem.grid_labels)
 
@@ -158,12 +153,12 @@ def _line(result: Diagnosis, line: SpectralLine, known: dict[str, Effect]) -> st
     return f"{what}; {whose}."
 
 
-def _value(result: Diagnosis, quantity: Quantity) -> str:
+def _value(result: Diagnosis, quantity: Estimate) -> str:
     return _small(result, quantity.sigma)
 
 
 def _consequence(result: Diagnosis) -> list[str]:
-    what = RESULT_NAMES.get(result.subject, "the result")
+    what = result.value_name
     head = f"{what[0].upper()}{what[1:]}"
     shift = (result.averaged.value - result.before.value.value) / result.scale
     sigma, before = _value(result, result.averaged), _value(result, result.before.value)

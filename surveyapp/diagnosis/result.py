@@ -24,7 +24,7 @@ SCHEMA = "surveyapp.diagnose/1"
 
 
 @dataclass(frozen=True, slots=True)
-class Quantity:
+class Estimate:
     """A result: value [SI], sigma and half-width of the 95 % interval [SI]."""
 
     value: float
@@ -39,12 +39,12 @@ class DatumValue:
     Parameters
     ----------
     effect : str
-    states : tuple of (str, Quantity)
+    states : tuple of (str, Estimate)
         What the state is and the result there; a step has two, the last one counts for later work.
     """
 
     effect: str
-    states: tuple[tuple[str, Quantity], ...]
+    states: tuple[tuple[str, Estimate], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +63,7 @@ class ModelResult:
     loo_rms, confirm_rms, forecast_rms : float or None
         Errors [SI] on observations that did not choose: each one left out in turn, a second set,
         the last quarter from the first three.
-    value : Quantity
+    value : Estimate
     value_at_datum : DatumValue or None
     """
 
@@ -76,7 +76,7 @@ class ModelResult:
     loo_rms: float | None
     confirm_rms: float | None
     forecast_rms: float | None
-    value: Quantity
+    value: Estimate
     value_at_datum: DatumValue | None
 
 
@@ -166,18 +166,20 @@ class Diagnosis:
     verdict : str
     adopted, ambiguous, candidates
     before, after, after_best : ModelResult
-    averaged : Quantity
+    averaged : Estimate
     remedy : tuple of str
     warnings : tuple of ResultWarning
     battery : tuple of BatteryTest
     ledger : mapping
         The entry for the ledger, complete but for time and software.
-    residuals_before, residuals_after : tuple of float
+    residuals_before : tuple of float
         [SI]; of a long record those of its block means.
     lines : tuple of SpectralLine
         Of a long record; they are not in the residuals.
     frequency_unit : str
         Of the lines.
+    title, value_name : str
+        Of the subject, and of its result.
     """
 
     subject: str
@@ -193,16 +195,23 @@ class Diagnosis:
     before: ModelResult
     after: ModelResult
     after_best: ModelResult
-    averaged: Quantity
+    averaged: Estimate
     remedy: tuple[str, ...]
     warnings: tuple[ResultWarning, ...]
     battery: tuple[BatteryTest, ...]
     ledger: dict[str, Any]
     residuals_before: tuple[float, ...]
-    residuals_after: tuple[float, ...]
     residuals_best: tuple[float, ...]
     lines: tuple[SpectralLine, ...] = ()
     frequency_unit: str = "Hz"
+    title: str = ""
+    value_name: str = "the result"
+
+    @property
+    def heading(self) -> str:
+        """What was diagnosed: the subject, and which one."""
+        told = f"{self.identity} ".startswith(f"{self.title} ")
+        return self.identity if told else f"{self.title} {self.identity}"
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON of ``diagnose`` (design.md section 5)."""
@@ -257,7 +266,7 @@ class Diagnosis:
             "margin_bic": _rounded(item.margin_bic, 2),
         }
 
-    def _quantity(self, item: Quantity) -> dict[str, Any]:
+    def _quantity(self, item: Estimate) -> dict[str, Any]:
         if self.direction:
             value = {"deg": math.degrees(wrap_two_pi(item.value))}
         else:

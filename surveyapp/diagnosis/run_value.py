@@ -13,9 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from surveyapp.diagnosis.candidates import swing_columns
+from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.fits import Fit, Member, fit_members, independent, unit_variance
-from surveyapp.diagnosis.problem import Array, Problem
 from surveyapp.diagnosis.stochastic import NoiseKind, NoisePoint
+from surveyapp_models.arrays import Floats
 
 NEAR_POSITIONS = 6.0
 """BIC within which other positions of a searched effect contribute to its uncertainty."""
@@ -53,7 +54,7 @@ def t_quantile(probability: float, dof: float) -> float:
     return float(stdtrit(dof, probability))
 
 
-def effect_rows(problem: Problem, member: Member, columns: Array) -> Array:
+def effect_rows(problem: Case, member: Member, columns: Floats) -> Floats:
     """What the value takes of a member's columns, shape (q,)."""
     candidate = member.candidate
     effect = candidate.effect
@@ -64,7 +65,7 @@ def effect_rows(problem: Problem, member: Member, columns: Array) -> Array:
     return np.asarray(problem.value_weights @ columns)
 
 
-def _midpoint_columns(problem: Problem, fit: Fit, member: Member) -> Array:
+def _midpoint_columns(problem: Case, fit: Fit, member: Member) -> Floats:
     effect = member.candidate.effect
     if effect is not None and effect.midpoint is not None:
         return effect.midpoint(swing_columns(problem, fit.theta), **member.point)
@@ -73,7 +74,7 @@ def _midpoint_columns(problem: Problem, fit: Fit, member: Member) -> Array:
     return np.asarray(member.columns / problem.root_weights[:, None])
 
 
-def functional(problem: Problem, fit: Fit) -> Array:
+def functional(problem: Case, fit: Fit) -> Floats:
     """Row that makes the value of the parameters of a fit, shape (p,)."""
     parts = [problem.value_base]
     parts += [
@@ -85,7 +86,7 @@ def functional(problem: Problem, fit: Fit) -> Array:
     return np.concatenate([row, np.zeros(fit.design.shape[1] - row.size)])
 
 
-def _grid_derivatives(problem: Problem, fit: Fit) -> tuple[Array, Array]:
+def _grid_derivatives(problem: Case, fit: Fit) -> tuple[Floats, Floats]:
     """Columns of the continuous grid parameters (n, r), and what the value takes of them (r,)."""
     columns, rows = [], []
     at = problem.base.shape[1]
@@ -113,7 +114,7 @@ def _grid_derivatives(problem: Problem, fit: Fit) -> tuple[Array, Array]:
     return (np.column_stack(columns) if columns else np.zeros((n, 0))), np.array(rows)
 
 
-def _variance_factor(problem: Problem, fit: Fit) -> tuple[float, float]:
+def _variance_factor(problem: Case, fit: Fit) -> tuple[float, float]:
     known = unit_variance(problem)
     if known is not None:
         return known, math.inf
@@ -121,7 +122,7 @@ def _variance_factor(problem: Problem, fit: Fit) -> tuple[float, float]:
     return max(fit.sum_of_squares / dof, problem.noise_floor**2), dof
 
 
-def plain_value(problem: Problem, fit: Fit, row: Array | None = None) -> Value:
+def plain_value(problem: Case, fit: Fit, row: Floats | None = None) -> Value:
     """Value of a deterministic fit at its own grid point; ``row`` in place of the mean."""
     row = functional(problem, fit) if row is None else row
     extra, extra_row = _grid_derivatives(problem, fit)
@@ -138,7 +139,7 @@ def plain_value(problem: Problem, fit: Fit, row: Array | None = None) -> Value:
     return Value(float(row @ parameters), math.sqrt(factor * float(along @ along)), dof)
 
 
-def _noise_value(problem: Problem, fit: Fit) -> Value:
+def _noise_value(problem: Case, fit: Fit) -> Value:
     """Value beside a stochastic rival, averaged over what is likely of its grid."""
     noise = fit.noise
     if noise is None:
@@ -153,7 +154,7 @@ def _noise_value(problem: Problem, fit: Fit) -> Value:
 
 
 def _point_value(
-    problem: Problem, fit: Fit, point: NoisePoint, kind: NoiseKind
+    problem: Case, fit: Fit, point: NoisePoint, kind: NoiseKind
 ) -> tuple[float, float]:
     """Value and variance under one covariance: a walk of north is predicted, other is noise."""
     h = functional(problem, fit)
@@ -171,11 +172,11 @@ def _point_value(
     return value, point.white * (max(spread, 0.0) + float(gap @ point.cofactor @ gap))
 
 
-def _dof(problem: Problem, fit: Fit) -> float:
+def _dof(problem: Case, fit: Fit) -> float:
     return max(problem.size - fit.parameters, 1.0)
 
 
-def value_of(problem: Problem, fit: Fit) -> Value:
+def value_of(problem: Case, fit: Fit) -> Value:
     """Value of a fit, the spread over other likely positions of searched effects included."""
     if fit.noise is not None:
         return _noise_value(problem, fit)
@@ -195,7 +196,7 @@ def value_of(problem: Problem, fit: Fit) -> Value:
     return Value(central.value, math.hypot(central.sigma, math.sqrt(spread)), central.dof)
 
 
-def neighbours(problem: Problem, fit: Fit, member: Member) -> tuple[Fit, ...]:
+def neighbours(problem: Case, fit: Fit, member: Member) -> tuple[Fit, ...]:
     """Fits with one member at the positions next to its best one that are about as likely."""
     candidate = member.candidate
     if len(candidate.points) < 2 or candidate.count > 1:
@@ -214,7 +215,7 @@ def neighbours(problem: Problem, fit: Fit, member: Member) -> tuple[Fit, ...]:
     return tuple(found)
 
 
-def averaged_value(problem: Problem, fits: Sequence[Fit]) -> Value:
+def averaged_value(problem: Case, fits: Sequence[Fit]) -> Value:
     """Model average over sets of one depth, with the variance between the models.
 
     White, wandering and autocorrelated noise take part with equal odds, by their marginal
@@ -239,7 +240,7 @@ def averaged_value(problem: Problem, fits: Sequence[Fit]) -> Value:
     return Value(mean, math.sqrt(variance), dof)
 
 
-def datum_values(problem: Problem, fit: Fit) -> tuple[tuple[str, str, Value], ...]:
+def datum_values(problem: Case, fit: Fit) -> tuple[tuple[str, str, Value], ...]:
     """(effect, state, value) at the physical datum of the first effect that has one."""
     if fit.noise is not None:
         return ()
@@ -261,12 +262,12 @@ def datum_values(problem: Problem, fit: Fit) -> tuple[tuple[str, str, Value], ..
     return ()
 
 
-def rms(problem: Problem, fit: Fit) -> float:
+def rms(problem: Case, fit: Fit) -> float:
     """Root mean square of the unweighted residuals [SI]."""
     return float(np.sqrt(np.mean((fit.residual / problem.root_weights) ** 2)))
 
 
-def coefficients(problem: Problem, fit: Fit) -> dict[str, tuple[Array, Array]]:
+def coefficients(problem: Case, fit: Fit) -> dict[str, tuple[Floats, Floats]]:
     """Coefficients of each member and their covariance [SI], by id (gross errors joined)."""
     factor, _ = _variance_factor(problem, fit)
     norms = np.sqrt((fit.design**2).sum(axis=0))
@@ -287,7 +288,7 @@ def coefficients(problem: Problem, fit: Fit) -> dict[str, tuple[Array, Array]]:
     return {k: (every[i], covariance[np.ix_(i, i)]) for k, i in found.items()}
 
 
-def plausible(problem: Problem, fit: Fit) -> Iterable[str]:
+def plausible(problem: Case, fit: Fit) -> Iterable[str]:
     """Yield ids of members whose coefficients lie outside their physical range."""
     at = problem.base.shape[1]
     for member in fit.members:

@@ -14,7 +14,8 @@ from typing import Literal
 
 import numpy as np
 
-from surveyapp.diagnosis.problem import Array, Problem
+from surveyapp.diagnosis.case import Case
+from surveyapp_models.arrays import Floats
 
 NoiseKind = Literal["random_walk", "amplitude_walk", "ar1"]
 
@@ -49,15 +50,15 @@ class NoiseModel:
 
     kind: NoiseKind
     point: tuple[float, ...]
-    process: Array
-    whitener: Array
+    process: Floats
+    whitener: Floats
     log_determinant: float
 
 
 _CACHE: dict[bytes, tuple[NoiseModel, ...]] = {}
 
 
-def noise_models(problem: Problem) -> tuple[NoiseModel, ...]:
+def noise_models(problem: Case) -> tuple[NoiseModel, ...]:
     """All covariances of the stochastic rivals for the positions of a problem."""
     key = hashlib.sha256()
     for part in (problem.position, problem.root_weights):
@@ -72,7 +73,7 @@ def noise_models(problem: Problem) -> tuple[NoiseModel, ...]:
     return found
 
 
-def _build(problem: Problem) -> tuple[NoiseModel, ...]:
+def _build(problem: Case) -> tuple[NoiseModel, ...]:
     n, root = problem.size, problem.root_weights
     rank = _scaled_position(problem.position)
     walk = np.minimum.outer(rank, rank) + 1.0
@@ -82,7 +83,7 @@ def _build(problem: Problem) -> tuple[NoiseModel, ...]:
     if np.unique(rank).size < n:  # equal moments are no knowledge of equal noise
         lag = step
     thin = slice(None, None, 2) if n >= LARGE else slice(None)
-    models: list[tuple[NoiseKind, tuple[float, ...], Array]] = []
+    models: list[tuple[NoiseKind, tuple[float, ...], Floats]] = []
     for ratio in RATIOS[thin]:
         models.append(("random_walk", (float(ratio),), ratio * walk))
         if problem.side is not None:
@@ -94,7 +95,7 @@ def _build(problem: Problem) -> tuple[NoiseModel, ...]:
     for correlation in CORRELATIONS[thin]:
         # a negative correlation alternates from one observation to the next: it knows no time
         # between them, and only so is it a covariance where the positions are uneven
-        decay: Array = np.asarray(abs(correlation) ** (lag if correlation > 0.0 else step))
+        decay: Floats = np.asarray(abs(correlation) ** (lag if correlation > 0.0 else step))
         if correlation < 0.0:
             decay = decay * np.where(step % 2.0 == 0.0, 1.0, -1.0)
         models += [("ar1", (correlation, share), share * decay) for share in SHARES]
@@ -109,7 +110,7 @@ def _build(problem: Problem) -> tuple[NoiseModel, ...]:
     )
 
 
-def _scaled_position(position: Array) -> Array:
+def _scaled_position(position: Floats) -> Floats:
     """Positions with a median spacing of 1, so that the grids fit every record."""
     gaps = np.diff(np.sort(position))
     gaps = gaps[gaps > 0.0]
@@ -136,9 +137,9 @@ class NoisePoint:
 
     model: NoiseModel
     share: float
-    step: Array
+    step: Floats
     white: float
-    cofactor: Array
+    cofactor: Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,7 +161,7 @@ class NoiseFit:
 
 
 def best_noises(
-    problem: Problem, J: Array, residual: Array, *, scale: float, floor: float
+    problem: Case, J: Floats, residual: Floats, *, scale: float, floor: float
 ) -> tuple[NoiseFit, ...]:
     """Every kind of noise for the residuals of a design, by its marginal likelihood.
 
@@ -173,7 +174,7 @@ def best_noises(
 
     Parameters
     ----------
-    problem : Problem
+    problem : Case
     J : ndarray, shape (n, p)
         Design (weighted, derivatives of the non-linear part).
     residual : ndarray, shape (n,)
@@ -225,7 +226,7 @@ def best_noises(
     return tuple(result)
 
 
-def _independent(J: Array) -> tuple[Array, Array, Array]:
+def _independent(J: Floats) -> tuple[Floats, Floats, Floats]:
     """Orthonormal basis (n, r), triangle (r, p) and column norms (p,) of a design."""
     norms = np.sqrt((J**2).sum(axis=0))
     norms = np.where(norms > 0.0, norms, 1.0)

@@ -12,9 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from surveyapp_models.effects.effect import Array, Effect
+from surveyapp_models.arrays import Floats
+from surveyapp_models.effects.effect import Effect
 
-Law = Callable[[Array, Array, Array, Array], Array]
+Law = Callable[[Floats, Floats, Floats, Floats], Floats]
 Mask = NDArray[np.bool_]
 
 LARGEST_DECAY = 2.0
@@ -38,29 +39,29 @@ class SwingFit:
     sum_of_squares : ndarray, shape (g,)
     """
 
-    theta: Array
-    linear: Array
-    sum_of_squares: Array
+    theta: Floats
+    linear: Floats
+    sum_of_squares: Floats
 
 
-def exponential(half_swing: Array, first: Array, decay: Array, coefficient: Array) -> Array:
+def exponential(half_swing: Floats, first: Floats, decay: Floats, coefficient: Floats) -> Floats:
     """A exp(-k t); the coefficient is not used."""
     return np.asarray(first * np.exp(-decay * half_swing) + 0.0 * coefficient)
 
 
-def law_of(effect: Effect | None, grid: Mapping[str, Array]) -> Law:
+def law_of(effect: Effect | None, grid: Mapping[str, Floats]) -> Law:
     """Amplitude law with its grid bound, or the exponential one."""
     if effect is None or effect.law is None:
         return exponential
     law = effect.law
 
-    def bound(half_swing: Array, first: Array, decay: Array, coefficient: Array) -> Array:
+    def bound(half_swing: Floats, first: Floats, decay: Floats, coefficient: Floats) -> Floats:
         return law(half_swing, first, decay, coefficient, **grid)
 
     return bound
 
 
-def derivatives(law: Law, half_swing: Array, theta: Array, step: float) -> tuple[Array, Array]:
+def derivatives(law: Law, half_swing: Floats, theta: Floats, step: float) -> tuple[Floats, Floats]:
     """Amplitude (g, n) and its derivatives (g, n, 3) by central differences."""
     first, decay, c = (theta[:, i : i + 1] for i in range(3))
     value = law(half_swing, first, decay, c)
@@ -77,7 +78,7 @@ def derivatives(law: Law, half_swing: Array, theta: Array, step: float) -> tuple
     return value, np.stack([d_first, d_decay, d_c], axis=-1)
 
 
-def _bounded(theta: Array, *, one_sided: bool, total: bool) -> Array:
+def _bounded(theta: Floats, *, one_sided: bool, total: bool) -> Floats:
     theta = theta.copy()
     theta[:, 1] = np.clip(theta[:, 1], 0.0, LARGEST_DECAY)
     if one_sided:
@@ -87,7 +88,7 @@ def _bounded(theta: Array, *, one_sided: bool, total: bool) -> Array:
     return theta
 
 
-def triangular(r: Array, b: Array) -> Array:
+def triangular(r: Floats, b: Floats) -> Floats:
     """Solve r x = b; where r is singular, the shortest solution."""
     diagonal = np.abs(np.diag(r))
     if diagonal.size and diagonal.min() <= SINGULAR * diagonal.max():
@@ -95,7 +96,7 @@ def triangular(r: Array, b: Array) -> Array:
     return np.asarray(np.linalg.solve(r, b))
 
 
-def _linear_part(y: Array, X: Array, swing: Array) -> tuple[Array, Array]:
+def _linear_part(y: Floats, X: Floats, swing: Floats) -> tuple[Floats, Floats]:
     """Best linear coefficients (g, p) and sums of squares (g,) beside a given swing."""
     rest = y - swing
     if X.shape[-1] == 0:
@@ -106,7 +107,7 @@ def _linear_part(y: Array, X: Array, swing: Array) -> tuple[Array, Array]:
     return triangular(r, projected.T).T, np.einsum("gn,gn->g", left, left)
 
 
-def _steps(residual: Array, D: Array, frozen: Mask) -> Array:
+def _steps(residual: Floats, D: Floats, frozen: Mask) -> Floats:
     """Gauss-Newton steps (g, 3) from projected derivatives, frozen parameters kept."""
     D = np.where(frozen[:, None, :], 0.0, D)
     norms = np.sqrt(np.einsum("gnj,gnj->gj", D, D))
@@ -119,14 +120,14 @@ def _steps(residual: Array, D: Array, frozen: Mask) -> Array:
 
 
 def fit_swing(
-    y: Array,
-    X: Array,
+    y: Floats,
+    X: Floats,
     *,
-    side: Array,
-    half_swing: Array,
-    start: Array,
+    side: Floats,
+    half_swing: Floats,
+    start: Floats,
     effect: Effect | None = None,
-    grid: Mapping[str, Array] | None = None,
+    grid: Mapping[str, Floats] | None = None,
     fixed: bool = False,
 ) -> SwingFit:
     """Fit y = X b + s a(t) for each grid point of an amplitude law.
@@ -200,12 +201,12 @@ def _range(effect: Effect) -> float:
 
 def tangent(
     *,
-    side: Array,
-    half_swing: Array,
-    theta: Array,
+    side: Floats,
+    half_swing: Floats,
+    theta: Floats,
     effect: Effect | None,
     grid: Mapping[str, float],
-) -> Array:
+) -> Floats:
     """Derivatives of the reading by A, k and (with a law) its coefficient, shape (n, 2 or 3)."""
     law = law_of(effect, {name: np.array([[value]]) for name, value in grid.items()})
     step = 1e-6 if effect is None else 1e-6 * _range(effect)
@@ -213,10 +214,10 @@ def tangent(
     return np.asarray(side[:, None] * D[:, : 2 if effect is None else 3])
 
 
-def starting_values(y: Array, side: Array, half_swing: Array) -> Array:
+def starting_values(y: Floats, side: Floats, half_swing: Floats) -> Floats:
     """First amplitude, damping and 0, from a coarse scan of the damping."""
     decays = np.concatenate([[0.0], np.geomspace(1e-4, 0.5, 24)])
-    best: tuple[float, Array] | None = None
+    best: tuple[float, Floats] | None = None
     for decay in decays:
         X = np.column_stack([np.ones_like(y), side * np.exp(-decay * half_swing)])
         b, *_ = np.linalg.lstsq(X, y, rcond=None)

@@ -33,7 +33,7 @@ class ReadingKind(StrEnum):
     UNSTRIKE = "unstrike"
 
 
-class Quantity(StrEnum):
+class Dimension(StrEnum):
     """The physical quantity of a reading kind; it fixes the units a row may carry."""
 
     ANGLE = "angle"
@@ -44,24 +44,24 @@ class Quantity(StrEnum):
     NONE = "none"
 
 
-QUANTITY: dict[ReadingKind, Quantity] = {
-    ReadingKind.BACKSIGHT: Quantity.ANGLE,
-    ReadingKind.ZENITH: Quantity.ANGLE,
-    ReadingKind.REVERSAL: Quantity.ANGLE,
-    ReadingKind.MISSED: Quantity.NONE,
-    ReadingKind.CLAMP: Quantity.ANGLE,
-    ReadingKind.SCALE_REVERSAL: Quantity.DIVISIONS,
-    ReadingKind.TRANSIT: Quantity.DIVISIONS,
-    ReadingKind.TAPE_ZERO: Quantity.DIVISIONS,
-    ReadingKind.AZIMUTH: Quantity.ANGLE,
-    ReadingKind.NORTH: Quantity.ANGLE,
-    ReadingKind.LEVEL_ALONG: Quantity.TILT,
-    ReadingKind.LEVEL_ACROSS: Quantity.TILT,
-    ReadingKind.SUPPLY: Quantity.SUPPLY,
-    ReadingKind.TEMPERATURE: Quantity.TEMPERATURE,
-    ReadingKind.NOTE: Quantity.NONE,
-    ReadingKind.STRIKE: Quantity.NONE,
-    ReadingKind.UNSTRIKE: Quantity.NONE,
+QUANTITY: dict[ReadingKind, Dimension] = {
+    ReadingKind.BACKSIGHT: Dimension.ANGLE,
+    ReadingKind.ZENITH: Dimension.ANGLE,
+    ReadingKind.REVERSAL: Dimension.ANGLE,
+    ReadingKind.MISSED: Dimension.NONE,
+    ReadingKind.CLAMP: Dimension.ANGLE,
+    ReadingKind.SCALE_REVERSAL: Dimension.DIVISIONS,
+    ReadingKind.TRANSIT: Dimension.DIVISIONS,
+    ReadingKind.TAPE_ZERO: Dimension.DIVISIONS,
+    ReadingKind.AZIMUTH: Dimension.ANGLE,
+    ReadingKind.NORTH: Dimension.ANGLE,
+    ReadingKind.LEVEL_ALONG: Dimension.TILT,
+    ReadingKind.LEVEL_ACROSS: Dimension.TILT,
+    ReadingKind.SUPPLY: Dimension.SUPPLY,
+    ReadingKind.TEMPERATURE: Dimension.TEMPERATURE,
+    ReadingKind.NOTE: Dimension.NONE,
+    ReadingKind.STRIKE: Dimension.NONE,
+    ReadingKind.UNSTRIKE: Dimension.NONE,
 }
 
 QUIET_KINDS = frozenset({ReadingKind.NOTE, ReadingKind.STRIKE, ReadingKind.UNSTRIKE})

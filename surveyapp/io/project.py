@@ -17,7 +17,7 @@ from typing import Final
 
 from surveyapp.domain.project import Centring, OrientationSession, Project, ResultWarning
 from surveyapp.domain.readings import FieldBook
-from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.cards import is_path
 from surveyapp.io.fieldbook.reading import interpret, move_tail_aside, split_tail
 from surveyapp.io.files import decode, read_bytes, shown, shown_path
@@ -331,8 +331,3 @@ def _warn_shared_books(paths: list[str], findings: Findings) -> None:
     for path in sorted({p for p in paths if p and paths.count(p) > 1}):
         text = f"{PROJECT_FILE}: several sessions name the book {path}: it counts for each of them"
         findings.warnings.append(ResultWarning("shared_book", text))
-
-
-def nearest_session(project: Project, name: str) -> str:
-    """Hint for a session id that the project does not have."""
-    return nearest_names(name, [session.id for session in project.sessions])

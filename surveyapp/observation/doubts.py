@@ -35,7 +35,7 @@ from surveyapp.core.observing.zero_forecast import forecast_zero
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.readings import Reading, ReadingKind
 from surveyapp.io.fieldbook.clock import Stamp
-from surveyapp.observation.session import Observation
+from surveyapp.observation.session import SessionDesk
 from surveyapp_models.angles import ARCSEC, wrap_two_pi
 
 TURNING: Final = (ReadingKind.REVERSAL, ReadingKind.SCALE_REVERSAL)
@@ -66,13 +66,13 @@ class Typed:
 
 
 def questions_about(
-    observation: Observation, typed: Typed, what: Expected, progress: Progress | None
+    observation: SessionDesk, typed: Typed, what: Expected, progress: Progress | None
 ) -> tuple[Question, ...]:
     """Doubts about a reading and its moment.
 
     Parameters
     ----------
-    observation : Observation
+    observation : SessionDesk
     typed : Typed
     what : Expected
     progress : Progress or None
@@ -85,7 +85,7 @@ def questions_about(
 
 
 def _about_value(
-    observation: Observation, typed: Typed, what: Expected, progress: Progress | None
+    observation: SessionDesk, typed: Typed, what: Expected, progress: Progress | None
 ) -> tuple[Question, ...]:
     kind, value = what.kind, typed.value
     if kind in TURNING:
@@ -114,7 +114,7 @@ def _about_value(
 
 
 def _about_moment(
-    observation: Observation, typed: Typed, kind: ReadingKind
+    observation: SessionDesk, typed: Typed, kind: ReadingKind
 ) -> tuple[Question, ...]:
     """Doubt a moment before the last row; of a turning point, one that no half swing explains."""
     if typed.stamp is None:
@@ -134,7 +134,7 @@ def _about_moment(
     return doubt_half_swing(apart, placed.turns, half_swing_s=observation.half_swing_s())
 
 
-def _card(observation: Observation) -> InstrumentCard:
+def _card(observation: SessionDesk) -> InstrumentCard:
     return observation.project.instrument(observation.session.instrument).card
 
 
@@ -142,7 +142,7 @@ def _values(rows: Sequence[Reading]) -> list[float]:
     return [row.value for row in rows if row.value is not None]
 
 
-def _about_sight(observation: Observation, value: float, what: Expected) -> tuple[Question, ...]:
+def _about_sight(observation: SessionDesk, value: float, what: Expected) -> tuple[Question, ...]:
     here = set(observation.rows(what.step))
     assert what.face is not None
     if what.kind is ReadingKind.ZENITH:
@@ -175,7 +175,7 @@ def _about_zero(
 
 
 def _about_point(
-    observation: Observation, value: float, what: Expected, progress: Progress | None
+    observation: SessionDesk, value: float, what: Expected, progress: Progress | None
 ) -> tuple[Question, ...]:
     rows = list(observation.book.of_kind(what.kind))
     scale = what.kind is ReadingKind.SCALE_REVERSAL
@@ -208,7 +208,7 @@ def of_this_book(progress: Progress | None, points: list[Reading]) -> Progress |
 
 
 def sights_of(
-    observation: Observation, target: str, kind: ReadingKind = ReadingKind.BACKSIGHT
+    observation: SessionDesk, target: str, kind: ReadingKind = ReadingKind.BACKSIGHT
 ) -> tuple[Reading, ...]:
     """Live sights of one target, in the order of the book."""
     own = observation.session.target or ""

@@ -19,25 +19,25 @@ from surveyapp.core.observing.steps import Expected, Step, kinds_of, next_sight
 from surveyapp.core.observing.typed_rows import EntryError, complete_angle, complete_number
 from surveyapp.domain.readings import (
     QUANTITY,
+    Dimension,
     Face,
     FieldBook,
-    Quantity,
     Reading,
     ReadingKind,
     Side,
 )
 from surveyapp.io.fieldbook.clock import Stamp
 from surveyapp.observation.doubts import TURNING, Typed, of_this_book, questions_about, sights_of
-from surveyapp.observation.session import NewRow, Observation
+from surveyapp.observation.session import NewRow, SessionDesk
 from surveyapp_models.angles import wrap_two_pi
 
 TYPING_KEY: Final = "angle_typing"
 PACKED: Final = "packed"
 LARGEST: Final = {
-    Quantity.DIVISIONS: ("div", 1000.0),
-    Quantity.TILT: ("arcsec", 36000.0),
-    Quantity.TEMPERATURE: ("C", 100.0),
-    Quantity.SUPPLY: ("V", 1e5),
+    Dimension.DIVISIONS: ("div", 1000.0),
+    Dimension.TILT: ("arcsec", 36000.0),
+    Dimension.TEMPERATURE: ("C", 100.0),
+    Dimension.SUPPLY: ("V", 1e5),
 }
 """Unit and largest possible magnitude of what is no angle."""
 _SUPPLY: Final = re.compile(r"(.*?)\s*(mA|Hz|V)?", re.IGNORECASE)
@@ -75,7 +75,7 @@ class Understood:
 
 
 def expected(
-    observation: Observation,
+    observation: SessionDesk,
     step: Step,
     progress: Progress | None,
     kind: ReadingKind | None = None,
@@ -84,7 +84,7 @@ def expected(
 
     Parameters
     ----------
-    observation : Observation
+    observation : SessionDesk
     step : Step
     progress : Progress or None
         As computed last, for the forecast.
@@ -103,7 +103,7 @@ def expected(
     if chosen in TURNING:
         return _expected_point(step, rows, progress, chosen, observation.book)
     same = [row for row in rows if row.kind is chosen]
-    near = same[-1].value if same and QUANTITY[chosen] is Quantity.ANGLE else None
+    near = same[-1].value if same and QUANTITY[chosen] is Dimension.ANGLE else None
     side = _alternate(same[-1]) if len(same) > 1 else None
     return Expected(step, chosen, side=side, near=near, number=number)
 
@@ -163,7 +163,7 @@ def _expected_point(
     return Expected(step, kind, side=side, near=near, number=number)
 
 
-def _near_sight(observation: Observation, target: str, face: Face) -> float | None:
+def _near_sight(observation: SessionDesk, target: str, face: Face) -> float | None:
     rows = sights_of(observation, target)
     for row in reversed(rows):
         if row.value is not None:
@@ -173,7 +173,7 @@ def _near_sight(observation: Observation, target: str, face: Face) -> float | No
 
 
 def understand(
-    observation: Observation,
+    observation: SessionDesk,
     text: str,
     what: Expected,
     *,
@@ -185,7 +185,7 @@ def understand(
 
     Parameters
     ----------
-    observation : Observation
+    observation : SessionDesk
     text : str
         The reading; behind an ``@`` the moment, as ``@08:15:30`` or as ``@-20`` seconds ago.
     what : Expected
@@ -207,16 +207,16 @@ def understand(
     if reading.count(",") == 1 and "." not in reading:
         reading = reading.replace(",", ".")  # the book keeps points
     quantity = QUANTITY[what.kind]
-    if quantity is Quantity.NONE:
+    if quantity is Dimension.NONE:
         return _note(text, what, stamp)
-    if quantity is Quantity.ANGLE:
+    if quantity is Dimension.ANGLE:
         packed = observation.project.tables.get(TYPING_KEY) == PACKED
         near = what.near
         unit = observation.project.angle_unit
         entry = complete_angle(reading, unit=unit, packed=packed, near=near)
     else:
         unit_name, largest = LARGEST[quantity]
-        if quantity is Quantity.SUPPLY:
+        if quantity is Dimension.SUPPLY:
             match = _SUPPLY.fullmatch(reading.strip())
             if match is not None:
                 reading = match[1]
@@ -244,7 +244,7 @@ def _as_reading(row: NewRow, value: float, stamp: Stamp) -> Reading:
     return Reading(0, row.kind, value, row.value, row.unit, stamp.time, round(stamp.elapsed_s, 3))
 
 
-def _struck_moment(observation: Observation, placed: Placed, stamp: Stamp) -> Stamp:
+def _struck_moment(observation: SessionDesk, placed: Placed, stamp: Stamp) -> Stamp:
     """Moment of a struck point that is typed anew: its own, unless it is another turn by now."""
     struck = placed.struck
     if struck is None or struck.time is None or struck.elapsed_s is None:
@@ -262,7 +262,7 @@ def _note(text: str, what: Expected, stamp: Stamp) -> Understood:
     return Understood(NewRow(what.kind, note=words), 0.0, False, (), stamp)
 
 
-def _corrected(observation: Observation, stamp: Stamp, text: str) -> Stamp:
+def _corrected(observation: SessionDesk, stamp: Stamp, text: str) -> Stamp:
     if match := _AGO.fullmatch(text):
         return observation.clock.corrected(stamp, -float(match[1]))
     match = _TIME.fullmatch(text)
@@ -286,13 +286,13 @@ def _corrected(observation: Observation, stamp: Stamp, text: str) -> Stamp:
     return observation.clock.corrected(stamp, seconds)
 
 
-def next_kind(observation: Observation, what: Expected) -> ReadingKind:
+def next_kind(observation: SessionDesk, what: Expected) -> ReadingKind:
     """The other kind of reading that this step takes."""
     kinds = kinds_of(what.step, observation.session.method)
     return kinds[(kinds.index(what.kind) + 1) % len(kinds)] if what.kind in kinds else what.kind
 
 
-def next_target(observation: Observation, what: Expected) -> str:
+def next_target(observation: SessionDesk, what: Expected) -> str:
     """The next station that may be sighted from here: known targets first, then all others."""
     here = observation.session.station
     names = [s.name for s in observation.project.stations if s.name != here]

@@ -22,7 +22,7 @@ from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.fieldbook import COLUMNS
 from surveyapp.io.fieldbook.clock import local_now, steady_seconds
 from surveyapp.io.tomltext import atomic_write
-from surveyapp.observation.session import Observation
+from surveyapp.observation.session import SessionDesk
 
 if TYPE_CHECKING:  # the simulator is loaded when somebody practises
     from surveyapp.core.practice.simulated_instrument import Instrument, PracticeOutcome, View
@@ -108,7 +108,7 @@ class Practice:
     now: Callable[[], datetime]
     steady: Callable[[], float]
 
-    def view(self, observation: Observation, what: Expected) -> View:
+    def view(self, observation: SessionDesk, what: Expected) -> View:
         """What the eye sees in the step that the book stands at."""
         from surveyapp.core.practice.simulated_instrument import Looked
 
@@ -136,7 +136,7 @@ class Practice:
         return judge(self.instrument, value=found.value, interval95=found.interval95, points=passed)
 
 
-def _begun(observation: Observation, step: Step) -> float | None:
+def _begun(observation: SessionDesk, step: Step) -> float | None:
     """When a step was begun last [s], None where it was not."""
     note = f"{STEP_NOTE}{step}"
     return next((r.elapsed_s for r in reversed(observation.book.rows) if r.note == note), None)

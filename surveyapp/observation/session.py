@@ -77,7 +77,7 @@ class NewRow:
     note: str = ""
 
 
-class Observation:
+class SessionDesk:
     """One session, open for observing.
 
     Parameters

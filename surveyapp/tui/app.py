@@ -18,7 +18,7 @@ from surveyapp.io.settings import read_settings
 from surveyapp.observation import home as api_home
 from surveyapp.observation import practice as api_practice
 from surveyapp.observation.practice import Practice
-from surveyapp.observation.session import Observation
+from surveyapp.observation.session import SessionDesk
 from surveyapp.tui import texts
 from surveyapp.tui.entry_desk import Pending
 from surveyapp.tui.messages import ResultWanted, SessionLeft
@@ -132,7 +132,7 @@ class SurveyApp(App[int]):
         if self.folder is None:
             return
         try:
-            observation = Observation(self.folder, session, now=self.now, steady=self.steady)
+            observation = SessionDesk(self.folder, session, now=self.now, steady=self.steady)
         except SurveyError as error:
             self.notify(str(error), severity="error", markup=False)
             return

@@ -12,7 +12,7 @@ from surveyapp.core.observing.doubts import Question
 from surveyapp.core.observing.progress import Progress
 from surveyapp.core.observing.steps import BEFORE, Expected, Step, kinds_of, steps_of
 from surveyapp.core.observing.typed_rows import EntryError
-from surveyapp.domain.readings import QUANTITY, QUIET_KINDS, Face, Quantity, Reading, ReadingKind
+from surveyapp.domain.readings import QUANTITY, QUIET_KINDS, Dimension, Face, Reading, ReadingKind
 from surveyapp.errors import SurveyError
 from surveyapp.io.fieldbook.clock import NOTICED_S, Stamp
 from surveyapp.observation.entry import (
@@ -22,7 +22,7 @@ from surveyapp.observation.entry import (
     next_target,
     understand,
 )
-from surveyapp.observation.session import NewRow, Observation
+from surveyapp.observation.session import NewRow, SessionDesk
 from surveyapp.tui import texts
 from surveyapp.tui.views.form import number_text, small_text
 from surveyapp_models.angles import AngleUnit, format_angle
@@ -56,10 +56,10 @@ class Desk:
 
     Parameters
     ----------
-    observation : Observation
+    observation : SessionDesk
     """
 
-    def __init__(self, observation: Observation) -> None:
+    def __init__(self, observation: SessionDesk) -> None:
         self.observation = observation
         self.progress: Progress | None = None
         self.kind: ReadingKind | None = None
@@ -209,7 +209,7 @@ class Desk:
 
     def value_text(self, found: Understood) -> str:
         """A reading as understood."""
-        if QUANTITY[found.row.kind] is Quantity.ANGLE:
+        if QUANTITY[found.row.kind] is Dimension.ANGLE:
             shown = format_angle(found.value, self.unit)
             moment = f"{found.stamp.time:%H:%M:%S}" if found.timed else texts.NO_MOMENT
             return f"{shown}  {moment}"

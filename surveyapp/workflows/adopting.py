@@ -12,12 +12,11 @@ from typing import Any, cast
 
 from surveyapp.core.checks.adopted_checks import identity_of
 from surveyapp.core.orientation.session_digest import sessions_digest
-from surveyapp.diagnosis.problem import Problem
+from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.result import Adoption, Diagnosis
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.domain.project import Project, ResultWarning
-from surveyapp.errors import Problem as InputProblem
-from surveyapp.errors import SurveyError
+from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.filing.ledger import append_entries
 from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.io.writing import append_subtables, atomic_write
@@ -70,7 +69,7 @@ def adopted_notes(diagnosis: Diagnosis, already: Sequence[AdoptedEffect]) -> lis
 def tables_to_adopt(
     project: Project,
     diagnosis: Diagnosis,
-    problem: Problem,
+    problem: Case,
     already: Sequence[AdoptedEffect],
 ) -> tuple[list[dict[str, object]], tuple[NotWritten, ...]]:
     """Tables of the named effects that can be adopted, and why others cannot."""
@@ -100,9 +99,7 @@ def tables_to_adopt(
     return tables, tuple(refused)
 
 
-def _same(
-    wanted: tuple[object, ...], other: AdoptedEffect, effect: Effect, problem: Problem
-) -> bool:
+def _same(wanted: tuple[object, ...], other: AdoptedEffect, effect: Effect, problem: Case) -> bool:
     """Whether an effect has been adopted before; a bare run shows the same one again."""
     if problem.subject == "reversal_run":
         return other.id == effect.id
@@ -150,7 +147,7 @@ def record(
     return tuple(f"{place} {table['id']}" for table in tables), []
 
 
-def effect_table(item: Adoption, problem: Problem, project: Project) -> dict[str, object]:
+def effect_table(item: Adoption, problem: Case, project: Project) -> dict[str, object]:
     """The table of an adopted effect as it stands in project.toml, without moment and software."""
     record = item.record
     labels: Mapping[str, Mapping[float, str]] = problem.grid_labels
@@ -185,7 +182,7 @@ def effect_table(item: Adoption, problem: Problem, project: Project) -> dict[str
     return table
 
 
-def _sessions_of(problem: Problem, project: Project) -> list[str]:
+def _sessions_of(problem: Case, project: Project) -> list[str]:
     """Sessions whose data a problem is made of: a run itself, or those of a campaign by label."""
     if problem.subject == "reversal_run":
         return [problem.identity]
@@ -200,7 +197,7 @@ def _sessions_of(problem: Problem, project: Project) -> list[str]:
 def _need_writable(lock: ProjectLock, folder: Path) -> None:
     if not lock.writable:
         raise SurveyError(
-            InputProblem(
+            Problem(
                 "the project is open elsewhere or cannot be written",
                 str(folder),
                 "a locked or read-only folder",

@@ -12,7 +12,7 @@ from typing import Any
 
 from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.core.swing.sights import tripod_twist
-from surveyapp.diagnosis.problem import Problem
+from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.subjects.choice import (
     LEAST_CAMPAIGN,
     campaign_problem,
@@ -22,8 +22,7 @@ from surveyapp.diagnosis.subjects.choice import (
 from surveyapp.diagnosis.subjects.traverse import traverse as traverse_problem
 from surveyapp.domain.project import Project
 from surveyapp.domain.traverse import Network
-from surveyapp.errors import Problem as InputProblem
-from surveyapp.errors import SurveyError, nearest_names
+from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.traverse.book import traverse_rows
 from surveyapp.io.traverse.header import traverse_headers
 from surveyapp_models.effects.effect import Effect
@@ -109,8 +108,8 @@ class Request:
 class Chosen:
     """The problem and its confirming set, or the subjects where one must be chosen."""
 
-    problem: Problem | None
-    confirm: Problem | None = None
+    problem: Case | None
+    confirm: Case | None = None
     subjects: tuple[Subject, ...] = ()
 
 
@@ -130,7 +129,7 @@ def choose(orientation: Orientation, request: Request, networks: Networks | None
         )
     if request.subjects > 1:
         found = "several of --session, --campaign and --traverse"
-        raise SurveyError(InputProblem("one subject at a time", "diagnose", found, "one"))
+        raise SurveyError(Problem("one subject at a time", "diagnose", found, "one"))
     if request.traverse is not None:
         return _chosen_traverse(project, request, networks)
     if request.campaign is not None:
@@ -153,7 +152,7 @@ def choose(orientation: Orientation, request: Request, networks: Networks | None
 def _chosen_traverse(project: Project, request: Request, networks: Networks | None) -> Chosen:
     headers = {header.name: header for header in traverse_headers(project)}
 
-    def problem(name: str, option: str) -> Problem:
+    def problem(name: str, option: str) -> Case:
         _require(name, list(headers), option, "traverse")
         if networks is None:
             raise ValueError("a traverse needs its network")
@@ -170,9 +169,7 @@ def _chosen_traverse(project: Project, request: Request, networks: Networks | No
     return Chosen(first, problem(request.confirm, "--confirm"))
 
 
-def _run(
-    orientation: Orientation, identity: str, option: str, effects: tuple[Effect, ...]
-) -> Problem:
+def _run(orientation: Orientation, identity: str, option: str, effects: tuple[Effect, ...]) -> Case:
     project = orientation.project
     _require(identity, [session.id for session in project.sessions], option, "session")
     session = project.session(identity)
@@ -196,7 +193,7 @@ def _require(name: str, known: list[str], where: str, kind: str) -> None:
     if name not in known:
         hint = nearest_names(name, known)
         raise SurveyError(
-            InputProblem(
+            Problem(
                 f"there is no {kind} of this name", where, name, f"the name of a known {kind}", hint
             )
         )

@@ -16,12 +16,11 @@ import numpy as np
 
 from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.diagnosis.battery import channels
+from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.engine import diagnose as run_engine
 from surveyapp.diagnosis.plain_words import words_of
-from surveyapp.diagnosis.problem import Problem
 from surveyapp.diagnosis.result import Diagnosis
-from surveyapp.errors import Problem as InputProblem
-from surveyapp.errors import SurveyError
+from surveyapp.errors import Problem, SurveyError
 from surveyapp.workflows.adopting import (
     NotWritten,
     adopted_before,
@@ -147,15 +146,15 @@ NO_SUBJECTS = (
 )
 
 
-def _no_one_subject(subjects: Sequence[Subject]) -> InputProblem:
+def _no_one_subject(subjects: Sequence[Subject]) -> Problem:
     if not subjects:
-        return InputProblem(
+        return Problem(
             "there is nothing to diagnose, and so nothing to adopt",
             "diagnose --adopt",
             "no subject",
             "a session with turning points, an instrument with three sessions, or a traverse",
         )
-    return InputProblem(
+    return Problem(
         "adopting needs one subject",
         "diagnose --adopt",
         "no --session or --campaign",
@@ -166,7 +165,7 @@ def _no_one_subject(subjects: Sequence[Subject]) -> InputProblem:
 
 def _refuse_adoption(identity: str) -> None:
     raise SurveyError(
-        InputProblem(
+        Problem(
             "an effect of a traverse is mended at its source, not adopted",
             f"diagnose --adopt, {identity}",
             "--adopt with --traverse",
@@ -177,7 +176,7 @@ def _refuse_adoption(identity: str) -> None:
 
 
 def _channels(
-    diagnosis: Diagnosis, problem: Problem
+    diagnosis: Diagnosis, problem: Case
 ) -> tuple[tuple[str, tuple[float, ...], tuple[float, ...]], ...]:
     before = channels(problem, np.array([diagnosis.residuals_before]))
     after = channels(problem, np.array([diagnosis.residuals_best]))

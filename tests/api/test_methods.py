@@ -4,6 +4,7 @@ import json
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -29,13 +30,14 @@ def clamped(method: str) -> str:
     )
 
 
-def make(folder: Path, spec: SessionSpec, seed: int, **counts: int) -> dict[str, dict[str, float]]:
+def make(folder: Path, spec: SessionSpec, seed: int, **counts: Any) -> dict[str, dict[str, float]]:
     project = simulate_reversal_project(spec, np.random.default_rng(seed), **counts)
     for name, text in project_files(project).items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
-    return json.loads(json.dumps(project_truth(project)["sessions"]))
+    truth: dict[str, dict[str, float]] = json.loads(json.dumps(project_truth(project)["sessions"]))
+    return truth
 
 
 def test_amplitude_method_by_hand(tmp_path: Path) -> None:

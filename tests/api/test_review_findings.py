@@ -69,7 +69,7 @@ def tracked(
 
 
 def orient(folder: Path, **options: str) -> Mapping[str, object]:
-    return api.orient(folder, **options).to_dict()  # type: ignore[arg-type]
+    return api.orient(folder, **options).to_dict()
 
 
 def run(identity: str, *more: str) -> str:

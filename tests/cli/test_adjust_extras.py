@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -77,7 +78,7 @@ def test_check_compares_two_measurements_and_the_sides_with_their_class(tmp_path
     second = BOOK.replace("270-00-00", "270-05-00").replace("100.000\n", "30.000\n")
     (tmp_path / "again.csv").write_text(second)
     checks = json.loads(run("check", tmp_path, "--json").out)["checks"]
-    by_rule: dict[str, list[dict[str, object]]] = {}
+    by_rule: dict[str, list[dict[str, Any]]] = {}
     for check in checks:
         by_rule.setdefault(str(check["rule"]), []).append(check)
     (repeated,) = by_rule["cn-coal-15.repeated-angles-15"]

@@ -10,12 +10,13 @@ import dataclasses
 import numpy as np
 import pytest
 
-from surveyapp.diagnosis import Determination, Problem, TurningPoints
+from surveyapp.diagnosis import Case, Determination, TurningPoints
 from surveyapp.diagnosis.candidates import all_candidates
 from surveyapp.diagnosis.engine import diagnose
 from surveyapp.diagnosis.fits import Member, fit_members, scan_law
 from surveyapp.diagnosis.held_out import confirm_rms
-from surveyapp.diagnosis.subjects.choice import campaign, reversal_run
+from surveyapp.diagnosis.subjects.campaign import campaign
+from surveyapp.diagnosis.subjects.reversal_run import reversal_run
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.effects import CATALOGUE
 
@@ -44,7 +45,7 @@ CAMPAIGN_SIZES = {
 NOISE = 4.0 * ARCSEC
 
 
-def run(seed: int, effect: str | None) -> Problem:
+def run(seed: int, effect: str | None) -> Case:
     """A run with one effect from the catalogue, always at the same place."""
     g = np.random.default_rng(seed)
     k = np.arange(20.0)
@@ -75,7 +76,7 @@ def run(seed: int, effect: str | None) -> Problem:
     return reversal_run(TurningPoints(list(y), covariates=covariates, instrument="G"))
 
 
-def series(seed: int, effect: str | None) -> Problem:
+def series(seed: int, effect: str | None) -> Case:
     """A campaign of 45 determinations with one effect from the catalogue."""
     g = np.random.default_rng(seed)
     n = 45
@@ -109,7 +110,7 @@ def series(seed: int, effect: str | None) -> Problem:
     )
 
 
-def confirmed(first: Problem, second: Problem, effect: str) -> tuple[float, float]:
+def confirmed(first: Case, second: Case, effect: str) -> tuple[float, float]:
     """Rms on the second set without and with the effect as the first set has it."""
     base = fit_members(first, ())
     pool = all_candidates(first, base.theta)

@@ -11,13 +11,14 @@ from scipy.stats import binom
 
 from bench._records import Truth, problems
 from bench.operating_characteristics import evaluate
-from surveyapp.diagnosis import Determination, Problem, TurningPoints
+from surveyapp.diagnosis import Case, Determination, TurningPoints
 from surveyapp.diagnosis.candidates import all_candidates
 from surveyapp.diagnosis.compare import base_level, next_level, settled_count
 from surveyapp.diagnosis.engine import diagnose
 from surveyapp.diagnosis.fits import Member, fit_members
 from surveyapp.diagnosis.run_value import plain_value
-from surveyapp.diagnosis.subjects.choice import campaign, reversal_run
+from surveyapp.diagnosis.subjects.campaign import campaign
+from surveyapp.diagnosis.subjects.reversal_run import reversal_run
 from surveyapp_models.angles import ARCSEC
 
 DRAWS = 500
@@ -101,7 +102,7 @@ def test_a_slip_of_a_whole_degree_is_found_in_eight_points(at: int) -> None:
     assert {n: v for n, v, _ in result.adopted[0].grid} == {"point": float(at)}
 
 
-def series(missing: bool) -> Problem:
+def series(missing: bool) -> Case:
     """A campaign whose constant follows a temperature that rises; some of it may be unread."""
     g = np.random.default_rng(5)
     days = np.arange(45.0) * 2.0
@@ -146,10 +147,12 @@ def test_what_has_no_name_stays_in_the_sigma() -> None:
     for problem in problems(Truth("walk", 45, walk=9.0), 12, 31)[0]:
         result = diagnose(problem, draws=DRAWS)
         if result.verdict == "unattributed":
+            assert result.averaged.sigma is not None
+            assert result.after.value.sigma is not None
             assert result.averaged.sigma >= result.after.value.sigma * (1.0 - 1e-9)
 
 
-def dated(values: list[float], days: list[float], sigma: float | None = None) -> Problem:
+def dated(values: list[float], days: list[float], sigma: float | None = None) -> Case:
     return campaign(
         [
             Determination(
@@ -174,6 +177,7 @@ def test_effects_that_coincide_in_the_first_part_have_no_forecast(seed: int) -> 
 def test_scatter_that_denies_the_stated_sigmas_is_not_adequate() -> None:
     result = diagnose(dated([0.0, 0.0, 3.0, 1000.0], [1.0] * 4, 10.0), draws=DRAWS)
     assert result.verdict == "unattributed"
+    assert result.averaged.sigma is not None
     assert result.averaged.sigma > 200.0 * ARCSEC
 
 
@@ -184,6 +188,8 @@ def test_equal_moments_do_not_widen_the_constant() -> None:
     for _ in range(10):
         values = (10.0 * g.standard_normal(12)).tolist()
         result = diagnose(dated(values, [0.0] * 6 + [5.0] * 6), draws=DRAWS)
+        assert result.averaged.sigma is not None
+        assert result.before.value.sigma is not None
         widths.append(result.averaged.sigma / result.before.value.sigma)
     assert max(widths) < 4.0
 

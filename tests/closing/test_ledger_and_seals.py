@@ -22,7 +22,7 @@ from surveyapp.io.filing.ledger import LEDGER_FILE, append_entry, parse_ledger, 
 from surveyapp.io.filing.seals import is_closed, project_file_names, seal_checks
 from surveyapp.io.template import create_project
 from surveyapp.io.tomltext import atomic_write
-from surveyapp.observation.session import Observation
+from surveyapp.observation.session import SessionDesk
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -167,7 +167,7 @@ def test_a_missing_file_and_a_file_that_grew_are_found(folder: Path) -> None:
 
 def test_a_closed_project_is_read_only_until_it_is_reopened(folder: Path) -> None:
     api.close(folder, now=now)
-    observation = Observation(folder, "run")
+    observation = SessionDesk(folder, "run")
     assert not observation.writable
     observation.close()
     with pytest.raises(SurveyError) as caught:
@@ -176,7 +176,7 @@ def test_a_closed_project_is_read_only_until_it_is_reopened(folder: Path) -> Non
     result = api.reopen(folder, reason="turning point 3 was misread", by="Иванов", now=now)
     assert result.found == ()
     assert not is_closed(folder)
-    observation = Observation(folder, "run")
+    observation = SessionDesk(folder, "run")
     assert observation.writable
     observation.close()
     kinds = [entry.kind for entry in read_ledger(folder).entries]
@@ -202,7 +202,7 @@ def test_a_session_is_closed_by_itself(folder: Path) -> None:
     assert (result.scope, result.files) == ("session", 1)
     assert not is_closed(folder)
     assert is_closed(folder, "run")
-    observation = Observation(folder, "run")
+    observation = SessionDesk(folder, "run")
     assert not observation.writable
     observation.close()
     text = PROJECT.replace('name = "A"\nlat = 34.5', 'name = "A"\nlat = 34.6')
@@ -222,7 +222,7 @@ CRASH = """
 import os, sys
 from pathlib import Path
 from surveyapp import api
-from surveyapp.io import ledger
+from surveyapp.io.filing import ledger
 keep = int(sys.argv[2])
 def torn(path, data):
     with path.open("ab") as stream:
@@ -317,7 +317,7 @@ def test_closing_on_the_command_line(folder: Path, capsys: pytest.CaptureFixture
 
 
 def test_a_second_opener_cannot_close(folder: Path) -> None:
-    observation = Observation(folder, "run")
+    observation = SessionDesk(folder, "run")
     try:
         with pytest.raises(SurveyError) as caught:
             api.close(folder)

@@ -7,6 +7,7 @@ integrated equation.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ import pytest
 from scripts import compare_estimators as compare
 from surveyapp.core.simulate.specification import Noise, SessionSpec
 from surveyapp.core.simulate.turning_points import simulate_turning_points
-from surveyapp.core.swing.gyrofit import fit_swing
+from surveyapp.core.swing.gyrofit import fit_damped_swing
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.gyro.integration import Start, TapeTop, integrate
 from surveyapp_models.gyro.motion import DampedSwing, swing_position
@@ -44,7 +45,13 @@ TABLE = [
 
 
 @pytest.mark.parametrize(("weights", "error", "bias", "arcsec", "tolerance"), TABLE)
-def test_table_of_reversal_estimators(weights, error, bias, arcsec, tolerance):
+def test_table_of_reversal_estimators(
+    weights: tuple[int, ...],
+    error: float,
+    bias: Callable[[float], float],
+    arcsec: float,
+    tolerance: float,
+) -> None:
     w = np.array(weights, dtype=float) / sum(weights)
     assert math.sqrt(w @ w) == pytest.approx(error, abs=6e-4)
     for q in (0.99, 0.999):
@@ -55,7 +62,7 @@ def test_table_of_reversal_estimators(weights, error, bias, arcsec, tolerance):
     )
 
 
-def test_biases_of_the_integrated_motion_are_those_of_the_table():
+def test_biases_of_the_integrated_motion_are_those_of_the_table() -> None:
     """Damping .01 and 1 degree; drift; lag both ways: the filters on integrated readings."""
     for name, values in compare.filter_table():
         _, _, formula, damped, drift, leak, curved, lag = values
@@ -68,7 +75,7 @@ def test_biases_of_the_integrated_motion_are_those_of_the_table():
 
 
 @pytest.mark.statistical
-def test_simulated_standard_errors_are_those_of_the_table():
+def test_simulated_standard_errors_are_those_of_the_table() -> None:
     bound = 4.5 / math.sqrt(2 * compare.RUNS)
     for name, values in compare.filter_table():
         assert values[1] == pytest.approx(values[0], rel=bound), name
@@ -83,7 +90,7 @@ def test_simulated_standard_errors_are_those_of_the_table():
 @pytest.mark.parametrize(
     ("points", "error"), [(4, 0.559), (5, 0.500), (6, 0.451), (7, 0.412), (8, 0.382)]
 )
-def test_general_schuler_formula(points, error):
+def test_general_schuler_formula(points: int, error: float) -> None:
     w = schuler(points)
     assert math.sqrt(w @ w) == pytest.approx(error, abs=6e-4)
     assert math.sqrt(16 * points - 44) / (4 * (points - 2)) == pytest.approx(
@@ -96,7 +103,7 @@ def test_general_schuler_formula(points, error):
     assert np.allclose(compare.Filter("", compare.schuler_weights(points)).vector, w)
 
 
-def test_the_monograph_took_the_means_for_independent():
+def test_the_monograph_took_the_means_for_independent() -> None:
     """14.7cc, 7 points: printed 3.3cc, true 6.1cc."""
     assert 14.7 / (2 * math.sqrt(5)) == pytest.approx(3.3, abs=0.02)
     assert 14.7 * math.sqrt(float(schuler(7) @ schuler(7))) == pytest.approx(6.1, abs=0.05)
@@ -106,14 +113,15 @@ def least_squares_weights(points: int, *columns: np.ndarray) -> np.ndarray:
     """Weights by which N at mid-time is formed: first row of the pseudo-inverse."""
     k = np.arange(points, dtype=float)
     sign = (-1.0) ** k
-    return np.linalg.pinv(np.column_stack([np.ones(points), sign, *columns]))[0]
+    inverse = np.linalg.pinv(np.column_stack([np.ones(points), sign, *columns]))
+    return np.asarray(inverse[0])
 
 
 @pytest.mark.parametrize(
     ("points", "error"),
     [(4, 0.559), (5, 0.456), (6, 0.427), (7, 0.382), (8, 0.362), (10, 0.321)],
 )
-def test_least_squares_errors_and_free_drift(points, error):
+def test_least_squares_errors_and_free_drift(points: int, error: float) -> None:
     k = np.arange(points, dtype=float)
     damping = (-1.0) ** k * k
     w = least_squares_weights(points, damping)
@@ -124,7 +132,7 @@ def test_least_squares_errors_and_free_drift(points, error):
     assert w @ (k - k.mean()) == pytest.approx(0.0, abs=1e-12)
 
 
-def test_least_squares_is_one_three_three_one_and_one_two_one():
+def test_least_squares_is_one_three_three_one_and_one_two_one() -> None:
     k = np.arange(4, dtype=float)
     assert np.allclose(least_squares_weights(4, (-1.0) ** k * k) * 8, [1, 3, 3, 1])
     assert np.allclose(least_squares_weights(3) * 4, [1, 2, 1])
@@ -132,30 +140,30 @@ def test_least_squares_is_one_three_three_one_and_one_two_one():
     assert np.allclose(least_squares_weights(5, (-1.0) ** five * five) * 12, [2, 3, 2, 3, 2])
 
 
-def test_quadratic_leak_of_schuler_means():
+def test_quadratic_leak_of_schuler_means() -> None:
     for points, leak in ((3, 0.5), (4, 0.75), (5, 1.17)):
         place = np.arange(points) - (points - 1) / 2
         moment = float(schuler(points) @ place**2)
         assert moment / 2 == pytest.approx(leak / 2, abs=3e-3)
 
 
-def test_source_000_schuler_figures():
+def test_source_000_schuler_figures() -> None:
     """Damping .005 per half swing, A = 3600": 9.0, .0225, 5.6e-5; plain least squares about 9."""
-    u = 3600.0 * (-0.995) ** np.arange(6)
+    u = np.asarray(3600.0 * (-0.995) ** np.arange(6), dtype=np.float64)
     assert abs(u[:2].mean()) == pytest.approx(9.0, abs=0.01)
     assert abs(schuler(3) @ u[:3]) == pytest.approx(0.0225, abs=1e-4)
     assert abs(schuler(4) @ u[:4]) == pytest.approx(5.6e-5, abs=1e-6)
     for points in (4, 6):
         assert abs(least_squares_weights(points) @ u[:points]) == pytest.approx(9.0, abs=0.1)
     k = np.arange(6, dtype=float)
-    fitted = fit_swing(u, k, np.sign(u))
+    fitted = fit_damped_swing(u, k, np.sign(u))
     assert fitted.north == pytest.approx(0.0, abs=1e-6)
 
 
 # --- 2.2 amplitude method, 2.3 transit method ---------------------------------------------------
 
 
-def test_amplitude_method_error():
+def test_amplitude_method_error() -> None:
     """0.1 div, 600"/div, lambda .2: 44"; and by simulation of the readings."""
     assert 1.2 * 600 * math.sqrt(float(schuler(3) @ schuler(3))) * 0.1 == pytest.approx(44, abs=0.2)
     spec = SessionSpec(
@@ -171,7 +179,7 @@ def test_amplitude_method_error():
     assert np.std(north) == pytest.approx(44.1, rel=4 / math.sqrt(6000))
 
 
-def test_transit_time_differences():
+def test_transit_time_differences() -> None:
     three, five = np.array([-1, 2, -1]), np.array([-1, 3, -4, 3, -1]) / 3
     assert math.sqrt(three @ three) == pytest.approx(2.454, abs=0.006)
     assert math.sqrt(five @ five) == pytest.approx(2.0, rel=1e-12)
@@ -185,7 +193,7 @@ def test_transit_time_differences():
         assert error == pytest.approx(north, abs=0.06)
 
 
-def test_transit_time_noise_by_simulation():
+def test_transit_time_noise_by_simulation() -> None:
     spec = SessionSpec(method="transit", points=5, noise=Noise(time_s=0.2, time_resolution_s=0.0))
     made = simulate_turning_points(spec, 4000, np.random.default_rng(2))
     times = made.passage_time_s[:, 0]
@@ -200,7 +208,9 @@ def test_transit_time_noise_by_simulation():
     ("ratio", "passages", "expected"),
     [(1.0, 3, 1.34), (1.0, 5, 1.34), (0.98, 3, 1.5), (0.98, 5, 1.7)],
 )
-def test_damping_hardly_disturbs_the_transit_method(ratio, passages, expected):
+def test_damping_hardly_disturbs_the_transit_method(
+    ratio: float, passages: int, expected: float
+) -> None:
     """q = .98 per half swing, 10' off, dt = 29 s: the error grows from 1.3" to 1.5 and 1.7"."""
     spec = SessionSpec(
         method="transit",
@@ -249,7 +259,9 @@ def error_of_centre(periods: float, phase: float, unknowns: int) -> float:
         (2.0, 1.00, 1.09, 1.09),
     ],
 )
-def test_error_against_length_of_record(periods, known, period_free, damping_free):
+def test_error_against_length_of_record(
+    periods: float, known: float, period_free: float, damping_free: float
+) -> None:
     phases = np.linspace(0.0, math.pi, 181)
     worst = [max(error_of_centre(periods, p, u) for p in phases) for u in (3, 4, 5)]
     assert worst[0] == pytest.approx(known, rel=0.01)
@@ -257,7 +269,7 @@ def test_error_against_length_of_record(periods, known, period_free, damping_fre
     assert worst[2] == pytest.approx(damping_free, rel=0.02)
 
 
-def test_a_timed_passage_weighs_by_its_time():
+def test_a_timed_passage_weighs_by_its_time() -> None:
     """Var of x(t_i) - x_line is (dx/dt)^2 sigma_t^2: by simulation of noisy clocks."""
     swing = DampedSwing(0.0, 10.0, 0.0, 2 * math.pi / 388.3, -math.pi / 2)
     rng = np.random.default_rng(5)
@@ -269,12 +281,12 @@ def test_a_timed_passage_weighs_by_its_time():
 # --- 2.5, 2.6 -----------------------------------------------------------------------------------
 
 
-def test_tape_zero_figures():
+def test_tape_zero_figures() -> None:
     unspun = 3.0 * (-0.99) ** np.arange(3) + 0.4
     assert schuler(3) @ unspun == pytest.approx(0.4, abs=1e-4)
 
 
-def test_pre_orientation_by_two_reversals():
+def test_pre_orientation_by_two_reversals() -> None:
     """A = 5 degrees, q = .99: 90"."""
     spec = SessionSpec(
         points=4,
@@ -287,7 +299,7 @@ def test_pre_orientation_by_two_reversals():
     assert found / ARCSEC == pytest.approx(90.0, abs=1.0)
 
 
-def test_pre_orientation_by_a_quarter_of_the_period():
+def test_pre_orientation_by_a_quarter_of_the_period() -> None:
     """A quarter period after a reversal the line of sight is on north; 0.89' per s and degree."""
     spec = SessionSpec()
     period = tracking_period_s(spec.gyro, spec.latitude)

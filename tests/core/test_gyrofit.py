@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from surveyapp.core.swing.gyrofit import (
     design,
-    fit_swing,
+    fit_damped_swing,
     schuler_means,
     schuler_standard_error,
     unwrap,
@@ -40,7 +40,7 @@ def test_johannesburg_schuler_and_least_squares() -> None:
     # printed weighted mean 180-10-06; from these 20 readings 06.6
     assert means.mean() - (180 * 3600 + 600) == pytest.approx(6.6, abs=0.05)
     assert np.sqrt(weights @ weights) == pytest.approx(schuler_standard_error(20, 1.0), rel=1e-12)
-    fit = fit_swing(u - u[0], k, np.where(k % 2 == 0, -1.0, 1.0))
+    fit = fit_damped_swing(u - u[0], k, np.where(k % 2 == 0, -1.0, 1.0))
     # diagnosis.md: exponential damping, rms 119.7", N = +3.5 (29)
     assert fit.residual_rms == pytest.approx(119.7, abs=0.05)
     assert fit.north + u[0] - (180 * 3600 + 600) == pytest.approx(3.5, abs=0.05)
@@ -69,7 +69,7 @@ def test_fit_equals_lmfit() -> None:
     k = np.array([0.0, 1.0, 2.0, 4.0, 5.0, 7.0, 8.0, 9.0, 11.0])
     sides = np.where(k % 2 == 0, 1.0, -1.0)
     values = 12.0 + 3600.0 * sides * np.exp(-0.013 * k) + rng.normal(0.0, 4.0, k.size)
-    own = fit_swing(values, k, sides)
+    own = fit_damped_swing(values, k, sides)
     model = lmfit.Model(lambda k, n, a, c: n + a * sides * np.exp(-c * k), independent_vars=["k"])
     peer = model.fit(values, k=k, n=0.0, a=3000.0, c=0.01)
     assert own.north == pytest.approx(peer.params["n"].value, abs=1e-4)
@@ -92,7 +92,7 @@ def test_exact_swing_is_recovered(
 ) -> None:
     k = np.arange(float(count))
     sides = first * np.where(k % 2 == 0, 1.0, -1.0)
-    fit = fit_swing(north + amplitude * sides * np.exp(-decrement * k), k, sides)
+    fit = fit_damped_swing(north + amplitude * sides * np.exp(-decrement * k), k, sides)
     assert fit.converged
     assert fit.north == pytest.approx(north, abs=1e-6 * amplitude)
     assert fit.log_decrement == pytest.approx(decrement, abs=1e-8)
@@ -103,7 +103,7 @@ def test_design_equals_central_differences() -> None:
     point = np.array([3.0, 1000.0, 0.02])
 
     def model(p: np.ndarray) -> np.ndarray:
-        return p[0] + p[1] * sides * np.exp(-p[2] * k)
+        return np.asarray(p[0] + p[1] * sides * np.exp(-p[2] * k))
 
     analytic = design(k, sides, amplitude=1000.0, log_decrement=0.02)
     for i, step in enumerate((1e-3, 1e-2, 1e-7)):
@@ -128,7 +128,7 @@ def test_a_missed_point_breaks_the_schuler_chain_but_not_the_fit() -> None:
     means, weights = schuler_means(values, k)
     assert means.size == 2
     assert weights.sum() == pytest.approx(1.0)
-    assert fit_swing(values, k, sides).north == pytest.approx(10.0, abs=1e-7)
+    assert fit_damped_swing(values, k, sides).north == pytest.approx(10.0, abs=1e-7)
 
 
 def test_unwrap_crosses_the_zero_of_the_circle() -> None:
@@ -138,4 +138,4 @@ def test_unwrap_crosses_the_zero_of_the_circle() -> None:
 
 def test_one_sided_points_are_refused() -> None:
     with pytest.raises(ValueError, match="both sides"):
-        fit_swing(np.ones(4), np.arange(4.0), np.ones(4))
+        fit_damped_swing(np.ones(4), np.arange(4.0), np.ones(4))

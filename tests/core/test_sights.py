@@ -9,13 +9,14 @@ from surveyapp.core.swing.sights import (
     reduce_sights,
     zenith_angle,
 )
+from surveyapp.domain.readings import FieldBook
 from surveyapp.io.fieldbook import parse_field_book
 from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, AngleUnit, parse_angle, wrap_pi
 
 HEAD = "seq,elapsed_s,kind,value,unit,face,side,target\n"
 
 
-def book(*lines: str):
+def book(*lines: str) -> FieldBook:
     return parse_field_book(
         HEAD + "".join(f"{i},{line}\n" for i, line in enumerate(lines, 1)),
         angle_unit=AngleUnit.DMS,

@@ -6,6 +6,7 @@ import csv
 import io
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -32,7 +33,7 @@ from surveyapp_models.angles import (
 )
 
 
-def quiet(*texts: str, **changes: object) -> SimulatedCampaign:
+def quiet(*texts: str, **changes: Any) -> SimulatedCampaign:
     effects: tuple[Effect, ...] = tuple(parse_effect(text, CAMPAIGN_EFFECTS) for text in texts)
     spec = CampaignSpec(sigma_round=0.0, sigma_sight=0.0, effects=effects, **changes)
     return simulate_campaign(spec, np.random.default_rng(11))
@@ -43,11 +44,11 @@ def residual(made: SimulatedCampaign) -> np.ndarray:
     return wrap_pi_array(made.constant - made.spec.constant) / ARCSEC
 
 
-def test_without_effects_the_constant_is_constant():
+def test_without_effects_the_constant_is_constant() -> None:
     assert np.max(np.abs(residual(quiet()))) < 0.15
 
 
-def test_effects_of_the_instrument():
+def test_effects_of_the_instrument() -> None:
     made = quiet("temperature=1.5")
     assert np.allclose(residual(made), 1.5 * (made.temperature_c - 12.0), atol=0.15)
     assert np.ptp(made.temperature_c) > 10.0
@@ -66,7 +67,7 @@ def test_effects_of_the_instrument():
     assert hit.sum() >= 2
 
 
-def test_circle_eccentricity_enters_through_both_readings():
+def test_circle_eccentricity_enters_through_both_readings() -> None:
     made = quiet("circle_eccentricity=10,phase=30")
     line, north = made.line_reading[:, 0, 0], made.north_reading[:, 0]
     expected = 10 * np.cos(math.radians(30)) * (np.sin(north) - np.sin(line))
@@ -75,14 +76,14 @@ def test_circle_eccentricity_enters_through_both_readings():
     assert np.allclose(made.true_constant, made.spec.constant)
 
 
-def test_line_offset_is_in_the_known_azimuth_only():
+def test_line_offset_is_in_the_known_azimuth_only() -> None:
     made = quiet("line_offset=15,line=1")
     assert np.allclose(residual(made), np.where(made.line == 1, 15.0, 0.0), atol=0.15)
     assert np.allclose(made.true_constant, made.spec.constant)
 
 
 @pytest.mark.statistical
-def test_sigma_is_that_of_the_determination():
+def test_sigma_is_that_of_the_determination() -> None:
     spec = CampaignSpec(determinations=1500, surveys=0)
     made = simulate_campaign(spec, np.random.default_rng(3))
     score = wrap_pi_array(made.constant - made.true_constant) / made.sigma
@@ -99,7 +100,7 @@ def test_sigma_is_that_of_the_determination():
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_simulated_projects_are_read_without_a_word(kind: str, tmp_path: Path):
+def test_simulated_projects_are_read_without_a_word(kind: str, tmp_path: Path) -> None:
     texts = [
         f"{effect.id}={0.001 if effect.to_internal == 1.0 else 3}"
         for effect in KINDS[kind]
@@ -127,7 +128,7 @@ def test_simulated_projects_are_read_without_a_word(kind: str, tmp_path: Path):
             assert wrap_pi(known - stated) == pytest.approx(offset, abs=2e-3 * ARCSEC)
 
 
-def test_books_of_a_campaign_hold_its_determinations():
+def test_books_of_a_campaign_hold_its_determinations() -> None:
     spec = CampaignSpec(
         determinations=12, effects=(parse_effect("temperature=2", CAMPAIGN_EFFECTS),)
     )
@@ -149,7 +150,7 @@ def test_books_of_a_campaign_hold_its_determinations():
         assert np.mean(middle) == pytest.approx(made.running_s[index], abs=0.1)
 
 
-def test_all_wrong_effects_are_named_together():
+def test_all_wrong_effects_are_named_together() -> None:
     with pytest.raises(SurveyError) as caught:
         simulate_kind("campaign", effects=["temprature=1", "time_drift=x"], seed=1)
     assert len(caught.value.problems) == 2

@@ -11,6 +11,7 @@ import dataclasses
 import io
 import math
 import tomllib
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -34,7 +35,7 @@ from surveyapp.core.simulate.specification import (
     SessionSpec,
     parse_effect,
 )
-from surveyapp.core.simulate.turning_points import simulate_turning_points
+from surveyapp.core.simulate.turning_points import SimulatedPoints, simulate_turning_points
 from surveyapp.errors import SurveyError
 from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, AngleUnit, parse_angle, wrap_pi
 from surveyapp_models.gyro.periods import clamped_period_s, tracking_period_s
@@ -69,7 +70,9 @@ def fit_run(readings: np.ndarray) -> np.ndarray:
     return np.array(results)
 
 
-def signature(*effects: Effect, points: int = 20, **changes: object) -> tuple[np.ndarray, ...]:
+def signature(
+    *effects: Effect, points: int = 20, **changes: Any
+) -> tuple[np.ndarray, np.ndarray, SimulatedPoints]:
     """Noise-free run: (Schuler means minus their mean, amplitude losses, bias of the fit)."""
     spec = SessionSpec(points=points, noise=QUIET, ratio=1.0, effects=effects)
     spec = dataclasses.replace(spec, **changes)
@@ -80,7 +83,7 @@ def signature(*effects: Effect, points: int = 20, **changes: object) -> tuple[np
     return schuler / ARCSEC, -np.diff(half) / ARCSEC, made
 
 
-def test_an_undisturbed_run_is_the_damped_swing():
+def test_an_undisturbed_run_is_the_damped_swing() -> None:
     spec = SessionSpec(points=20, noise=QUIET, ratio=0.99)
     made = simulate_turning_points(spec, 3, np.random.default_rng(1))
     fitted = fit_run(made.readings)
@@ -96,7 +99,7 @@ def test_an_undisturbed_run_is_the_damped_swing():
     )
 
 
-def test_reading_noise_has_the_stated_size():
+def test_reading_noise_has_the_stated_size() -> None:
     made = simulate_turning_points(SessionSpec(points=20), 400, np.random.default_rng(2))
     sigma = np.std(made.readings - made.motion) / ARCSEC
     assert sigma == pytest.approx(4.0, abs=4 * 4.0 / math.sqrt(2 * 8000))
@@ -107,7 +110,7 @@ def test_reading_noise_has_the_stated_size():
     assert np.var(score) == pytest.approx(1.0, abs=4 * math.sqrt(2 / 400))
 
 
-def test_each_effect_has_its_signature():
+def test_each_effect_has_its_signature() -> None:
     still, loss, _ = signature()
     assert np.ptp(still) < 0.02
     assert np.max(np.abs(loss)) < 0.05
@@ -139,7 +142,7 @@ def test_each_effect_has_its_signature():
     assert np.allclose(loss, 20.0, atol=0.3)
 
 
-def test_uneven_follow_up_changes_the_amplitude_only():
+def test_uneven_follow_up_changes_the_amplitude_only() -> None:
     spec = SessionSpec(
         points=20, noise=QUIET, ratio=1.0, effects=(parse_effect("tracking_jitter=15"),)
     )
@@ -152,7 +155,9 @@ def test_uneven_follow_up_changes_the_amplitude_only():
 
 
 @pytest.mark.parametrize("method", ["tracking", "amplitude"])
-def test_twist_of_the_tripod_takes_circle_and_line_along(method):
+def test_twist_of_the_tripod_takes_circle_and_line_along(
+    method: Literal["tracking", "amplitude"],
+) -> None:
     spec = SessionSpec(
         method=method, points=9, noise=QUIET, ratio=1.0, effects=(parse_effect("tripod_twist=40"),)
     )
@@ -174,7 +179,7 @@ def test_twist_of_the_tripod_takes_circle_and_line_along(method):
     )
 
 
-def test_temperature_effect_follows_the_thermometer():
+def test_temperature_effect_follows_the_thermometer() -> None:
     means, _, made = signature(parse_effect("temperature=15"), temperature_span_c=1.0)
     warmth = made.temperature_c[0] - 15.0
     assert np.ptp(warmth) > 0.3
@@ -184,7 +189,7 @@ def test_temperature_effect_follows_the_thermometer():
 
 
 @pytest.mark.statistical
-def test_random_paths_have_the_stated_spread():
+def test_random_paths_have_the_stated_spread() -> None:
     rng = np.random.default_rng(8)
     spec = SessionSpec(points=12, noise=QUIET, effects=(parse_effect("random_walk=9"),))
     north = simulate_turning_points(spec, 400, rng).gyro_north / ARCSEC
@@ -198,7 +203,7 @@ def test_random_paths_have_the_stated_spread():
     assert correlation == pytest.approx(0.5, abs=0.05)
 
 
-def test_gross_errors_are_readings_only():
+def test_gross_errors_are_readings_only() -> None:
     spec = SessionSpec(points=12, noise=QUIET, effects=(parse_effect("gross_error=60,count=3"),))
     made = simulate_turning_points(spec, 50, np.random.default_rng(3))
     error = (made.readings - made.motion) / ARCSEC
@@ -223,7 +228,9 @@ def zero_by_hand(readings: np.ndarray) -> float:
 
 @pytest.mark.parametrize("degrees", [0.0, -26.0, 47.0, 63.0, -75.0])
 @pytest.mark.parametrize("method", ["tracking", "amplitude", "transit"])
-def test_noise_free_books_reduce_to_the_truth(method, degrees):
+def test_noise_free_books_reduce_to_the_truth(
+    method: Literal["tracking", "amplitude", "transit"], degrees: float
+) -> None:
     """Formulae of section 1.4 by hand, clamp 8' off, tape zero drifting from .3 to .5 div."""
     spec = SessionSpec(
         method=method,
@@ -265,7 +272,7 @@ def test_noise_free_books_reduce_to_the_truth(method, degrees):
     assert abs(error) < (1.0 if method == "transit" else 0.3)
 
 
-def test_sights_carry_collimation_and_the_line():
+def test_sights_carry_collimation_and_the_line() -> None:
     spec = SessionSpec(noise=QUIET, collimation=8 * ARCSEC, line_azimuth=4.0)
     made = simulate_session(spec, np.random.default_rng(4))
     left = [parse_angle(r["value"], AngleUnit.DMS) for r in made.rows if r["face"] == "L"]
@@ -278,7 +285,7 @@ def test_sights_carry_collimation_and_the_line():
         assert wrap_pi(mean - expected) == pytest.approx(0.0, abs=0.1 * ARCSEC)
 
 
-def test_book_columns_order_and_sides():
+def test_book_columns_order_and_sides() -> None:
     spec = SessionSpec(points=7, missed=(2,), effects=(parse_effect("midpoint_drift=3"),))
     made = simulate_session(spec, np.random.default_rng(6))
     rows = list(csv.DictReader(io.StringIO(book_text(made.rows))))
@@ -294,7 +301,7 @@ def test_book_columns_order_and_sides():
     assert all("+00:00" in row["time"] for row in rows)
 
 
-def test_side_follows_the_reading_where_the_scale_is_reversed():
+def test_side_follows_the_reading_where_the_scale_is_reversed() -> None:
     for scale in (600.0, -600.0):
         spec = SessionSpec(method="amplitude", points=5, scale_value=scale * ARCSEC)
         made = simulate_session(spec, np.random.default_rng(6))
@@ -303,7 +310,7 @@ def test_side_follows_the_reading_where_the_scale_is_reversed():
             assert (row["side"] == "R") == (float(row["value"]) > 0.0)
 
 
-def test_full_fit_times_several_lines():
+def test_full_fit_times_several_lines() -> None:
     spec = SessionSpec(method="full_fit", points=4, lines_div=(-3.0, 0.0, 3.0))
     made = simulate_session(spec, np.random.default_rng(6))
     transits = [row for row in made.rows if row["kind"] == "transit"]
@@ -311,7 +318,7 @@ def test_full_fit_times_several_lines():
     assert len(transits) == 12
 
 
-def test_sessions_of_an_ensemble_differ_in_noise_and_agree_in_kind():
+def test_sessions_of_an_ensemble_differ_in_noise_and_agree_in_kind() -> None:
     spec = SessionSpec(method="transit", points=5, effects=(parse_effect("midpoint_step=20"),))
     made = simulate_sessions(spec, 8, np.random.default_rng(2))
     assert len(made) == 8
@@ -321,13 +328,13 @@ def test_sessions_of_an_ensemble_differ_in_noise_and_agree_in_kind():
     assert all(kind == kinds[0] for kind in kinds)
 
 
-def test_same_seed_same_book():
+def test_same_seed_same_book() -> None:
     spec = SessionSpec(effects=(parse_effect("random_walk=5"), parse_effect("midpoint_step=20")))
     texts = [book_text(simulate_session(spec, np.random.default_rng(9)).rows) for _ in range(2)]
     assert texts[0] == texts[1]
 
 
-def test_project_text_is_complete():
+def test_project_text_is_complete() -> None:
     spec = SessionSpec(latitude=math.radians(-26.0), effects=(parse_effect("midpoint_step=20"),))
     project = simulate_reversal_project(
         spec, np.random.default_rng(9), calibration_latitude=math.radians(47.0)
@@ -348,7 +355,7 @@ def test_project_text_is_complete():
     assert 0.0 < sessions["run-1"]["drawn"]["midpoint_step.at"] < 1.0
 
 
-def test_direct_position_lies_in_the_asked_azimuth():
+def test_direct_position_lies_in_the_asked_azimuth() -> None:
     """Back by the small-figure radii of curvature at the middle: a plain hand check."""
     lat, lon = direct_position(math.radians(60), 0.4, azimuth=1.0, distance_m=300.0)
     middle = 0.5 * (lat + math.radians(60))
@@ -373,12 +380,12 @@ def test_direct_position_lies_in_the_asked_azimuth():
         ("midpoint_step=2,on=3", "unknown option"),
     ],
 )
-def test_effects_that_cannot_be_read(text, words):
+def test_effects_that_cannot_be_read(text: str, words: str) -> None:
     with pytest.raises(SurveyError, match=words):
         parse_effect(text)
 
 
-def test_impossible_specifications_name_all_problems():
+def test_impossible_specifications_name_all_problems() -> None:
     with pytest.raises(SurveyError) as caught:
         SessionSpec(points=2, ratio=1.2, latitude=math.pi / 2)
     assert [problem.where for problem in caught.value.problems] == ["points", "ratio", "latitude"]
@@ -386,7 +393,7 @@ def test_impossible_specifications_name_all_problems():
         SessionSpec(method="transit", amplitude=300 * ARCSEC)
 
 
-def test_every_effect_kind_can_be_simulated_in_every_method():
+def test_every_effect_kind_can_be_simulated_in_every_method() -> None:
     rng = np.random.default_rng(1)
     for method in ("tracking", "amplitude", "transit", "full_fit"):
         for kind in RUN_EFFECTS:

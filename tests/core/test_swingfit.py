@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from surveyapp.core.swing import swingfit
-from surveyapp.core.swing.swingfit import ClampedSwing, Floats, passage_times
+from surveyapp.core.swing.swingfit import ClampedSwing, passage_times
+from surveyapp_models.arrays import Floats
 
 PERIOD, DECREMENT, MIDDLE, AMPLITUDE, START = 388.3, 0.012, 0.7, 9.0, 1000.0
 

@@ -11,6 +11,7 @@ import pytest
 from scipy.special import bdtrik
 
 from bench.coverage import campaign
+from surveyapp.core.simulate.specification import SwingMethod
 
 RUNS = 400
 LOW, HIGH = (float(bdtrik(p, RUNS, 0.95)) / RUNS for p in (0.0005, 0.9995))
@@ -26,7 +27,7 @@ def test_bounds_are_those_of_the_binomial_distribution() -> None:
     ("method", "seed", "sigma_about"),
     [("tracking", 11, 3.0), ("amplitude", 12, 6.0), ("transit", 13, 4.5), ("full_fit", 14, 4.5)],
 )
-def test_interval_holds_the_truth(method: str, seed: int, sigma_about: float) -> None:
+def test_interval_holds_the_truth(method: SwingMethod, seed: int, sigma_about: float) -> None:
     for item in campaign(method, RUNS, seed):
         assert LOW <= item.share <= HIGH
         assert abs(item.bias_in_sigma) < 0.3

@@ -93,7 +93,10 @@ def simulated(
         found[gross[0]] = dataclasses.replace(old, value=old.value + gross[1] * old.sigma)
     status = {True: Status.FIXED, False: Status.FREE}
     points = [
-        NetworkPoint(p, *(at[p] if p in fixed else ()), status_e=status[p in fixed]) for p in names
+        NetworkPoint(p, at[p][0], at[p][1], status_e=status[True])
+        if p in fixed
+        else NetworkPoint(p, status_e=status[False])
+        for p in names
     ]
     points = [dataclasses.replace(p, status_n=p.status_e) for p in points]
     known = GyroConstant("G", (100.0 + 5.0 * rng.normal()) * ARC, 5.0 * ARC)

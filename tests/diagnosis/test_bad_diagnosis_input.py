@@ -7,12 +7,13 @@ import json
 
 import numpy as np
 import pytest
-from measured_runs import gi_b1, johannesburg
 
 from surveyapp.diagnosis import Determination, TurningPoints, diagnose
-from surveyapp.diagnosis.subjects.choice import campaign, reversal_run
+from surveyapp.diagnosis.subjects.campaign import campaign
+from surveyapp.diagnosis.subjects.reversal_run import reversal_run
 from surveyapp.errors import SurveyError
 from surveyapp_models.angles import ARCSEC
+from tests.diagnosis.measured_runs import gi_b1, johannesburg
 
 
 def verdict_of(result_candidates: object, effect: str) -> tuple[str, str]:

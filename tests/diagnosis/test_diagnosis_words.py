@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from measured_runs import gi_b1, johannesburg
-
 from surveyapp.diagnosis import diagnose, plain_words
-from surveyapp.diagnosis.subjects.choice import reversal_run
+from surveyapp.diagnosis.subjects.reversal_run import reversal_run
+from tests.diagnosis.measured_runs import gi_b1, johannesburg
 
 
 def test_the_measured_run_is_told_with_its_figures() -> None:

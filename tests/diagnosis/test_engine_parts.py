@@ -6,10 +6,9 @@ import dataclasses
 
 import numpy as np
 import pytest
-from measured_runs import johannesburg
 from scipy import optimize, stats
 
-from surveyapp.diagnosis import Determination, Problem, TurningPoints
+from surveyapp.diagnosis import Case, Determination, TurningPoints
 from surveyapp.diagnosis.candidates import Candidate, all_candidates, project
 from surveyapp.diagnosis.compare import orthonormal_design, spans
 from surveyapp.diagnosis.fits import Fit, Member, fit_members, with_noise
@@ -17,19 +16,21 @@ from surveyapp.diagnosis.held_out import leave_one_out
 from surveyapp.diagnosis.nulls import Noise, null_of, reductions
 from surveyapp.diagnosis.run_value import plain_value, value_of
 from surveyapp.diagnosis.stochastic import noise_models
-from surveyapp.diagnosis.subjects.choice import campaign, reversal_run
+from surveyapp.diagnosis.subjects.campaign import campaign
+from surveyapp.diagnosis.subjects.reversal_run import reversal_run
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.effects import of_subject
+from tests.diagnosis.measured_runs import johannesburg
 
 
-def quiet_run(seed: int, n: int = 20) -> Problem:
+def quiet_run(seed: int, n: int = 20) -> Case:
     g = np.random.default_rng(seed)
     k = np.arange(float(n))
     y = 1.0 + 0.017 * (-1.0) ** k * np.exp(-0.015 * k) + 4.0 * ARCSEC * g.standard_normal(n)
     return reversal_run(TurningPoints(list(y)))
 
 
-def candidate_of(problem: Problem, identity: str) -> Candidate:
+def candidate_of(problem: Case, identity: str) -> Candidate:
     pool = all_candidates(problem, fit_members(problem, ()).theta)
     return next(c for c in pool if c.id == identity and c.count == 1)
 

@@ -10,30 +10,30 @@ import math
 
 import numpy as np
 import pytest
-from measured_runs import johannesburg
 
-from surveyapp.diagnosis import Diagnosis, Problem, diagnose
+from surveyapp.diagnosis import Case, Diagnosis, diagnose
 from surveyapp.diagnosis.candidates import all_candidates
 from surveyapp.diagnosis.fits import Fit, Member, fit_members
 from surveyapp.diagnosis.held_out import forecast
 from surveyapp.diagnosis.run_value import datum_values, rms, value_of
-from surveyapp.diagnosis.subjects.choice import reversal_run
+from surveyapp.diagnosis.subjects.reversal_run import reversal_run
 from surveyapp_models.angles import ARCSEC
+from tests.diagnosis.measured_runs import johannesburg
 
 NORTH = math.radians(180.0 + 10.0 / 60.0)
 
 
 @pytest.fixture(scope="module")
-def problem() -> Problem:
+def problem() -> Case:
     return reversal_run(johannesburg())
 
 
 @pytest.fixture(scope="module")
-def result(problem: Problem) -> Diagnosis:
+def result(problem: Case) -> Diagnosis:
     return diagnose(problem)
 
 
-def fit_of(problem: Problem, **points: dict[str, float]) -> Fit:
+def fit_of(problem: Case, **points: dict[str, float]) -> Fit:
     """Fit with the given effects at given grid points (best ones where a point is empty)."""
     base = fit_members(problem, ())
     pool = {c.id: c for c in all_candidates(problem, base.theta) if c.count == 1}
@@ -64,7 +64,7 @@ BREAK = {"damping_break": {"position": 5.0}}
     ],
 )
 def test_each_model_of_the_table(
-    problem: Problem,
+    problem: Case,
     points: dict[str, dict[str, float]],
     parameters: int,
     error: float,
@@ -79,14 +79,14 @@ def test_each_model_of_the_table(
 
 @pytest.mark.parametrize(("points", "seconds", "sigma"), [({}, 3.5, 29.0), (BREAK, 10.1, 7.0)])
 def test_north_of_the_first_two_models(
-    problem: Problem, points: dict[str, dict[str, float]], seconds: float, sigma: float
+    problem: Case, points: dict[str, dict[str, float]], seconds: float, sigma: float
 ) -> None:
     value = value_of(problem, fit_of(problem, **points))
     assert (problem.offset + value.value - NORTH) / ARCSEC == pytest.approx(seconds, abs=0.06)
     assert value.sigma / ARCSEC == pytest.approx(sigma, abs=1.0)
 
 
-def test_north_after_the_step_and_the_asymptote_of_the_warm_up(problem: Problem) -> None:
+def test_north_after_the_step_and_the_asymptote_of_the_warm_up(problem: Case) -> None:
     step = datum_values(problem, fit_of(problem, **BREAK, midpoint_step={"phase": 0.5}))
     assert [state for _, state, _ in step] == ["before the step", "after the step"]
     assert (problem.offset + step[1][2].value - NORTH) / ARCSEC == pytest.approx(-2.9, abs=0.06)
@@ -99,7 +99,7 @@ def test_north_after_the_step_and_the_asymptote_of_the_warm_up(problem: Problem)
     [({}, 251.0), (BREAK, 43.0), (BREAK | {"midpoint_step": {"phase": 0.5}}, 47.0)],
 )
 def test_the_step_helps_the_fit_but_not_the_prediction_of_the_last_five(
-    problem: Problem, points: dict[str, dict[str, float]], error: float
+    problem: Case, points: dict[str, dict[str, float]], error: float
 ) -> None:
     predicted = forecast(problem, fit_of(problem, **points))
     assert predicted is not None
@@ -138,5 +138,5 @@ def test_nothing_moves_north_silently(result: Diagnosis) -> None:
     assert abs(result.after_best.value.value - result.after.value.value) / ARCSEC < 3.0
 
 
-def test_a_diagnosis_is_the_same_each_time(problem: Problem, result: Diagnosis) -> None:
+def test_a_diagnosis_is_the_same_each_time(problem: Case, result: Diagnosis) -> None:
     assert diagnose(problem).to_dict() == result.to_dict()

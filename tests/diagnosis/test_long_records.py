@@ -21,7 +21,6 @@ from bench._long_records import (
     STEP_S,
     TEMPERATURE,
     TONE,
-    Array,
     autoregressive,
     flicker,
     rate_log,
@@ -35,14 +34,20 @@ from surveyapp.diagnosis.long_records.record import LONG, reduce_record
 from surveyapp.diagnosis.long_records.spectrum import exceedance, median_bias, spectrum
 from surveyapp.diagnosis.long_records.whiteness import whiteness
 from surveyapp.diagnosis.plain_words import plain_words
-from surveyapp.diagnosis.subjects.choice import campaign, reversal_run
+from surveyapp.diagnosis.subjects.campaign import campaign
+from surveyapp.diagnosis.subjects.reversal_run import reversal_run
 from surveyapp.errors import SurveyError
 from surveyapp.report.sections.diagnosis import blocks as report_blocks
 from surveyapp_models.angles import ARCSEC, AngleUnit
+from surveyapp_models.arrays import Floats
 
 SHARED = Path(os.environ.get("SURVEYAPP_DATA", Path(__file__).parents[2] / "../shared/data"))
 STATIC = SHARED / "mpu6050_static" / "example_data_static_449s.csv"
 DRAWS = 1000
+
+
+def seconds(count: int) -> Floats:
+    return np.asarray(STEP_S * np.arange(count), dtype=np.float64)
 
 
 def most(runs: int, share: float = 0.05) -> int:
@@ -130,7 +135,7 @@ def test_block_means_keep_the_value_and_its_sigma() -> None:
 def test_short_blocks_weigh_by_their_samples() -> None:
     g = np.random.default_rng(7)
     n = 20_000
-    t = STEP_S * np.arange(n)
+    t = seconds(n)
     keep = (t < 60.0) | ((t > 100.3) & (g.random(n) < 0.4))
     problem = rate_log(white(n, g)[keep], t[keep])
     means = block_means(problem, split(problem.position, runs_of(problem), 80))
@@ -205,9 +210,9 @@ def test_a_walk_that_is_slower_than_fifty_blocks_ends_unnamed() -> None:
 # --- lines ---------------------------------------------------------------------------------------
 
 
-def with_line(g: np.random.Generator, noise: Array, amplitude: float, frequency: float) -> Array:
+def with_line(g: np.random.Generator, noise: Floats, amplitude: float, frequency: float) -> Floats:
     t = STEP_S * np.arange(noise.size)
-    return noise + amplitude * np.cos(2.0 * np.pi * frequency * t + 6.0 * g.random())
+    return np.asarray(noise + amplitude * np.cos(2.0 * np.pi * frequency * t + 6.0 * g.random()))
 
 
 @pytest.mark.statistical
@@ -217,7 +222,7 @@ def test_a_line_is_found_with_its_frequency_and_amplitude(noise: object, size: f
     off = []
     for _ in range(30):
         y = with_line(g, noise(20_000, g), size, 7.137)  # type: ignore[operator]
-        found = find_lines(STEP_S * np.arange(y.size), y - y.mean(), columns={}, effects=[])
+        found = find_lines(seconds(y.size), y - y.mean(), columns={}, effects=[])
         line = min(found.lines, key=lambda item: abs(item.frequency - 7.137))
         off.append(
             (
@@ -259,7 +264,7 @@ def test_a_strong_line_is_one_line_and_hides_no_weak_one() -> None:
     g = np.random.default_rng(14)
     y = with_line(g, white(SAMPLES, g), 300.0, 12.4804)
     y = with_line(g, y, 0.05, 12.9)
-    found = find_lines(STEP_S * np.arange(y.size), y - y.mean(), columns={}, effects=[])
+    found = find_lines(seconds(y.size), y - y.mean(), columns={}, effects=[])
     assert [round(line.frequency, 3) for line in found.lines] == [12.48, 12.9]
 
 
@@ -300,7 +305,7 @@ def test_a_gap_and_missing_values_are_said_and_do_no_harm() -> None:
     keep = (t < 300.0) | (t > 480.0)
     clock = t.copy()
     clock[60_000] = np.nan
-    result = diagnose(rate_log(y[keep], clock[keep]), draws=DRAWS)
+    result = diagnose(rate_log(y[keep], np.asarray(clock[keep], dtype=np.float64)), draws=DRAWS)
     assert [item.effect for item in result.adopted] == ["bias_ramp"]
     assert "202 samples" in next(w.text for w in result.warnings if w.code == "missing_samples")
     json.dumps(result.to_dict(), allow_nan=False)

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from surveyapp.diagnosis import TurningPoints, diagnose
-from surveyapp.diagnosis.subjects.choice import reversal_run
+from surveyapp.diagnosis.subjects.reversal_run import reversal_run
 
 SHARED = Path(os.environ.get("SURVEYAPP_DATA", Path(__file__).parents[2] / "../shared/data"))
 RECORD = SHARED / "pendulum_free_swing" / "pendulum_free_swing_data_01.txt"

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from simulated_traverses import ARC, Undeclared, folder_text, simulated
 
 from surveyapp import api
 from surveyapp.cli.main import main
@@ -27,6 +26,7 @@ from surveyapp.diagnosis.subjects.traverse import (
 from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.traverse import Network, Status
 from surveyapp.errors import SurveyError
+from tests.diagnosis.simulated_traverses import ARC, Undeclared, folder_text, simulated
 
 DRAWS = 2000
 SIDES = np.array([110.0, 40, 150, 60, 25, 130, 80, 170, 35, 90, 145, 55, 120, 75])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 import pytest
@@ -112,7 +112,7 @@ def relative(
     if not state:
         return effect.basis(columns, **point)
     basis = effect.basis({n: np.append(v, state[n]) for n, v in columns.items()}, **point)
-    return basis[:-1] - basis[-1]
+    return np.asarray(basis[:-1] - basis[-1])
 
 
 @pytest.mark.parametrize(
@@ -156,10 +156,11 @@ def test_the_amplitude_laws_solve_their_differential_equations(k: float) -> None
     # An independent route: Runge-Kutta on a' = -k a - b a^2 and a' = -k a - c.
     laws = {e.id: e.law for e in CATALOGUE if e.law is not None}
     b, c, first = 0.8, 1e-4, 0.02
-    for identity, loss in (
+    losses: tuple[tuple[str, Callable[[float], float]], ...] = (
         ("quadratic_drag", lambda a: -k * a - b * a * a),
         ("dry_friction", lambda a: -k * a - c),
-    ):
+    )
+    for identity, loss in losses:
         a, h = first, 0.01
         for _ in range(1000):
             k1 = loss(a)
@@ -180,6 +181,6 @@ def test_an_effect_that_contradicts_itself_is_refused() -> None:
         Effect(
             **{f: getattr(good, f) for f in good.__slots__}
             | {"coefficients": good.coefficients * 2}
-        )  # type: ignore[arg-type]
+        )
     with pytest.raises(ValueError, match="belong together"):
-        Effect(**{f: getattr(good, f) for f in good.__slots__} | {"acts_on": "midpoint"})  # type: ignore[arg-type]
+        Effect(**{f: getattr(good, f) for f in good.__slots__} | {"acts_on": "midpoint"})

@@ -10,7 +10,7 @@ import pytest
 from surveyapp import api
 from surveyapp.diagnosis import TurningPoints, diagnose
 from surveyapp.diagnosis.candidates import all_candidates
-from surveyapp.diagnosis.subjects.choice import reversal_run
+from surveyapp.diagnosis.subjects.reversal_run import reversal_run
 from surveyapp.errors import SurveyError
 from surveyapp.io.user_effects.form import form_problems
 from surveyapp.io.user_effects.loading import load_effects

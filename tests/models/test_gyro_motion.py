@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -25,6 +26,7 @@ from surveyapp_models.gyro.integration import (
 from surveyapp_models.gyro.moments import directive_moment, effective_inertia
 from surveyapp_models.gyro.motion import (
     DampedSwing,
+    Motion,
     clamped_swing,
     passage_times_s,
     passages,
@@ -62,7 +64,9 @@ def start_of(swing: DampedSwing, time_s: float = 0.0) -> Start:
 
 @pytest.mark.parametrize("degrees", LATITUDES)
 @pytest.mark.parametrize("mode", ["tracking", "clamped"])
-def test_closed_form_and_integration_agree(degrees, mode):
+def test_closed_form_and_integration_agree(
+    degrees: float, mode: Literal["tracking", "clamped"]
+) -> None:
     """Small swing (10'), damped: positions over five periods to 0.02", passages to 5 ms."""
     gyro, latitude = table_gyro(damping=3e-7), rad(degrees)
     amplitude, offset = 600 * ARCSEC, 300 * ARCSEC
@@ -105,7 +109,9 @@ SIMULATED_PERIODS = [
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 @pytest.mark.parametrize(("degrees", "tracking", "clamped"), SIMULATED_PERIODS)
-def test_periods_of_the_integrated_motion(degrees, tracking, clamped, sign):
+def test_periods_of_the_integrated_motion(
+    degrees: float, tracking: float, clamped: float, sign: float
+) -> None:
     gyro, latitude = table_gyro(), rad(sign * degrees)
     for mode, expected, formula, amplitude in (
         ("tracking", tracking, tracking_period_s, rad(2.0)),
@@ -129,7 +135,7 @@ def test_periods_of_the_integrated_motion(degrees, tracking, clamped, sign):
         assert measured == pytest.approx(corrected, rel=4e-7)
 
 
-def test_two_axis_and_slow_equation_agree_with_every_disturbance():
+def test_two_axis_and_slow_equation_agree_with_every_disturbance() -> None:
     gyro, latitude = table_gyro(damping=2e-6), rad(-47)
     moment = directive_moment(gyro, latitude)
     inertia = effective_inertia(gyro, latitude)
@@ -166,7 +172,7 @@ def test_two_axis_and_slow_equation_agree_with_every_disturbance():
         assert np.max(np.abs(both[0].time_s - both[1].time_s)) < 0.02
 
 
-def test_exponential_step_against_brute_force_with_nutation():
+def test_exponential_step_against_brute_force_with_nutation() -> None:
     """A third of a swing by the classical method in 1 ms steps of the whole equation, sine and all.
 
     Nutation at 30 Hz takes 30 steps; the exponential step of 4 s spans 120 of its periods.
@@ -195,10 +201,11 @@ def test_exponential_step_against_brute_force_with_nutation():
         k2 = slope(*(x + 0.5 * h * k for x, k in zip(state, k1, strict=True)))
         k3 = slope(*(x + 0.5 * h * k for x, k in zip(state, k2, strict=True)))
         k4 = slope(*(x + h * k for x, k in zip(state, k3, strict=True)))
-        state = tuple(
-            x + h / 6 * (p + 2 * q + 2 * r + s)
-            for x, p, q, r, s in zip(state, k1, k2, k3, k4, strict=True)
+        steps = zip(state, k1, k2, k3, k4, strict=True)
+        first, second, third, fourth = (
+            x + h / 6 * (p + 2 * q + 2 * r + s) for x, p, q, r, s in steps
         )
+        state = (first, second, third, fourth)
     motion = integrate(
         gyro, latitude, Start(np.array([a]), np.array([v])), duration_s=120.0, step_s=4.0
     )
@@ -206,7 +213,7 @@ def test_exponential_step_against_brute_force_with_nutation():
     assert motion.azimuth[-1, 0] == pytest.approx(state[0], abs=1e-3 * ARCSEC)
 
 
-def test_step_width_converges():
+def test_step_width_converges() -> None:
     gyro, latitude = table_gyro(damping=2e-6), rad(47)
     period = tracking_period_s(gyro, latitude)
     start = Start(np.array([rad(5.0)]), np.zeros(1))
@@ -220,7 +227,7 @@ def test_step_width_converges():
     assert np.max(np.abs(fine - coarse)) < 5e-3 * ARCSEC
 
 
-def test_nutation_rate_stays_out_of_the_slow_velocity():
+def test_nutation_rate_stays_out_of_the_slow_velocity() -> None:
     """A torque switched on at once excites nutation; turning points must not multiply."""
     gyro, latitude = table_gyro(), rad(47)
     moment, period = directive_moment(gyro, latitude), tracking_period_s(gyro, latitude)
@@ -243,7 +250,9 @@ def test_nutation_rate_stays_out_of_the_slow_velocity():
 # --- table 1.4: transit, tape zero -------------------------------------------------------------
 
 
-def clamped_run(clamp: float, amplitude_div: float, zero_div: float = 0.0):
+def clamped_run(
+    clamp: float, amplitude_div: float, zero_div: float = 0.0
+) -> tuple[SuspendedGyro, float, Motion, float, float]:
     gyro, latitude = table_gyro(), rad(47)
     period, mu = clamped_period_s(gyro, latitude), 600 * ARCSEC
     tape = TapeTop("clamped", clamp=clamp, zero=lambda t: mu * zero_div)
@@ -254,7 +263,7 @@ def clamped_run(clamp: float, amplitude_div: float, zero_div: float = 0.0):
     return gyro, latitude, motion, mu, ratio
 
 
-def test_transit_linearisation_and_arcsine():
+def test_transit_linearisation_and_arcsine() -> None:
     """Clamp 10' off, a = 7.2 div, lambda = 0.2: linear 601.3", exact sine 600.0"."""
     gyro, latitude, motion, mu, ratio = clamped_run(-600 * ARCSEC, 7.2)
     t1, t2 = tracking_period_s(gyro, latitude), clamped_period_s(gyro, latitude)
@@ -273,7 +282,7 @@ def test_transit_linearisation_and_arcsine():
     assert linear / sine - 1 == pytest.approx(share, rel=0.02)
 
 
-def test_transit_against_offset_of_source_000():
+def test_transit_against_offset_of_source_000() -> None:
     """Offsets 60" to 1800": the linear formula grows wrong, the arcsine form does not."""
     gyro = SuspendedGyro(0.4, 0.25, 1e-7, 1e-3, 0.45 * 0.4 * 7.292115e-5)
     latitude, mu = rad(35), 60 * ARCSEC
@@ -300,7 +309,7 @@ def test_transit_against_offset_of_source_000():
         assert (1 + ratio) * 60 * mu * angle / ARCSEC > sine
 
 
-def test_tape_zero_check_numbers():
+def test_tape_zero_check_numbers() -> None:
     """d = +0.4 div, clamp 8' off: non-tracking formula 480.00"; tracking +48.01" = lambda mu d."""
     _, _, motion, mu, ratio = clamped_run(-480 * ARCSEC, 3.0, zero_div=0.4)
     turns = turning_points(motion, 4).azimuth[0]
@@ -324,7 +333,9 @@ def test_tape_zero_check_numbers():
     assert mean / ARCSEC == pytest.approx(48.01, abs=0.01)
 
 
-def clamped_centre(gyro: SuspendedGyro, latitude: float, clamp: float, zero: float) -> tuple:
+def clamped_centre(
+    gyro: SuspendedGyro, latitude: float, clamp: float, zero: float
+) -> tuple[float, float]:
     """Centre of swing [div] and a dt [div s] of a clamping, from its motion; zero in rad."""
     period, mu = clamped_period_s(gyro, latitude), 600 * ARCSEC
     motion = integrate(
@@ -342,7 +353,7 @@ def clamped_centre(gyro: SuspendedGyro, latitude: float, clamp: float, zero: flo
     return float((x[0] + 3 * x[1] + 3 * x[2] + x[3]) / 8), float(np.ptp(x[1:3]) / 2 * difference)
 
 
-def test_two_clampings_of_the_integrated_motion_give_lambda_and_c():
+def test_two_clampings_of_the_integrated_motion_give_lambda_and_c() -> None:
     """12' east and 12' west with a tape zero: lambda of the tape, C of the periods."""
     gyro, latitude, mu = table_gyro(), rad(-60), 600 * ARCSEC
     clamps = (720 * ARCSEC, -720 * ARCSEC)
@@ -363,7 +374,7 @@ def test_two_clampings_of_the_integrated_motion_give_lambda_and_c():
     assert c.value == pytest.approx(expected.value, rel=4e-3)
 
 
-def test_change_of_spin_moves_north_by_the_share_of_the_torsion():
+def test_change_of_spin_moves_north_by_the_share_of_the_torsion() -> None:
     """One percent more spin, lambda as before: from the integrated motion and by formula."""
     mu, zero, clamp, latitude = 600 * ARCSEC, 0.4 * 600 * ARCSEC, 480 * ARCSEC, rad(47)
     base = table_gyro()
@@ -377,7 +388,7 @@ def test_change_of_spin_moves_north_by_the_share_of_the_torsion():
     assert abs(expected) > 1.0 * ARCSEC
 
 
-def test_amplitude_method_reaches_the_same_north_south_of_the_equator():
+def test_amplitude_method_reaches_the_same_north_south_of_the_equator() -> None:
     mu = 600 * ARCSEC
     for degrees in (-60.0, 60.0):
         gyro, latitude = table_gyro(), rad(degrees)
@@ -423,7 +434,7 @@ def centre_and_loss(readings: np.ndarray) -> tuple[float, np.ndarray]:
     return float(schuler.mean()), -np.diff(np.abs(np.diff(readings)) / 2)
 
 
-def test_lag_both_ways_is_dry_friction():
+def test_lag_both_ways_is_dry_friction() -> None:
     """eps = 60", lambda = .2: N unbiased, 24" of amplitude lost per half swing, linearly."""
     readings, times = tracked(TapeTop(lag=60 * ARCSEC))
     centre, loss = centre_and_loss(readings)
@@ -436,21 +447,21 @@ def test_lag_both_ways_is_dry_friction():
     assert np.mean(np.diff(times)) == pytest.approx(0.5 * period, abs=0.01)
 
 
-def test_lag_one_way_shifts_north_by_half():
+def test_lag_one_way_shifts_north_by_half() -> None:
     """N shifts by lambda eps/2 = -6.0", 12" of amplitude lost per half swing."""
     centre, loss = centre_and_loss(tracked(TapeTop(eastward_lag=60 * ARCSEC))[0])
     assert centre == pytest.approx(-6.0, abs=0.05)
     assert np.allclose(loss, 12.0, atol=0.1)
 
 
-def test_constant_offset_shifts_north_without_damping():
+def test_constant_offset_shifts_north_without_damping() -> None:
     """N shifts by lambda eps = 12.0"."""
     centre, loss = centre_and_loss(tracked(TapeTop(zero=lambda t: 60 * ARCSEC))[0])
     assert centre == pytest.approx(12.0, abs=0.01)
     assert np.allclose(loss, 0.0, atol=0.01)
 
 
-def test_servo_delay_acts_as_viscous_damping():
+def test_servo_delay_acts_as_viscous_damping() -> None:
     """A tape top that trails by delay times rate: ratio exp(-k T/2), k = D delay/2 J_eff."""
     gyro = table_gyro()
     readings, _ = tracked(TapeTop(delay_s=20.0))
@@ -462,7 +473,7 @@ def test_servo_delay_acts_as_viscous_damping():
     assert ratio == pytest.approx(math.exp(-decay * math.pi / rate), rel=2e-5)
 
 
-def test_quadratic_drag_loses_four_thirds_of_the_squared_amplitude():
+def test_quadratic_drag_loses_four_thirds_of_the_squared_amplitude() -> None:
     gyro, latitude = table_gyro(), rad(47)
     inertia, period = effective_inertia(gyro, latitude), tracking_period_s(gyro, latitude)
     motion = integrate(
@@ -478,7 +489,7 @@ def test_quadratic_drag_loses_four_thirds_of_the_squared_amplitude():
     assert np.allclose((turns[:-1] - turns[1:]) / middle**2, 4.0 / 3.0 * 0.2, rtol=2e-3)
 
 
-def test_asymmetric_stiffness_moves_the_midpoint_with_the_squared_amplitude():
+def test_asymmetric_stiffness_moves_the_midpoint_with_the_squared_amplitude() -> None:
     gyro, latitude = table_gyro(), rad(47)
     moment, period = directive_moment(gyro, latitude), tracking_period_s(gyro, latitude)
     for degrees in (1.0, 2.0):
@@ -499,7 +510,7 @@ def test_asymmetric_stiffness_moves_the_midpoint_with_the_squared_amplitude():
 # --- refusals, derivatives ----------------------------------------------------------------------
 
 
-def test_swing_velocity_is_the_derivative_of_the_position():
+def test_swing_velocity_is_the_derivative_of_the_position() -> None:
     swing = DampedSwing(0.3, 2.0, 1e-3, 0.015, 0.4)
     times, step = np.linspace(0.0, 900.0, 41), 1e-3
     numeric = (swing_position(swing, times + step) - swing_position(swing, times - step)) / (
@@ -512,7 +523,7 @@ def test_swing_velocity_is_the_derivative_of_the_position():
     )
 
 
-def test_what_does_not_happen_is_refused():
+def test_what_does_not_happen_is_refused() -> None:
     swing = DampedSwing(0.0, 1.0, 0.0, 0.015, 0.0)
     with pytest.raises(ValueError, match="passes 2 only 0 times"):
         passage_times_s(swing, 2.0, 1)

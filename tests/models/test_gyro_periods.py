@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -80,7 +82,9 @@ PERIOD_TABLE = [
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 @pytest.mark.parametrize(("degrees", "tracking", "simple", "clamped", "ratio"), PERIOD_TABLE)
-def test_periods_follow_the_table(degrees, tracking, simple, clamped, ratio, sign):
+def test_periods_follow_the_table(
+    degrees: float, tracking: float, simple: float, clamped: float, ratio: float, sign: float
+) -> None:
     gyro, latitude = table_gyro(), rad(sign * degrees)
     assert tracking_period_s(gyro, latitude) == pytest.approx(tracking, abs=6e-4)
     assert simple_tracking_period_s(gyro, latitude) == pytest.approx(simple, abs=6e-3)
@@ -88,7 +92,7 @@ def test_periods_follow_the_table(degrees, tracking, simple, clamped, ratio, sig
     assert gyro.torsion / directive_moment(gyro, latitude) == pytest.approx(ratio, abs=6e-5)
 
 
-def test_periods_of_source_000_by_the_simple_form():
+def test_periods_of_source_000_by_the_simple_form() -> None:
     """H = 0.4, mgl = 0.25, lambda 0.450 at the equator to 1.739 at 75 degrees."""
     torsion = 0.45 * 0.4 * EARTH_RATE
     gyro = SuspendedGyro(0.4, 0.25, 1e-9, 1e-3, torsion)
@@ -99,7 +103,7 @@ def test_periods_of_source_000_by_the_simple_form():
     assert torsion / directive_moment(gyro, rad(75)) == pytest.approx(1.739, abs=6e-4)
 
 
-def test_moment_follows_cosine_of_latitude_and_sine_of_azimuth():
+def test_moment_follows_cosine_of_latitude_and_sine_of_azimuth() -> None:
     gyro = table_gyro()
     assert directive_moment(gyro, rad(47)) == pytest.approx(9.3e-6, rel=2e-3)
     assert directive_moment(gyro, rad(75)) / directive_moment(gyro, 0.0) == pytest.approx(
@@ -117,7 +121,7 @@ def test_moment_follows_cosine_of_latitude_and_sine_of_azimuth():
     )
 
 
-def test_torque_for_one_arcsecond_and_rest_tilt():
+def test_torque_for_one_arcsecond_and_rest_tilt() -> None:
     gyro = table_gyro()
     shift = north_shift_of_torque(gyro, latitude=rad(47), torque=4.5e-11)
     assert shift / ARCSEC == pytest.approx(1.0, rel=0.01)
@@ -125,7 +129,7 @@ def test_torque_for_one_arcsecond_and_rest_tilt():
     assert rest_elevation(gyro, rad(-47)) == -rest_elevation(gyro, rad(47))
 
 
-def test_latitude_verdicts():
+def test_latitude_verdicts() -> None:
     assert latitude_verdict(rad(70)) == "good"
     assert latitude_verdict(rad(-70.5)) == "warn"
     assert latitude_verdict(rad(75)) == "warn"
@@ -136,7 +140,7 @@ def test_latitude_verdicts():
         latitude_verdict(rad(90), beyond=True)
 
 
-def test_amplitude_correction_against_the_elliptic_integral():
+def test_amplitude_correction_against_the_elliptic_integral() -> None:
     """A pendulum's period is T0/agm(1, cos(A/2)): independent of the series in A."""
     for degrees, seconds in ((5.0, 0.20), (10.0, None)):
         a, g = 1.0, math.cos(rad(degrees) / 2.0)
@@ -148,14 +152,14 @@ def test_amplitude_correction_against_the_elliptic_integral():
             assert corrected - 425.0 == pytest.approx(seconds, abs=0.005)
 
 
-def test_damping_correction_is_that_of_the_damping_ratio():
+def test_damping_correction_is_that_of_the_damping_ratio() -> None:
     for zeta in (0.002, 0.01, 0.1):
         ratio = math.exp(-math.pi * zeta / math.sqrt(1.0 - zeta**2))
         period = period_with_damping_s(400.0, ratio_per_half_swing=ratio)
         assert period == pytest.approx(400.0 / math.sqrt(1.0 - zeta**2), rel=1e-12)
 
 
-def test_slow_root_of_the_two_axis_equation_against_numpy_roots():
+def test_slow_root_of_the_two_axis_equation_against_numpy_roots() -> None:
     gyro, latitude = table_gyro(), rad(-47)
     moment = directive_moment(gyro, latitude)
     for clamped, stiffness in ((False, moment), (True, moment + gyro.torsion)):
@@ -180,7 +184,7 @@ def test_slow_root_of_the_two_axis_equation_against_numpy_roots():
     )
 
 
-def test_spin_sensitivity_is_the_derivative():
+def test_spin_sensitivity_is_the_derivative() -> None:
     for degrees in (0.0, 47.0, 70.0):
         latitude = rad(degrees)
         for period, slope in (
@@ -200,7 +204,7 @@ def test_spin_sensitivity_is_the_derivative():
 @pytest.mark.parametrize(
     ("degrees", "percent"), [(30.0, 0.5), (47.0, 0.94), (60.0, 1.5), (70.0, 2.4)]
 )
-def test_period_slope_with_latitude(degrees, percent):
+def test_period_slope_with_latitude(degrees: float, percent: float) -> None:
     slope = tracking_period_latitude_slope(425.0, rad(degrees))
     assert 100.0 * slope * rad(1.0) / 425.0 == pytest.approx(percent, abs=0.012)
     gyro, step = table_gyro(), 1e-5
@@ -213,7 +217,7 @@ def test_period_slope_with_latitude(degrees, percent):
 
 
 @pytest.mark.parametrize("to_degrees", [0.0, -26.0, 30.0, 63.0, 75.0])
-def test_transfer_of_periods_meets_the_periods_there(to_degrees):
+def test_transfer_of_periods_meets_the_periods_there(to_degrees: float) -> None:
     gyro, here, there = table_gyro(), rad(47), rad(to_degrees)
     tracking = Estimate(tracking_period_s(gyro, here), 0.2)
     clamped = Estimate(clamped_period_s(gyro, here), 0.2)
@@ -223,14 +227,14 @@ def test_transfer_of_periods_meets_the_periods_there(to_degrees):
     assert moved.value == pytest.approx(clamped_period_s(gyro, there), rel=1e-5)
 
 
-def test_sigma_of_transferred_values_against_monte_carlo():
+def test_sigma_of_transferred_values_against_monte_carlo() -> None:
     rng = np.random.default_rng(20)
     here, there, runs = rad(47), rad(63), 4000
     t1 = 425.4 + 0.5 * rng.normal(size=runs)
     t2 = 388.3 + 0.5 * rng.normal(size=runs)
     first, second = Estimate(425.4, 0.5), Estimate(388.3, 0.5)
 
-    def spread(function):
+    def spread(function: Callable[[Estimate, Estimate], float]) -> float:
         return float(
             np.std([function(Estimate(a, 0), Estimate(b, 0)) for a, b in zip(t1, t2, strict=True)])
         )
@@ -253,7 +257,7 @@ def test_sigma_of_transferred_values_against_monte_carlo():
     assert coefficient.sigma == pytest.approx(sampled, rel=bound + 0.01)
 
 
-def test_transit_coefficient_sigma_after_transfer_is_the_derivative():
+def test_transit_coefficient_sigma_after_transfer_is_the_derivative() -> None:
     here, there = rad(47), rad(-63)
     coefficient, ratio = Estimate(2.91, 0.02), Estimate(0.2, 0.01)
     moved = transfer_transit_coefficient(coefficient, ratio, latitude=here, to_latitude=there)
@@ -266,7 +270,7 @@ def test_transit_coefficient_sigma_after_transfer_is_the_derivative():
     assert moved.sigma == pytest.approx(math.hypot(gain * 0.02, 2.91 * by_ratio * 0.01), rel=1e-8)
 
 
-def test_transit_coefficient_elsewhere_from_the_periods_here():
+def test_transit_coefficient_elsewhere_from_the_periods_here() -> None:
     gyro, here, there = table_gyro(), rad(47), rad(-63)
     periods = [f(gyro, here) for f in (tracking_period_s, clamped_period_s)]
 
@@ -300,7 +304,7 @@ def test_transit_coefficient_elsewhere_from_the_periods_here():
     assert sigma == pytest.approx(math.hypot(0.3 * slopes[0], 0.2 * slopes[1]), rel=1e-7)
 
 
-def test_unspun_period_identity():
+def test_unspun_period_identity() -> None:
     """lambda = (J_z/J_eff) (T1/T0)^2."""
     gyro, latitude = table_gyro(), rad(47)
     inertia = gyro.vertical_inertia + gyro.angular_momentum**2 / (
@@ -311,7 +315,7 @@ def test_unspun_period_identity():
     assert ratio * square == pytest.approx(0.2, rel=1e-9)
 
 
-def test_gyro_from_periods_gives_the_periods_back():
+def test_gyro_from_periods_gives_the_periods_back() -> None:
     gyro = gyro_from_periods(
         tracking_s=425.4, clamped_s=388.3, unspun_s=146.0, latitude=rad(-47), damping_ratio=0.002
     )
@@ -328,7 +332,7 @@ def test_gyro_from_periods_gives_the_periods_back():
         ({"latitude": math.pi / 2}, "pole"),
     ],
 )
-def test_impossible_periods_are_refused(change, message):
+def test_impossible_periods_are_refused(change: dict[str, float], message: str) -> None:
     good = {"tracking_s": 425.4, "clamped_s": 388.3, "unspun_s": 146.0, "latitude": 0.8}
     with pytest.raises(ValueError, match=message):
         gyro_from_periods(**(good | change))
@@ -345,7 +349,7 @@ RATIO_LATITUDES = (0, 20, 30, 40, 47, 50, 55, 60, 65, 70, 75)
 
 
 @pytest.mark.parametrize("ratio", RATIO_TABLE)
-def test_transit_coefficient_against_latitude_by_the_periods(ratio):
+def test_transit_coefficient_against_latitude_by_the_periods(ratio: float) -> None:
     """Table of C/C(47): once by the formula, once by C = (pi/2) mu T1^2/T2^3 of a gyro there."""
     torsion = ratio * 0.187 * EARTH_RATE * math.cos(rad(47))
     gyro = SuspendedGyro(0.187, 0.84, 1e-3, 1e-3, torsion)
@@ -362,7 +366,7 @@ def test_transit_coefficient_against_latitude_by_the_periods(ratio):
         assert by_periods(degrees) / by_periods(47) == pytest.approx(value, rel=3e-5)
 
 
-def test_transit_coefficient_slope_is_the_derivative_and_changes_sign_at_one_half():
+def test_transit_coefficient_slope_is_the_derivative_and_changes_sign_at_one_half() -> None:
     for ratio in (0.05, 0.2, 0.5, 0.8):
         latitude, step = rad(50), 1e-5
         values = [
@@ -375,7 +379,7 @@ def test_transit_coefficient_slope_is_the_derivative_and_changes_sign_at_one_hal
     assert transit_coefficient_latitude_slope(0.5, rad(50)) == 0.0
 
 
-def test_transit_coefficient_check_numbers():
+def test_transit_coefficient_check_numbers() -> None:
     for (t1, t2), expected in (((425, 388), 2.91), ((480, 400), 3.39)):
         value = transit_coefficient_from_periods(
             Estimate(t1, 0), Estimate(t2, 0), scale_value=600.0
@@ -383,7 +387,7 @@ def test_transit_coefficient_check_numbers():
         assert value == pytest.approx(expected, abs=0.006)
 
 
-def test_transit_coefficient_of_source_000_against_latitude():
+def test_transit_coefficient_of_source_000_against_latitude() -> None:
     """c/(pi/2) for mu = 1: .001876 .001875 .001910 .002072 .002477 at 0 35 50 65 75 degrees."""
     torsion = 0.45 * 0.4 * EARTH_RATE
     gyro = SuspendedGyro(0.4, 0.25, 1e-9, 1e-3, torsion)
@@ -395,7 +399,7 @@ def test_transit_coefficient_of_source_000_against_latitude():
         assert c / (math.pi / 2) == pytest.approx(value, abs=6e-7)
 
 
-def test_two_clampings_recover_lambda_and_c():
+def test_two_clampings_recover_lambda_and_c() -> None:
     mu, ratio, north, zero = 600 * ARCSEC, 0.27, 0.4, 0.3
     clamps = [north + 700 * ARCSEC, north - 800 * ARCSEC]
     # north = clamp + (1 + lambda) mu B - lambda mu d
@@ -428,7 +432,7 @@ def test_two_clampings_recover_lambda_and_c():
     )
 
 
-def test_card_values_are_held_against_the_periods():
+def test_card_values_are_held_against_the_periods() -> None:
     mu = 600 * ARCSEC
     check_torsion_ratio(0.205, tracking_s=425.4, clamped_s=388.3)
     with pytest.raises(ValueError, match=r"5\.0000 .*0\.2002"):
@@ -443,7 +447,7 @@ def test_card_values_are_held_against_the_periods():
         torsion_ratio_from_periods(Estimate(388.3, 0), Estimate(425.4, 0))
 
 
-def test_transferred_lambda_is_that_of_the_gyro_there():
+def test_transferred_lambda_is_that_of_the_gyro_there() -> None:
     gyro = table_gyro()
     there = transfer_torsion_ratio(Estimate(0.2, 0.01), latitude=rad(47), to_latitude=rad(-60))
     assert there.value == pytest.approx(gyro.torsion / directive_moment(gyro, rad(60)), rel=1e-12)
@@ -452,12 +456,18 @@ def test_transferred_lambda_is_that_of_the_gyro_there():
     assert (there.value - 0.2) * 0.5 * 600.0 == pytest.approx(22.0, abs=0.3)
 
 
-def test_latitude_law_from_periods_at_several_places():
+PERIODS: dict[Literal["tracking", "clamped"], Callable[[SuspendedGyro, float], float]] = {
+    "tracking": tracking_period_s,
+    "clamped": clamped_period_s,
+}
+
+
+def test_latitude_law_from_periods_at_several_places() -> None:
     gyro = table_gyro()
     exact = [
         MeasuredPeriod(kind, rad(d), period(gyro, rad(d)), 0.1)
         for d in (18.0, -35.0, 53.0)
-        for kind, period in (("tracking", tracking_period_s), ("clamped", clamped_period_s))
+        for kind, period in PERIODS.items()
     ]
     law = fit_latitude_law(exact)
     assert law.dof == 4
@@ -473,10 +483,9 @@ def test_latitude_law_from_periods_at_several_places():
 
 
 @pytest.mark.statistical
-def test_latitude_law_covariance_and_chi_square():
+def test_latitude_law_covariance_and_chi_square() -> None:
     gyro, rng, runs = table_gyro(), np.random.default_rng(7), 600
-    places = [(k, rad(d)) for d in (0.0, 26.0, 47.0, 60.0) for k in ("tracking", "clamped")]
-    functions = {"tracking": tracking_period_s, "clamped": clamped_period_s}
+    places = [(k, rad(d)) for d in (0.0, 26.0, 47.0, 60.0) for k in PERIODS]
     predictions = (
         predicted_tracking_period,
         predicted_clamped_period,
@@ -489,7 +498,7 @@ def test_latitude_law_covariance_and_chi_square():
     for _ in range(runs):
         law = fit_latitude_law(
             [
-                MeasuredPeriod(k, lat, functions[k](gyro, lat) + 0.2 * rng.normal(), 0.2)
+                MeasuredPeriod(k, lat, PERIODS[k](gyro, lat) + 0.2 * rng.normal(), 0.2)
                 for k, lat in places
             ]
         )

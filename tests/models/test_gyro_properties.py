@@ -33,7 +33,9 @@ periods = st.tuples(st.floats(300.0, 900.0), st.floats(0.6, 0.99), st.floats(20.
 
 @settings(deadline=None, max_examples=60)
 @given(periods, latitudes)
-def test_parameters_and_periods_are_inverse(three, latitude):
+def test_parameters_and_periods_are_inverse(
+    three: tuple[float, float, float], latitude: float
+) -> None:
     t1, t2, t0 = three
     gyro = gyro_from_periods(tracking_s=t1, clamped_s=t2, unspun_s=t0, latitude=latitude)
     assert tracking_period_s(gyro, -latitude) == pytest.approx(t1, rel=1e-9)
@@ -43,7 +45,9 @@ def test_parameters_and_periods_are_inverse(three, latitude):
 
 @settings(deadline=None, max_examples=60)
 @given(periods, latitudes, latitudes, latitudes)
-def test_transfer_does_not_depend_on_the_way(three, here, between, there):
+def test_transfer_does_not_depend_on_the_way(
+    three: tuple[float, float, float], here: float, between: float, there: float
+) -> None:
     t1, t2 = Estimate(three[0], 0.2), Estimate(three[1], 0.2)
 
     def moved(a: Estimate, b: Estimate, start: float, end: float) -> tuple[Estimate, Estimate]:
@@ -62,7 +66,9 @@ def test_transfer_does_not_depend_on_the_way(three, here, between, there):
 
 @settings(deadline=None, max_examples=60)
 @given(periods, latitudes, latitudes)
-def test_lambda_and_c_carried_are_those_of_the_periods_carried(three, here, there):
+def test_lambda_and_c_carried_are_those_of_the_periods_carried(
+    three: tuple[float, float, float], here: float, there: float
+) -> None:
     t1, t2 = Estimate(three[0], 0.0), Estimate(three[1], 0.0)
     t1_there = transfer_tracking_period(t1, latitude=here, to_latitude=there)
     t2_there = transfer_clamped_period(t2, t1, latitude=here, to_latitude=there)

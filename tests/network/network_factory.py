@@ -264,7 +264,7 @@ class Independent:
             o.kind in (K.ANGLE, K.DIRECTION, K.AZIMUTH, K.GYRO, K.ZENITH) for o in self.observations
         ]
         gap[angular] = np.angle(np.exp(1j * gap[angular]))
-        return gap
+        return np.asarray(gap)
 
     def jacobian(self, x: np.ndarray) -> np.ndarray:
         columns = []

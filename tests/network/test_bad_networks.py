@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from network_factory import ARC, make
 
 from surveyapp.core.network import adjust
 from surveyapp.core.network.snooping import data_snooping
 from surveyapp.domain.observations import Observation, ObservationKind
 from surveyapp.domain.traverse import Network, NetworkPoint, Status
 from surveyapp.errors import SurveyError
+from tests.network.network_factory import ARC, make
 
 K = ObservationKind
 

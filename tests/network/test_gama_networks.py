@@ -38,6 +38,10 @@ class Stored:
     observations: list[tuple[float, float, float]]
 
 
+def child(item: ET.Element, tag: str) -> str:
+    return item.findtext(NS + tag) or "nan"
+
+
 def stored(name: str) -> Stored:
     root = ET.parse(FOLDER / f"{name}.xml").getroot()
 
@@ -45,26 +49,27 @@ def stored(name: str) -> Stored:
         return float(next(root.iter(NS + tag)).text or "nan")
 
     matrix = next(root.iter(NS + "cov-mat"))
-    dim, band = (int(matrix.find(NS + tag).text) for tag in ("dim", "band"))
-    values = iter(float(item.text) for item in matrix.findall(NS + "flt"))
+    dim, band = (int(child(matrix, tag)) for tag in ("dim", "band"))
+    values = iter(float(item.text or "nan") for item in matrix.findall(NS + "flt"))
     covariance = np.zeros((dim, dim))
     for i in range(dim):
         for j in range(i, min(dim, i + band + 1)):
             covariance[i, j] = covariance[j, i] = next(values)
-    points, order = {}, []
+    points: dict[str, dict[str, float]] = {}
+    order = []
     for point in next(root.iter(NS + "adjusted")):
-        identity = point.find(NS + "id").text
+        identity = child(point, "id")
         points[identity] = {}
         for item in point:
             tag = item.tag.removeprefix(NS)
             if tag != "id":
-                points[identity][tag.lower()] = float(item.text)
+                points[identity][tag.lower()] = float(item.text or "nan")
                 order.append((identity, tag.lower()))
     observations = [
         (
-            float(item.find(NS + "stdev").text),
-            float(item.find(NS + "f").text),
-            float(getattr(item.find(NS + "std-residual"), "text", "nan")),
+            float(child(item, "stdev")),
+            float(child(item, "f")),
+            float(child(item, "std-residual")),
         )
         for item in next(root.iter(NS + "observations"))
     ]

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from network_factory import make
 
 from surveyapp.core.network import adjust
 from surveyapp.domain.adjustment import AdjustmentResult
@@ -18,6 +17,7 @@ from surveyapp.domain.traverse import Network, Status
 from surveyapp.errors import SurveyError
 from surveyapp.io.exporters.gkf import gkf_text, write_gkf
 from surveyapp.io.importers.gkf import read_gkf
+from tests.network.network_factory import make
 
 SHARED = Path(os.environ.get("SURVEYAPP_DATA", Path(__file__).parents[3] / "shared" / "data"))
 FILES = sorted((SHARED / "networks").glob("*.gkf"))

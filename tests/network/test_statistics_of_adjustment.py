@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from network_factory import ARC, make
 
 from surveyapp.core.network import adjust
 from surveyapp.core.network.quality import confidence_scale, ellipse, family_critical, global_test
 from surveyapp.core.network.variance_components import variance_components
 from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.traverse import Network, Status
+from tests.network.network_factory import ARC, make
 
 K = ObservationKind
 

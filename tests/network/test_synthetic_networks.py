@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from network_factory import ARC, Independent, make
 
 from surveyapp.core.leastsquares import solution
 from surveyapp.core.network import adjust, gaussnewton
 from surveyapp.core.network.linearise import LINEARISATION
 from surveyapp.domain.observations import Observation, ObservationKind
 from surveyapp.domain.traverse import GyroConstant, Network, NetworkPoint, Status
+from tests.network.network_factory import ARC, Independent, make
 
 K = ObservationKind
 CASES = [
@@ -144,7 +144,7 @@ def loop(count: int, kinds: tuple[str, ...]) -> Network:
             value = azimuth(i, i + 1) + rng.normal(0.0, 15 * ARC)
             observations.append(Observation(K.GYRO, name, fore, value, 15 * ARC, constant="G"))
     points = tuple(
-        NetworkPoint(n, *map(float, p), None, *((Status.FIXED,) * 2 if i < 2 else ()))
+        NetworkPoint(n, float(p[0]), float(p[1]), None, *((Status.FIXED,) * 2 if i < 2 else ()))
         for i, (n, p) in enumerate(zip(names, places, strict=True))
     )
     constants = (GyroConstant("G", 0.0, 20 * ARC),) if "gyro" in kinds else ()

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers_tui import SMALL, Clock, make_project, rows_on_disk
 from textual.pilot import Pilot
 from textual.widgets import Static
 
@@ -21,10 +20,11 @@ from surveyapp.domain.readings import ReadingKind, Side
 from surveyapp.errors import SurveyError
 from surveyapp.observation import session as api_session
 from surveyapp.observation.entry import expected, understand
-from surveyapp.observation.session import NewRow, Observation
+from surveyapp.observation.session import NewRow, SessionDesk
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.views.progress import countdown_text, forecast_text, is_near
 from surveyapp_models.angles import AngleUnit
+from tests.tui.helpers_tui import SMALL, Clock, make_project, rows_on_disk
 
 KINDS = ("clamp", "scale_reversal", "transit")
 
@@ -35,7 +35,7 @@ def simulated(method: SwingMethod, points: int = 7, seed: int = 5) -> list[Row]:
     return [row for row in rows if row["kind"] in KINDS]
 
 
-def observed(seen: Observation, clock: Clock, rows: list[Row]) -> None:
+def observed(seen: SessionDesk, clock: Clock, rows: list[Row]) -> None:
     """Write rows at their moments."""
     for row in rows:
         begin = clock.seconds - 1000.0
@@ -43,9 +43,9 @@ def observed(seen: Observation, clock: Clock, rows: list[Row]) -> None:
         seen.record(NewRow(ReadingKind(row["kind"]), row["value"], row["unit"]))
 
 
-def session(folder: Path, method: SwingMethod, clock: Clock) -> Observation:
+def session(folder: Path, method: SwingMethod, clock: Clock) -> SessionDesk:
     make_project(folder, method)
-    seen = Observation(folder, "r1", now=clock.now, steady=clock.steady)
+    seen = SessionDesk(folder, "r1", now=clock.now, steady=clock.steady)
     seen.go_to(Step.SWING)
     return seen
 
@@ -115,7 +115,7 @@ def test_a_clock_set_back_and_midnight_change_no_forecast(tmp_path: Path) -> Non
             clock.pass_by(float(row["elapsed_s"]) - float(before["elapsed_s"]))
             seen.record(NewRow(ReadingKind(row["kind"]), row["value"], row["unit"]))
         seen.close()
-        again = Observation(tmp_path / name, "r1", now=clock.now, steady=clock.steady)
+        again = SessionDesk(tmp_path / name, "r1", now=clock.now, steady=clock.steady)
         progress = api_session.progress(again.project, "r1")
         assert progress.passage is not None
         found.append((progress.passage.moment_s, again.remaining_s(progress)))
@@ -129,7 +129,7 @@ def test_moments_of_another_clock_give_no_countdown(tmp_path: Path) -> None:
     rows = [dict(row, elapsed_s="") for row in simulated("amplitude")]
     (folder / "observations" / "r1.csv").write_text(book_text(tuple(rows)), encoding="utf-8")
     clock = Clock()
-    seen = Observation(folder, "r1", now=clock.now, steady=clock.steady)
+    seen = SessionDesk(folder, "r1", now=clock.now, steady=clock.steady)
     progress = api_session.progress(seen.project, "r1")
     assert progress.next is not None
     assert progress.next.reading is not None
@@ -203,7 +203,7 @@ async def test_the_screen_of_an_automatic_gyro_says_enough(tmp_path: Path) -> No
     text = (folder / "project.toml").read_text(encoding="utf-8")
     (folder / "project.toml").write_text(text.replace("wild-gak1", "hgg05"), encoding="utf-8")
     clock = Clock()
-    seen = Observation(folder, "r1", now=clock.now, steady=clock.steady)
+    seen = SessionDesk(folder, "r1", now=clock.now, steady=clock.steady)
     seen.go_to(Step.SWING)
     for value in ("09", "15", "14", "12", "10", "12"):
         seen.record(NewRow(ReadingKind.AZIMUTH, f"321-53-{value}", "dms"))

@@ -8,7 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from helpers_tui import LARGE, SMALL
 from textual.widgets import Static
 
 from surveyapp import api
@@ -21,9 +20,10 @@ from surveyapp.tui import texts
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.widgets.constants import ConstantCanvas, ConstantPlot, draw_constant
 from surveyapp_models.angles import ARCSEC
+from tests.tui.helpers_tui import LARGE, SMALL
 
 PROJECTS = Path(__file__).resolve().parents[2] / "projects"
-CORE = Path(api.__file__).parent / "core"
+CORE = Path(api.__file__).parents[1] / "core"
 MARCH_2 = 1772409600.0  # 2026-03-02 00:00 UTC
 DAY = 86400.0
 

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers_tui import Clock, make_project
 
 from surveyapp.core.observing.doubts import Doubt, doubt_round
 from surveyapp.core.observing.steps import Step
@@ -16,16 +15,17 @@ from surveyapp.core.simulate.specification import SessionSpec
 from surveyapp.domain.project import Method
 from surveyapp.domain.readings import Face, Reading, ReadingKind, Side
 from surveyapp.observation.entry import expected, understand
-from surveyapp.observation.session import NewRow, Observation
+from surveyapp.observation.session import NewRow, SessionDesk
 from surveyapp_models.angles import ARCSEC
+from tests.tui.helpers_tui import Clock, make_project
 
 
-def observation(folder: Path, method: Method = "tracking") -> Observation:
+def observation(folder: Path, method: Method = "tracking") -> SessionDesk:
     clock = Clock()
-    return Observation(make_project(folder, method), "r1", now=clock.now, steady=clock.steady)
+    return SessionDesk(make_project(folder, method), "r1", now=clock.now, steady=clock.steady)
 
 
-def asked(seen: Observation, step: Step, text: str, kind: ReadingKind | None = None) -> list[Doubt]:
+def asked(seen: SessionDesk, step: Step, text: str, kind: ReadingKind | None = None) -> list[Doubt]:
     what = expected(seen, step, None, kind)
     found = understand(seen, text, what, progress=None, stamp=seen.clock.stamp())
     return [question.doubt for question in found.questions]

@@ -6,7 +6,6 @@ import shutil
 from pathlib import Path
 
 import pytest
-from helpers_tui import SMALL, make_project, simulated
 from textual.pilot import Pilot
 from textual.screen import ModalScreen, Screen
 from textual.widgets import Input, Select, Static, TextArea
@@ -28,6 +27,7 @@ from surveyapp.tui.views.form import small_text
 from surveyapp.tui.views.ledger import ledger_rows
 from surveyapp.tui.widgets.entry import EntryLine
 from surveyapp_models.angles import ARCSEC, AngleUnit, parse_angle
+from tests.tui.helpers_tui import SMALL, make_project, simulated
 
 PROJECTS = Path(__file__).resolve().parents[2] / "projects"
 

@@ -6,7 +6,6 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from helpers_tui import SMALL
 from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Select, Static, TextArea
 
@@ -18,6 +17,7 @@ from surveyapp.tui.screens.home import HomeScreen
 from surveyapp.tui.screens.new_project import NewProjectScreen
 from surveyapp.tui.screens.project import ProjectScreen
 from surveyapp.tui.screens.session import SessionScreen
+from tests.tui.helpers_tui import SMALL
 
 
 async def settle(pilot: Pilot[int]) -> None:
@@ -148,11 +148,16 @@ def test_a_long_list_of_stations_is_no_burden(tmp_path: Path) -> None:
     assert len(stations) == 2000
     written: list[int] = []
     real = writing.atomic_write
+
+    def counted(path: Path, data: bytes) -> None:
+        written.append(len(data))
+        real(path, data)
+
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(
             writing,
             "atomic_write",
-            lambda path, data: (written.append(len(data)), real(path, data)),
+            counted,
         )
         form = api_home.NewProject(folder=str(tmp_path / "p"), name="p", stations=stations)
         folder = api_home.create_project(form)

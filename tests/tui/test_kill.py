@@ -8,7 +8,7 @@ import pytest
 
 from bench.tui_kill import plain, run_once, start, stop
 from surveyapp.core.observing.steps import Step
-from surveyapp.observation.session import Observation
+from surveyapp.observation.session import SessionDesk
 from surveyapp.tui import texts
 
 
@@ -22,7 +22,7 @@ def test_after_a_kill_the_screen_opens_where_it_was(tmp_path: Path) -> None:
     folder = tmp_path / "p"
     outcome = run_once(folder, 7)
     assert outcome.faults == ()
-    seen = Observation(folder, "r1")
+    seen = SessionDesk(folder, "r1")
     step = seen.step
     seen.close()
     name = texts.SWING_NAMES["tracking"] if step is Step.SWING else texts.STEP_NAMES[step]

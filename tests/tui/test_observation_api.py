@@ -8,7 +8,6 @@ from datetime import UTC, datetime, timedelta, timezone
 from pathlib import Path
 
 import pytest
-from helpers_tui import Clock, make_project, readings, rows_on_disk
 
 from surveyapp import api
 from surveyapp.core.observing.doubts import Doubt
@@ -18,12 +17,13 @@ from surveyapp.domain.readings import Face, ReadingKind
 from surveyapp.errors import SurveyError
 from surveyapp.observation import session as api_session
 from surveyapp.observation.entry import expected, understand
-from surveyapp.observation.session import NewRow, Observation
+from surveyapp.observation.session import NewRow, SessionDesk
+from tests.tui.helpers_tui import Clock, make_project, readings, rows_on_disk
 
 
-def observation(folder: Path, clock: Clock | None = None) -> Observation:
+def observation(folder: Path, clock: Clock | None = None) -> SessionDesk:
     clock = clock or Clock()
-    return Observation(folder, "r1", now=clock.now, steady=clock.steady)
+    return SessionDesk(folder, "r1", now=clock.now, steady=clock.steady)
 
 
 def point(value: str) -> NewRow:
@@ -51,7 +51,7 @@ def test_the_step_follows_from_the_book_alone(tmp_path: Path) -> None:
     assert observation(folder).step is Step.ZERO_AFTER
 
 
-def rows_last(item: Observation) -> int:
+def rows_last(item: SessionDesk) -> int:
     return item.book.rows[-1].seq
 
 

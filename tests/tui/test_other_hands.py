@@ -5,25 +5,25 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from helpers_tui import SMALL, Clock, make_project, rows_on_disk
 from textual.pilot import Pilot
 from textual.widgets import Static
 
 from surveyapp.core.observing.steps import Step
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.errors import SurveyError
-from surveyapp.observation.session import NewRow, Observation
+from surveyapp.observation.session import NewRow, SessionDesk
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.session import SessionScreen
 from surveyapp.tui.widgets.entry import EntryLine
 from surveyapp.tui.widgets.ledger import Ledger
+from tests.tui.helpers_tui import SMALL, Clock, make_project, rows_on_disk
 
 BY_HAND = "3,2026-03-02T08:10:00+00:00,600.0,backsight,359-02-12,dms,R,,,,\n"
 
 
-def opened(tmp_path: Path) -> tuple[Observation, Path, Clock]:
+def opened(tmp_path: Path) -> tuple[SessionDesk, Path, Clock]:
     folder, clock = make_project(tmp_path / "p"), Clock()
-    seen = Observation(folder, "r1", now=clock.now, steady=clock.steady)
+    seen = SessionDesk(folder, "r1", now=clock.now, steady=clock.steady)
     seen.go_to(Step.SIGHTS_BEFORE)
     seen.record(NewRow(ReadingKind.BACKSIGHT, "179-01-56", "dms", "L"))
     return seen, folder / "observations" / "r1.csv", clock
@@ -96,7 +96,7 @@ async def test_the_screen_shows_what_another_hand_wrote_and_keeps_what_is_typed(
 
 def test_a_second_opener_reads_along_and_looks_at_every_step(tmp_path: Path) -> None:
     first, book, clock = opened(tmp_path)
-    second = Observation(tmp_path / "p", "r1", now=clock.now, steady=clock.steady)
+    second = SessionDesk(tmp_path / "p", "r1", now=clock.now, steady=clock.steady)
     assert not second.writable
     before = book.read_bytes()
     second.go_to(Step.RESULT)

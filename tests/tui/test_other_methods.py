@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers_tui import SMALL, make_project, readings, rows_on_disk
 from textual.pilot import Pilot
 
 from surveyapp import api
@@ -17,6 +16,7 @@ from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.result import ResultScreen
 from surveyapp.tui.screens.session import SessionScreen
 from surveyapp.tui.widgets.entry import EntryLine
+from tests.tui.helpers_tui import SMALL, make_project, readings, rows_on_disk
 
 
 async def settle(pilot: Pilot[int]) -> None:

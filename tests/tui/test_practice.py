@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers_tui import SMALL, Clock
 from textual.pilot import Pilot
 from textual.widgets import Select, Static
 
@@ -31,13 +30,14 @@ from surveyapp.errors import SurveyError
 from surveyapp.observation import practice as api_practice
 from surveyapp.observation.entry import expected
 from surveyapp.observation.practice import Practice
-from surveyapp.observation.session import NewRow, Observation
+from surveyapp.observation.session import NewRow, SessionDesk
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.result import ResultScreen
 from surveyapp.tui.screens.session import SessionScreen
 from surveyapp.tui.widgets.entry import EntryLine
 from surveyapp.tui.widgets.instrument import InstrumentPane
 from surveyapp_models.angles import ARCSEC, AngleUnit, format_angle, wrap_pi
+from tests.tui.helpers_tui import SMALL, Clock
 
 METHODS: tuple[Method, ...] = ("tracking", "amplitude", "transit", "automatic")
 
@@ -60,7 +60,7 @@ def test_the_mark_stands_still_where_it_is_read() -> None:
     assert instrument.moments_s[0] == LEAD_S
 
 
-def read_off(seen: Observation, practice: Practice, clock: Clock) -> None:
+def read_off(seen: SessionDesk, practice: Practice, clock: Clock) -> None:
     """A trainee who reads perfectly: what the view shows is what is written."""
     seen.go_to(Step.SIGHTS_BEFORE)
     for _ in range(2):
@@ -87,7 +87,7 @@ def read_off(seen: Observation, practice: Practice, clock: Clock) -> None:
     read_tape_zero(seen, practice, clock, Step.ZERO_AFTER)
 
 
-def read_tape_zero(seen: Observation, practice: Practice, clock: Clock, step: Step) -> None:
+def read_tape_zero(seen: SessionDesk, practice: Practice, clock: Clock, step: Step) -> None:
     seen.go_to(step)
     half = timetable(suspended(practice).spec).unspun_half_swing_s
     for _ in range(5):
@@ -115,7 +115,7 @@ def events(instrument: SuspendedInstrument, method: str) -> list[float]:
     return sorted(found)
 
 
-def write_seen(seen: Observation, practice: Practice, kind: ReadingKind | None = None) -> None:
+def write_seen(seen: SessionDesk, practice: Practice, kind: ReadingKind | None = None) -> None:
     what = expected(seen, seen.step, None, kind)
     view = practice.view(seen, what)
     face = str(what.face or "")
@@ -130,7 +130,7 @@ def observe(folder: Path, method: Method, seed: int, *, disturbed: bool) -> Prac
     clock = Clock()
     begun = api_practice.begin(folder, method=method, seed=seed, speed=50.0, disturbed=disturbed)
     practice = replace(begun, now=clock.now, steady=clock.steady)
-    seen = Observation(practice.folder, "practice", now=practice.now, steady=practice.steady)
+    seen = SessionDesk(practice.folder, "practice", now=practice.now, steady=practice.steady)
     read_off(seen, practice, clock)
     outcome = practice.outcome(api.orient(seen.project))
     seen.close()
@@ -185,7 +185,7 @@ def test_an_automatic_gyro_delivers_round_by_round() -> None:
 
 def test_the_view_follows_the_step_and_the_clock(tmp_path: Path) -> None:
     practice = api_practice.begin(tmp_path / "p", seed=1, speed=1.0)
-    seen = Observation(practice.folder, "practice", now=practice.now, steady=practice.steady)
+    seen = SessionDesk(practice.folder, "practice", now=practice.now, steady=practice.steady)
     assert practice.view(seen, expected(seen, seen.step, None)).circle is None
     seen.go_to(Step.SIGHTS_BEFORE)
     circle = practice.view(seen, expected(seen, seen.step, None)).circle
@@ -228,7 +228,7 @@ async def test_practice_runs_the_same_session_screen_and_ends_with_the_truth(
             screen.query_one(EntryLine).text = format_angle(circle, AngleUnit.DMS, 1)
             await pilot.press("enter", "enter")
             await settle(pilot)
-        while screen.desk.step is not Step.RESULT:
+        while screen.desk.step.value != Step.RESULT.value:
             await pilot.press("f8")
         await pilot.press("f8")
         for _ in range(3):

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers_tui import SMALL, make_project, simulated
 from textual.pilot import Pilot
 from textual.widgets import Static
 
@@ -16,12 +15,13 @@ from surveyapp.core.simulate.session import book_text, simulate_session
 from surveyapp.core.simulate.specification import SessionSpec
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.errors import SurveyError
-from surveyapp.observation.session import NewRow, Observation
+from surveyapp.observation.session import NewRow, SessionDesk
 from surveyapp.tui import texts
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.result import ResultScreen
 from surveyapp.tui.views.result import result_headline, result_sections
 from surveyapp_models.angles import AngleUnit
+from tests.tui.helpers_tui import SMALL, make_project, simulated
 
 PROJECTS = Path(__file__).resolve().parents[2] / "projects"
 
@@ -54,7 +54,7 @@ async def test_the_record_is_written_and_the_session_closed_and_signed(tmp_path:
         await pilot.press(*"A. Muster", "enter")
         await settle(pilot)
         assert "A. Muster" in str(app.screen.query_one("#told", Static).content)
-    seen = Observation(folder, "r1")
+    seen = SessionDesk(folder, "r1")
     assert seen.closed
     assert not seen.writable
     assert seen.step is Step.RESULT

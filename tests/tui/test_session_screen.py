@@ -7,7 +7,6 @@ import os
 from pathlib import Path
 
 import pytest
-from helpers_tui import SMALL, Clock, make_project, readings, rows_on_disk, simulated
 from textual.pilot import Pilot
 from textual.widgets import Static
 
@@ -15,7 +14,7 @@ from surveyapp import api
 from surveyapp.core.observing.steps import Step
 from surveyapp.core.simulate.session import book_text
 from surveyapp.domain.readings import ReadingKind
-from surveyapp.observation.session import NewRow, Observation
+from surveyapp.observation.session import NewRow, SessionDesk
 from surveyapp.tui import texts
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.help import HelpScreen
@@ -25,6 +24,7 @@ from surveyapp.tui.screens.session import SessionScreen
 from surveyapp.tui.widgets.entry import EntryLine
 from surveyapp.tui.widgets.run import RunPane
 from surveyapp.tui.widgets.titlebar import TitleBar
+from tests.tui.helpers_tui import SMALL, Clock, make_project, readings, rows_on_disk, simulated
 
 
 async def settle(pilot: Pilot[int]) -> None:
@@ -242,7 +242,7 @@ async def test_a_full_disk_is_told_and_what_was_typed_stays(
 
 async def test_the_second_opener_says_so_and_reads(tmp_path: Path) -> None:
     folder = make_project(tmp_path / "p")
-    first = Observation(folder, "r1")
+    first = SessionDesk(folder, "r1")
     first.record(NewRow(ReadingKind.REVERSAL, "102-00-14", "dms"))
     app = SurveyApp(str(folder))
     async with app.run_test(size=SMALL) as pilot:
@@ -271,7 +271,7 @@ async def test_the_countdown_is_seen_and_heard(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder, clock = make_project(tmp_path / "p"), Clock()
-    seen = Observation(folder, "r1", now=clock.now, steady=clock.steady)
+    seen = SessionDesk(folder, "r1", now=clock.now, steady=clock.steady)
     seen.go_to(Step.SWING)
     for value in ("102-00-14", "98-01-04", "101-59-08"):
         seen.record(NewRow(ReadingKind.REVERSAL, value, "dms"))

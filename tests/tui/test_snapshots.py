@@ -10,15 +10,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers_tui import (
-    LARGE,
-    SMALL,
-    Clock,
-    make_calibrations,
-    make_network,
-    make_project,
-    simulated,
-)
 from textual.pilot import Pilot
 
 from surveyapp.core.observing.steps import Step
@@ -27,11 +18,20 @@ from surveyapp.core.simulate.specification import SessionSpec, SwingMethod
 from surveyapp.domain.project import Method
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.observation import practice as api_practice
-from surveyapp.observation.session import NewRow, Observation
+from surveyapp.observation.session import NewRow, SessionDesk
 from surveyapp.tui import texts
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.confirm import ConfirmScreen
 from surveyapp.tui.widgets.instrument import InstrumentPane
+from tests.tui.helpers_tui import (
+    LARGE,
+    SMALL,
+    Clock,
+    make_calibrations,
+    make_network,
+    make_project,
+    simulated,
+)
 
 PROJECTS = Path(__file__).resolve().parents[2] / "projects"
 Snap = Callable[..., bool]
@@ -176,7 +176,7 @@ def test_automatic_session(snap_compare: Snap, tmp_path: Path, size: tuple[int, 
     text = (folder / "project.toml").read_text(encoding="utf-8").replace("wild-gak1", "hgg05")
     (folder / "project.toml").write_text(text, encoding="utf-8")
     clock = Clock()
-    seen = Observation(folder, "r1", now=clock.now, steady=clock.steady)
+    seen = SessionDesk(folder, "r1", now=clock.now, steady=clock.steady)
     for value in ("321-53-09", "321-53-15", "321-53-14", "321-54-12", "321-53-11", "321-53-12"):
         clock.pass_by(300.0)
         seen.record(NewRow(ReadingKind.AZIMUTH, value, "dms"))
@@ -218,7 +218,7 @@ def at_result(tmp_path: Path) -> SurveyApp:
     folder = observed(tmp_path, 26)
     clock = Clock()
     clock.pass_by(4200.0)
-    seen = Observation(folder, "r1", now=clock.now, steady=clock.steady)
+    seen = SessionDesk(folder, "r1", now=clock.now, steady=clock.steady)
     seen.record(NewRow(ReadingKind.NOTE, note="quiet, dry"))
     seen.go_to(Step.RESULT)
     seen.close()

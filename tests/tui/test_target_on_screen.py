@@ -5,22 +5,22 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from helpers_tui import SMALL, Clock, make_project, simulated
 from textual.widgets import Static
 
 from surveyapp.core.observing.progress import Progress
 from surveyapp.core.simulate.session import book_text
 from surveyapp.io.rulebooks import installed_rule_book_ids
-from surveyapp.observation.session import Observation
+from surveyapp.observation.session import SessionDesk
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.views.progress import outlook_text, target_source_text
+from tests.tui.helpers_tui import SMALL, Clock, make_project, simulated
 
 ROOM = 56
 """Columns beside the list of steps in a terminal of 80."""
 WANTED = "wanted_interval_arcsec = 8.0\n"
 
 
-def with_rule_book(folder: Path, name: str | None, *, wanted: bool = False) -> Observation:
+def with_rule_book(folder: Path, name: str | None, *, wanted: bool = False) -> SessionDesk:
     """A session whose project names a rule book."""
     make_project(folder)
     text = (folder / "project.toml").read_text(encoding="utf-8")
@@ -30,7 +30,7 @@ def with_rule_book(folder: Path, name: str | None, *, wanted: bool = False) -> O
         text = text.replace("format = 1\n", f'format = 1\nrule_book = "{name}"\n')
     (folder / "project.toml").write_text(text, encoding="utf-8")
     clock = Clock()
-    return Observation(folder, "r1", now=clock.now, steady=clock.steady)
+    return SessionDesk(folder, "r1", now=clock.now, steady=clock.steady)
 
 
 @pytest.mark.parametrize("name", installed_rule_book_ids())

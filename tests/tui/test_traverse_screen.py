@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from helpers_tui import NETWORK, NETWORK_BOOK, make_network
 from textual.widgets import DataTable, TabbedContent
 
 from surveyapp import api
@@ -15,6 +14,7 @@ from surveyapp.tui.screens.project import ProjectScreen
 from surveyapp.tui.screens.traverse import PAGES, TraverseScreen
 from surveyapp.tui.widgets.plan import FIXED, FREE, PlanCanvas, draw_plan, enlargement
 from surveyapp.tui.widgets.problems import Problems
+from tests.tui.helpers_tui import NETWORK, NETWORK_BOOK, make_network
 
 
 @pytest.fixture

@@ -9,13 +9,13 @@ from collections import defaultdict
 from pathlib import Path
 
 import pytest
-from helpers_tui import SMALL, Clock
 from textual.pilot import Pilot
 from textual.widgets import Input, Select, TextArea
 
 from surveyapp import api
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.widgets.entry import EntryLine
+from tests.tui.helpers_tui import SMALL, Clock
 
 TUTORIAL = Path(__file__).resolve().parents[2] / "docs" / "tutorials" / "first-orientation.md"
 BLOCK = re.compile(r"^```(keys|screen|form)\n(.*?)^```$", re.MULTILINE | re.DOTALL)

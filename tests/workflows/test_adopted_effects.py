@@ -6,6 +6,7 @@ import json
 import math
 import re
 import shutil
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -17,7 +18,6 @@ from surveyapp import api
 from surveyapp.cli.main import main
 from surveyapp.core.simulate.campaign import CAMPAIGN_EFFECTS
 from surveyapp.errors import SurveyError
-from surveyapp.io import tomltext
 from surveyapp.io.filing import ledger as ledger_module
 
 KNOWN = 'serial = "SIM-0001"\nconstant = { arcsec = 40.0, sigma_arcsec = 1.0 }\n'
@@ -387,7 +387,7 @@ def test_adopting_where_nothing_can_be_written_is_refused_and_leaves_no_trace(
     if what == "lock":
         monkeypatch.setattr(filelock.FileLock, "acquire", Refusal())
     elif what == "project":
-        monkeypatch.setattr(tomltext.tempfile, "mkstemp", Refusal())
+        monkeypatch.setattr(tempfile, "mkstemp", Refusal())
     else:
         monkeypatch.setattr(ledger_module, "_append", Refusal())
     assert main(["diagnose", str(folder), "--campaign", "G1", "--adopt", "--json"]) == 2

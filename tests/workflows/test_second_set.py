@@ -13,7 +13,7 @@ import pytest
 from surveyapp import api
 from surveyapp.cli.main import main
 from surveyapp.diagnosis import TurningPoints, diagnose
-from surveyapp.diagnosis.subjects.choice import reversal_run
+from surveyapp.diagnosis.subjects.reversal_run import reversal_run
 from surveyapp.errors import SurveyError
 
 

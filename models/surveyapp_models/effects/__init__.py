@@ -15,7 +15,7 @@ from surveyapp_models.effects.campaign import temperature as _c_temperature
 from surveyapp_models.effects.campaign import time_drift as _c_time_drift
 from surveyapp_models.effects.campaign import transport_step as _c_transport_step
 from surveyapp_models.effects.campaign import warm_up as _c_warm_up
-from surveyapp_models.effects.effect import Effect, Subject
+from surveyapp_models.effects.effect import Effect, SubjectId
 from surveyapp_models.effects.reversal_run import amplitude_asymmetry as _r_amplitude_asymmetry
 from surveyapp_models.effects.reversal_run import damping_break as _r_damping_break
 from surveyapp_models.effects.reversal_run import dry_friction as _r_dry_friction
@@ -63,9 +63,9 @@ CATALOGUE: tuple[Effect, ...] = (
 )
 
 
-def of_subject(subject: Subject) -> tuple[Effect, ...]:
+def of_subject(subject: SubjectId) -> tuple[Effect, ...]:
     """Effects of one subject in the order of the catalogue."""
     return tuple(effect for effect in CATALOGUE if effect.subject == subject)
 
 
-__all__ = ["CATALOGUE", "Effect", "Subject", "campaign", "of_subject", "reversal_run", "traverse"]
+__all__ = ["CATALOGUE", "Effect", "SubjectId", "campaign", "of_subject", "reversal_run", "traverse"]

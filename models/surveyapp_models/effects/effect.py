@@ -12,12 +12,13 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Columns = Mapping[str, Array]
-Subject = Literal["reversal_run", "campaign", "traverse", "compass", "tilt", "rate"]
-SUBJECTS: tuple[Subject, ...] = (
+from surveyapp_models.arrays import Floats
+
+Columns = Mapping[str, Floats]
+SubjectId = str
+"""Id of a subject: an identifier, equal to the file of ``diagnosis/subjects`` that describes it."""
+SUBJECTS: tuple[SubjectId, ...] = (
     "reversal_run",
     "campaign",
     "traverse",
@@ -25,12 +26,13 @@ SUBJECTS: tuple[Subject, ...] = (
     "tilt",
     "rate",
 )
+"""Subjects that come with the program; a user's own may have any other id."""
 
 
 class Basis(Protocol):
     """Columns of an effect: reading = base model + basis @ coefficients."""
 
-    def __call__(self, columns: Columns, /, **grid: float) -> Array:
+    def __call__(self, columns: Columns, /, **grid: float) -> Floats:
         """Return the columns, shape (n, p), for one value of each non-linear parameter."""
         ...
 
@@ -40,13 +42,13 @@ class AmplitudeLaw(Protocol):
 
     def __call__(
         self,
-        half_swing: Array,
-        first_amplitude: Array,
-        decay: Array,
-        coefficient: Array,
+        half_swing: Floats,
+        first_amplitude: Floats,
+        decay: Floats,
+        coefficient: Floats,
         /,
-        **grid: float | Array,
-    ) -> Array:
+        **grid: float | Floats,
+    ) -> Floats:
         """Return the amplitude [unit of first_amplitude]; coefficient 0 = A exp(-k t)."""
         ...
 
@@ -133,7 +135,7 @@ class GridParameter:
 
     name: str
     unit: str
-    values: Callable[[Columns], Array]
+    values: Callable[[Columns], Floats]
     meaning: str
     continuous: bool = False
     neutral: float | None = None
@@ -190,7 +192,7 @@ class Effect:
 
     id: str
     title: str
-    subject: Subject
+    subject: SubjectId
     needs: tuple[Column, ...]
     coefficients: tuple[Coefficient, ...]
     basis: Basis
@@ -214,7 +216,7 @@ class Effect:
             raise ValueError(f"effect {self.id}: an amplitude law has exactly one coefficient")
         if (self.law is not None) != (self.acts_on == "amplitude"):
             raise ValueError(f"effect {self.id}: acts_on='amplitude' and law belong together")
-        if self.subject not in SUBJECTS:
+        if not self.subject.isidentifier():
             raise ValueError(f"effect {self.id}: unknown subject {self.subject!r}")
         if not self.coefficients:
             raise ValueError(f"effect {self.id}: at least one coefficient")
@@ -239,16 +241,10 @@ FIRST_AMPLITUDE = Column("first_amplitude", "rad")
 DECAY = Column("decay", "1/half swing")
 
 
-def mean_loss_time(half_swing: Array, decay: Array) -> Array:
+def mean_loss_time(half_swing: Floats, decay: Floats) -> Floats:
     """(1 - exp(-k t)) / k, the time t as the damping shortens it, also for k = 0."""
     product = np.asarray(half_swing * decay, dtype=np.float64)
     small = np.abs(product) < 1e-6
     safe = np.where(small, 1.0, product)
     ratio = np.where(small, 1.0 - 0.5 * product, -np.expm1(-safe) / safe)
     return np.asarray(half_swing * ratio)
-
-
-def inner_positions(positions: Array, *, margin: int) -> Array:
-    """Sorted different positions with at least ``margin`` of them left on either side."""
-    different = np.unique(positions)
-    return different[margin - 1 : different.size - margin]

@@ -22,11 +22,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from surveyapp_models.arrays import Floats
 from surveyapp_models.gyro.moments import directive_moment, effective_inertia
 from surveyapp_models.gyro.motion import Motion
 from surveyapp_models.gyro.suspended import SuspendedGyro
 
-FloatArray = NDArray[np.float64]
 InTime = Callable[[float], ArrayLike]
 """A quantity of each run at a time [s]: shape () or (runs,)."""
 
@@ -96,12 +96,12 @@ class Start:
         [s].
     """
 
-    azimuth: FloatArray
-    velocity: FloatArray
+    azimuth: Floats
+    velocity: Floats
     time_s: float = 0.0
 
 
-Forcing = Callable[[float, FloatArray, FloatArray, FloatArray], FloatArray]
+Forcing = Callable[[float, Floats, Floats, Floats], Floats]
 
 
 def _forcing(
@@ -120,7 +120,7 @@ def _forcing(
     one_way = 0.5 * gyro.torsion * eastward if tracking else 0.0
     held = 0.0 if tracking else gyro.torsion * np.asarray(tape.clamp, dtype=np.float64)
 
-    def force(t: float, azimuth: FloatArray, rate: FloatArray, sign: FloatArray) -> FloatArray:
+    def force(t: float, azimuth: Floats, rate: Floats, sign: Floats) -> Floats:
         given = gyro.damping if disturbance.damping is None else disturbance.damping(t)
         damping = np.asarray(given, dtype=np.float64)
         total = moment * (azimuth - np.sin(azimuth)) + held - one_way
@@ -140,12 +140,12 @@ def _forcing(
 class _Propagator:
     """Exact linear step and the weights of the forcing, for one step width."""
 
-    whole: FloatArray
-    half: FloatArray
-    half_weight: FloatArray
-    first: FloatArray
-    middle: FloatArray
-    last: FloatArray
+    whole: Floats
+    half: Floats
+    half_weight: Floats
+    first: Floats
+    middle: Floats
+    last: Floats
 
 
 def _phi(z: NDArray[np.complex128]) -> tuple[NDArray[np.complex128], ...]:
@@ -165,15 +165,15 @@ def _phi(z: NDArray[np.complex128]) -> tuple[NDArray[np.complex128], ...]:
     return tuple(np.where(small, s, c) for s, c in zip(series, closed, strict=True))
 
 
-def _propagator(system: FloatArray, width: float, column: int, gain: float) -> _Propagator:
+def _propagator(system: Floats, width: float, column: int, gain: float) -> _Propagator:
     """Build the step for u' = system u + gain F e_column."""
     rates, vectors = np.linalg.eig(system.astype(np.complex128))
     load = np.linalg.solve(vectors, np.eye(system.shape[0])[:, column] * gain)
 
-    def matrix(values: NDArray[np.complex128]) -> FloatArray:
+    def matrix(values: NDArray[np.complex128]) -> Floats:
         return np.asarray(np.linalg.solve(vectors.T, (vectors * values).T).T.real)
 
-    def weight(values: NDArray[np.complex128]) -> FloatArray:
+    def weight(values: NDArray[np.complex128]) -> Floats:
         return np.asarray((vectors @ (values * load)).real)[:, None]
 
     exponents: NDArray[np.complex128] = np.asarray(rates * width, dtype=np.complex128)
@@ -195,7 +195,7 @@ def _stiffness(gyro: SuspendedGyro, latitude: float, tape: TapeTop) -> float:
     return directive_moment(gyro, latitude) + torsion
 
 
-def _system(gyro: SuspendedGyro, latitude: float, stiffness: float) -> FloatArray:
+def _system(gyro: SuspendedGyro, latitude: float, stiffness: float) -> Floats:
     """The linear part for azimuth, its rate, elevation above the rest tilt, its rate."""
     spin, inertia, elevation = gyro.angular_momentum, gyro.vertical_inertia, gyro.elevation_inertia
     pendulum = gyro.pendulosity + directive_moment(gyro, latitude)
@@ -209,7 +209,7 @@ def _system(gyro: SuspendedGyro, latitude: float, stiffness: float) -> FloatArra
     )
 
 
-def _at_start(start: Start) -> tuple[FloatArray, FloatArray]:
+def _at_start(start: Start) -> tuple[Floats, Floats]:
     """Azimuth and velocity of every run, both (runs,)."""
     azimuth, velocity = np.broadcast_arrays(
         np.atleast_1d(np.asarray(start.azimuth, dtype=np.float64)),
@@ -265,7 +265,7 @@ def integrate(
     times = start.time_s + step_s * np.arange(count, dtype=np.float64)
     record = np.empty((3, count, state.shape[1]))
 
-    def load(t: float, u: FloatArray) -> FloatArray:
+    def load(t: float, u: Floats) -> Floats:
         return force(t, u[0], u[1], np.sign(to_rate * u[2]))
 
     for index in range(count):
@@ -308,7 +308,7 @@ def integrate_precession(
     inertia = effective_inertia(gyro, latitude)
     azimuth, velocity = _at_start(start)
 
-    def slope(t: float, x: FloatArray, v: FloatArray) -> FloatArray:
+    def slope(t: float, x: Floats, v: Floats) -> Floats:
         return np.asarray((force(t, x, v, np.sign(v)) - stiffness * x) / inertia)
 
     count = math.ceil(duration_s / step_s - 1e-9) + 1

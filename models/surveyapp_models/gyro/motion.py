@@ -13,10 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from surveyapp_models.arrays import Floats
 from surveyapp_models.gyro.moments import directive_moment, effective_inertia
 from surveyapp_models.gyro.suspended import SuspendedGyro
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,14 +53,14 @@ class DampedSwing:
         return math.exp(-self.decay * math.pi / self.rate)
 
 
-def swing_position(swing: DampedSwing, time_s: ArrayLike) -> FloatArray:
+def swing_position(swing: DampedSwing, time_s: ArrayLike) -> Floats:
     """Return x at the given times [s], any shape."""
     time = np.asarray(time_s, dtype=np.float64)
     envelope = swing.amplitude * np.exp(-swing.decay * time)
     return np.asarray(swing.centre + envelope * np.cos(swing.rate * time + swing.phase))
 
 
-def swing_velocity(swing: DampedSwing, time_s: ArrayLike) -> FloatArray:
+def swing_velocity(swing: DampedSwing, time_s: ArrayLike) -> Floats:
     """Return dx/dt at the given times [s], any shape."""
     time = np.asarray(time_s, dtype=np.float64)
     envelope = swing.amplitude * np.exp(-swing.decay * time)
@@ -69,7 +68,7 @@ def swing_velocity(swing: DampedSwing, time_s: ArrayLike) -> FloatArray:
     return np.asarray(-envelope * (swing.decay * np.cos(angle) + swing.rate * np.sin(angle)))
 
 
-def turning_times_s(swing: DampedSwing, count: int, *, after_s: float = 0.0) -> FloatArray:
+def turning_times_s(swing: DampedSwing, count: int, *, after_s: float = 0.0) -> Floats:
     """Return the first ``count`` times after ``after_s`` at which dx/dt = 0 [s]."""
     lead = math.atan2(swing.decay, swing.rate)
     first = math.ceil((swing.rate * after_s + swing.phase + lead) / math.pi)
@@ -77,9 +76,7 @@ def turning_times_s(swing: DampedSwing, count: int, *, after_s: float = 0.0) -> 
     return np.asarray((order * math.pi - swing.phase - lead) / swing.rate, dtype=np.float64)
 
 
-def passage_times_s(
-    swing: DampedSwing, line: float, count: int, *, after_s: float = 0.0
-) -> FloatArray:
+def passage_times_s(swing: DampedSwing, line: float, count: int, *, after_s: float = 0.0) -> Floats:
     """Return the first ``count`` times after ``after_s`` at which x passes ``line``.
 
     Parameters
@@ -226,10 +223,10 @@ class Motion:
         [rad/s2]: nutation is not in the latter two, so that they change sign once per swing.
     """
 
-    time_s: FloatArray
-    azimuth: FloatArray
-    velocity: FloatArray
-    acceleration: FloatArray
+    time_s: Floats
+    azimuth: Floats
+    velocity: Floats
+    acceleration: Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -246,8 +243,8 @@ class Events:
         Passages: the azimuth grows. Turning points: it is the eastern one.
     """
 
-    time_s: FloatArray
-    azimuth: FloatArray
+    time_s: Floats
+    azimuth: Floats
     rising: NDArray[np.bool_]
 
 
@@ -293,7 +290,7 @@ def passages(motion: Motion, line: ArrayLike, count: int) -> Events:
 
 
 def _sign_changes(
-    values: FloatArray, count: int, what: str
+    values: Floats, count: int, what: str
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Steps in which each run's value changes sign, (runs, count), with the runs beside them."""
     positive = values > 0.0
@@ -309,11 +306,11 @@ def _sign_changes(
 
 
 def _hermite_root(
-    time_s: FloatArray,
-    values: FloatArray,
-    slopes: FloatArray,
+    time_s: Floats,
+    values: Floats,
+    slopes: Floats,
     where: tuple[NDArray[np.intp], NDArray[np.intp]],
-) -> tuple[FloatArray, FloatArray]:
+) -> tuple[Floats, Floats]:
     """Root of the cubic through values and slopes of one step: (time, share of the step)."""
     step, run = where
     width = float(time_s[1] - time_s[0])
@@ -329,8 +326,8 @@ def _hermite_root(
 
 
 def _hermite(
-    motion: Motion, where: tuple[NDArray[np.intp], NDArray[np.intp]], share: FloatArray
-) -> FloatArray:
+    motion: Motion, where: tuple[NDArray[np.intp], NDArray[np.intp]], share: Floats
+) -> Floats:
     step, run = where
     width = float(motion.time_s[1] - motion.time_s[0])
     return _cubic(
@@ -340,10 +337,10 @@ def _hermite(
     )
 
 
-Pair = tuple[FloatArray, FloatArray]
+Pair = tuple[Floats, Floats]
 
 
-def _cubic(ends: Pair, rates: Pair, share: FloatArray) -> FloatArray:
+def _cubic(ends: Pair, rates: Pair, share: Floats) -> Floats:
     rest = 1.0 - share
     return np.asarray(
         ends[0] * (1.0 + 2.0 * share) * rest**2
@@ -353,7 +350,7 @@ def _cubic(ends: Pair, rates: Pair, share: FloatArray) -> FloatArray:
     )
 
 
-def _cubic_slope(ends: Pair, rates: Pair, share: FloatArray) -> FloatArray:
+def _cubic_slope(ends: Pair, rates: Pair, share: Floats) -> Floats:
     rest = 1.0 - share
     return np.asarray(
         6.0 * (ends[1] - ends[0]) * share * rest

@@ -18,7 +18,7 @@ from surveyapp.domain.instrument import AdoptedEffect, Instrument
 from surveyapp.domain.project import OrientationSession, Project, ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp_models.effects import of_subject
-from surveyapp_models.effects.effect import Coefficient, Effect, Subject
+from surveyapp_models.effects.effect import Coefficient, Effect, SubjectId
 
 CONTRADICTION = 0.01
 """Relative difference at which a stated sigma is not that of the covariance."""
@@ -62,7 +62,7 @@ def identity_of(adopted: AdoptedEffect, effect: Effect) -> tuple[object, ...]:
     return (adopted.id, *sorted((n, v) for n, v in adopted.grid if n in scanned))
 
 
-def _problems(effects: Sequence[AdoptedEffect], subject: Subject, owner: str) -> list[Problem]:
+def _problems(effects: Sequence[AdoptedEffect], subject: SubjectId, owner: str) -> list[Problem]:
     catalogue = {effect.id: effect for effect in of_subject(subject)}
     found: list[Problem] = []
     seen: Counter[tuple[object, ...]] = Counter()

@@ -15,8 +15,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surveyapp.core.leastsquares.equations import ElementGroup, Floats, Ints
+from surveyapp.core.leastsquares.equations import ElementGroup, Ints
 from surveyapp.core.leastsquares.symbolic import Batch, Plan
+from surveyapp_models.arrays import Floats
 
 PANEL = 64
 """Columns eliminated before the rest of a front is updated by one matrix product."""

@@ -16,7 +16,6 @@ import numpy as np
 from surveyapp.core.leastsquares import factor as sparse
 from surveyapp.core.leastsquares.equations import (
     ElementGroup,
-    Floats,
     Ints,
     Structure,
     column_norms,
@@ -26,6 +25,7 @@ from surveyapp.core.leastsquares.equations import (
     scaled,
 )
 from surveyapp.core.leastsquares.symbolic import Plan
+from surveyapp_models.arrays import Floats
 
 DENSE_UNKNOWNS = 160
 """Up to this many unknowns the dense route is at least as quick."""

@@ -11,7 +11,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from surveyapp.core.leastsquares.equations import Floats
 from surveyapp.core.network import quality as q
 from surveyapp.core.network.angle_pairs import fold
 from surveyapp.core.network.approximate import approximate
@@ -33,6 +32,7 @@ from surveyapp.domain.adjustment import (
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network, Status
 from surveyapp.errors import SurveyError
+from surveyapp_models.arrays import Floats
 
 SOUND = 1e-3
 """Relative gap between redundancies and degrees of freedom from which on a user must know."""

@@ -10,11 +10,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from surveyapp.core.leastsquares.equations import Floats, Ints
+from surveyapp.core.leastsquares.equations import Ints
 from surveyapp.core.network.model import Model, number_unknowns
 from surveyapp.core.network.quality import Quality
 from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.traverse import Status
+from surveyapp_models.arrays import Floats
 
 
 def with_orientations(model: Model, values: Floats) -> tuple[Model, Floats]:

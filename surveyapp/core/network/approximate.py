@@ -12,7 +12,6 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from surveyapp.core.leastsquares.equations import Floats
 from surveyapp.core.network.linearise import azimuth
 from surveyapp.core.network.model import Model
 from surveyapp.core.network.sketch import Pencil, Positions, Sights, sketch_positions
@@ -20,6 +19,7 @@ from surveyapp.domain.observations import Observation, ObservationKind
 from surveyapp.domain.traverse import Network, NetworkPoint, Status
 from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.angles import wrap_pi_array
+from surveyapp_models.arrays import Floats
 
 K = ObservationKind
 

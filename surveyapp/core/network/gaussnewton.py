@@ -10,13 +10,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surveyapp.core.leastsquares.equations import ElementGroup, Floats
+from surveyapp.core.leastsquares.equations import ElementGroup
 from surveyapp.core.leastsquares.solution import DENSE_UNKNOWNS, Solved, solve
 from surveyapp.core.leastsquares.symbolic import Plan, make_plan
 from surveyapp.core.network.angle_pairs import with_orientations
 from surveyapp.core.network.model import Model
 from surveyapp.core.network.observation_equations import equations, linearised, misclosures
 from surveyapp.errors import Problem, SurveyError
+from surveyapp_models.arrays import Floats
 
 MOST_ITERATIONS = 60
 STEP_TOLERANCE = 1e-5

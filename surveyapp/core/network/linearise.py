@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.domain.observations import ObservationKind
+from surveyapp_models.arrays import Floats
 
-Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 

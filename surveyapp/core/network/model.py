@@ -16,9 +16,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from surveyapp.core.leastsquares.equations import Floats, Ints, Structure
+from surveyapp.core.leastsquares.equations import Ints, Structure
 from surveyapp.domain.observations import ANGULAR, CorrelatedBlock, Observation, ObservationKind
 from surveyapp.domain.traverse import Network, Status
+from surveyapp_models.arrays import Floats
 
 NDBool = NDArray[np.bool_]
 WIDEST = 6

@@ -16,9 +16,10 @@ from statistics import NormalDist
 
 import numpy as np
 
-from surveyapp.core.leastsquares.equations import ElementGroup, Floats
+from surveyapp.core.leastsquares.equations import ElementGroup
 from surveyapp.core.leastsquares.solution import Cofactor
 from surveyapp.domain.adjustment import Ellipse, GlobalTest
+from surveyapp_models.arrays import Floats
 
 TEST_LEVEL = 0.001
 """Level of the single test in the smallest detectable bias (Baarda's 0.1 %)."""

@@ -9,7 +9,6 @@ import math
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.observing.progress import Point, Progress
 from surveyapp.core.observing.run_alert import Alert, Trouble, search
@@ -21,8 +20,7 @@ from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession
 from surveyapp.errors import SurveyError
 from surveyapp_models.angles import wrap_pi, wrap_two_pi
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 MIN_ROUNDS: Final = 4
 """A mean and one round that is left out leave two degrees of freedom."""

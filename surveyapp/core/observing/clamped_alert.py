@@ -9,22 +9,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.observing.run_alert import Alert, Candidates, Trouble, find_trouble, search
 from surveyapp.core.swing.clamped import NumberedRows
-from surveyapp.core.swing.gyrofit import SwingFit
+from surveyapp.core.swing.gyrofit import DampedFit
 from surveyapp.core.swing.swingfit import ClampedFit, ClampedSwing, estimate_period, fit_clamped
 from surveyapp.domain.readings import Reading
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 MIN_OBSERVATIONS = 8
 """Five unknowns and one more leave two degrees of freedom."""
 
 
 def alert_of_readings(
-    rows: NumberedRows, swing: ClampedSwing, fit: SwingFit | None, rng: np.random.Generator
+    rows: NumberedRows, swing: ClampedSwing, fit: DampedFit | None, rng: np.random.Generator
 ) -> Alert | None:
     """Alarm of the turning points on the scale alone."""
     if fit is None:

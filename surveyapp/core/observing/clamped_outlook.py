@@ -6,7 +6,6 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.observing.passage_forecast import PassageFit, first_side
 from surveyapp.core.orientation.unfinished import lacking
@@ -14,14 +13,12 @@ from surveyapp.core.swing.card_physics import card_at
 from surveyapp.core.swing.clamped_middle import MIN_FULL_FIT
 from surveyapp.core.swing.clamped_north import reduce_nontracking
 from surveyapp.core.swing.goodness import Judge
-from surveyapp.core.swing.gyrofit import SwingFit, expected_weight_norm
+from surveyapp.core.swing.gyrofit import DampedFit, expected_weight_norm
 from surveyapp.core.swing.swingfit import PARAMETERS, ClampedSwing, modelled, whitened_jacobian
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession
 from surveyapp.errors import SurveyError
-
-Floats = NDArray[np.float64]
 
 SWING_SOURCES = ("scale readings", "passages", "scale readings and passages")
 """Error sources of the swing itself; what remains is clamp, torsion ratio, tape zero."""
@@ -52,7 +49,7 @@ def two_more(
     latitude: float | None,
     north: Uncertain | None,
     swing: ClampedSwing,
-    fit: SwingFit | None,
+    fit: DampedFit | None,
     passing: PassageFit | None,
     coming: tuple[int, int],
 ) -> float | None:
@@ -86,7 +83,7 @@ def two_more(
 
 
 def _after_readings(
-    swing: ClampedSwing, fit: SwingFit, card: InstrumentCard, coming: int, *, judged: bool
+    swing: ClampedSwing, fit: DampedFit, card: InstrumentCard, coming: int, *, judged: bool
 ) -> tuple[float, float] | None:
     """Sigma of the middle [div] and degrees of freedom with two more turning points."""
     sigma = math.sqrt(fit.variance) if judged and fit.variance else card.sigma.scale_div

@@ -10,7 +10,6 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.book.resolution import reading_resolution, rounding_sigma
 from surveyapp.core.observing.clamped_alert import alert_of_readings, alert_of_swing
@@ -43,7 +42,7 @@ from surveyapp.core.swing.clamped import (
     polarity,
     triples_of,
 )
-from surveyapp.core.swing.gyrofit import SwingFit, fit_swing, schuler_means, side_signs
+from surveyapp.core.swing.gyrofit import DampedFit, fit_damped_swing, schuler_means, side_signs
 from surveyapp.core.swing.reduction import ReadingSigma, reading_sigma
 from surveyapp.core.swing.sights import moments
 from surveyapp.core.swing.swingfit import ClampedSwing
@@ -51,8 +50,7 @@ from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import Reading
 from surveyapp_models.angles import wrap_two_pi
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,7 +140,7 @@ def clamped_progress(
     )
 
 
-def _seen(standing: Standing, fit: SwingFit | None) -> Progress:
+def _seen(standing: Standing, fit: DampedFit | None) -> Progress:
     """What the readings so far show by themselves."""
     swing = standing.swing
     means, _ = schuler_means(swing.readings, swing.index)
@@ -214,13 +212,13 @@ def _sides(rows: list[Reading], values: Floats) -> Floats:
     return np.full(values.size, 1.0 if right else -1.0)
 
 
-def _fit(swing: ClampedSwing) -> SwingFit | None:
+def _fit(swing: ClampedSwing) -> DampedFit | None:
     if swing.readings.size < 3 or np.unique(swing.sides).size < 2:
         return None
-    return fit_swing(swing.readings, swing.index, swing.sides)
+    return fit_damped_swing(swing.readings, swing.index, swing.sides)
 
 
-def _sigma(standing: Standing, card: InstrumentCard, fit: SwingFit | None) -> ReadingSigma:
+def _sigma(standing: Standing, card: InstrumentCard, fit: DampedFit | None) -> ReadingSigma:
     rows = [row for _, row in standing.rows.readings]
     return reading_sigma(
         count=len(rows),
@@ -292,7 +290,7 @@ def time_differences(swing: ClampedSwing) -> tuple[float, ...]:
 def _alert(
     session: OrientationSession,
     standing: Standing,
-    fit: SwingFit | None,
+    fit: DampedFit | None,
     rng: np.random.Generator,
 ) -> Alert | None:
     swing = standing.swing

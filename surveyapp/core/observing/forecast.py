@@ -12,12 +12,10 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.statistics.distributions import student_quantile
-from surveyapp.core.swing.gyrofit import SwingFit, fit_swing
-
-Floats = NDArray[np.float64]
+from surveyapp.core.swing.gyrofit import DampedFit, fit_damped_swing
+from surveyapp_models.arrays import Floats
 
 LOG_DECREMENT: Final = 0.015
 LOG_DECREMENT_SIGMA: Final = 0.015
@@ -151,7 +149,7 @@ def forecast_reading(
     Parameters
     ----------
     values, index, sides : ndarray, shape (n,)
-        As in ``fit_swing``.
+        As in ``fit_damped_swing``.
     next_index : int
     sigma : float or None
         Standard deviation of one reading, None where nothing tells.
@@ -171,7 +169,7 @@ def forecast_reading(
     known = sigma if sigma is not None and math.isfinite(sigma) else None
     if values.size == 2:
         return _from_two(values, side_now=float(sides[-1]), side=side, sigma=known)
-    fit = fit_swing(values, index, sides)
+    fit = fit_damped_swing(values, index, sides)
     start = index - index[0]
     target = np.array([next_index - index[0]])
     row = fit.jacobian(target, np.array([side]))[0]
@@ -184,7 +182,7 @@ def forecast_reading(
     return reading, student_quantile(HELD, dof) * math.sqrt(variance)
 
 
-def _with_prior(fit: SwingFit, index: Floats, sides: Floats, sigma: float) -> Floats:
+def _with_prior(fit: DampedFit, index: Floats, sides: Floats, sigma: float) -> Floats:
     """Cofactor of (N, A, log decrement) with what is known of damping beforehand."""
     jacobian = fit.jacobian(index, sides)
     prior = np.array([[0.0, 0.0, sigma / LOG_DECREMENT_SIGMA]]) if sigma > 0.0 else np.zeros((1, 3))

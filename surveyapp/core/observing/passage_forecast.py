@@ -15,7 +15,6 @@ from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.observing.forecast import LOG_DECREMENT, LOG_DECREMENT_SIGMA, STAMP_SIGMA_S
 from surveyapp.core.observing.run_alert import Trouble
@@ -27,8 +26,7 @@ from surveyapp.core.swing.swingfit import (
     modelled,
     whitened_jacobian,
 )
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 MIDDLE_SIGMA_DIV: Final = 2.0
 """Middle of the swing before a reading tells it: pre-orientation within 10' (Coal Mine Surveying

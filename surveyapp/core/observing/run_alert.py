@@ -16,11 +16,9 @@ from enum import StrEnum
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from surveyapp.core.swing.gyrofit import SwingFit
-
-Floats = NDArray[np.float64]
+from surveyapp.core.swing.gyrofit import DampedFit
+from surveyapp_models.arrays import Floats
 
 MIN_POINTS: Final = 6
 """N, A, damping and one more leave two degrees of freedom."""
@@ -88,13 +86,13 @@ def channels(residuals: Floats, sides: Floats) -> tuple[Floats, Floats]:
 
 
 def find_trouble(
-    fit: SwingFit, index: Floats, sides: Floats, rng: np.random.Generator
+    fit: DampedFit, index: Floats, sides: Floats, rng: np.random.Generator
 ) -> tuple[Trouble, int, float] | None:
     """Search a run for the trouble that explains its residuals best.
 
     Parameters
     ----------
-    fit : SwingFit
+    fit : DampedFit
     index, sides : ndarray, shape (n,)
     rng : numpy.random.Generator
         For the null distribution.

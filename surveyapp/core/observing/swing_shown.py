@@ -6,15 +6,13 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.observing.forecast import swing_curve
 from surveyapp.core.observing.progress import Point
 from surveyapp.core.observing.run_alert import channels
-from surveyapp.core.swing.gyrofit import SwingFit
+from surveyapp.core.swing.gyrofit import DampedFit
 from surveyapp.domain.readings import Reading
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 CURVE_STEPS: Final = 24
 """Points of the drawn swing in one half swing."""
@@ -24,7 +22,7 @@ AHEAD: Final = 2
 
 def shown_points(
     rows: Sequence[Reading],
-    fit: SwingFit | None,
+    fit: DampedFit | None,
     *,
     index: Floats,
     sides: Floats,
@@ -46,7 +44,7 @@ def shown_points(
     )
 
 
-def residual_channel(fit: SwingFit | None, sides: Floats, which: int) -> tuple[float, ...]:
+def residual_channel(fit: DampedFit | None, sides: Floats, which: int) -> tuple[float, ...]:
     """Residuals in the channel of the midpoint (0) or of the amplitude (1); empty without any."""
     if fit is None or fit.dof < 1:
         return ()
@@ -54,13 +52,13 @@ def residual_channel(fit: SwingFit | None, sides: Floats, which: int) -> tuple[f
 
 
 def shown_curve(
-    fit: SwingFit | None, *, first_side: float, next_index: int
+    fit: DampedFit | None, *, first_side: float, next_index: int
 ) -> tuple[tuple[float, float], ...]:
     """Number of half swings and offset of the swing, two half swings beyond the last point.
 
     Parameters
     ----------
-    fit : SwingFit or None
+    fit : DampedFit or None
     first_side : float
         +1 if point 0 stands on the right, else -1.
     next_index : int

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.book.resolution import reading_resolution
 from surveyapp.core.observing.forecast import (
@@ -26,9 +25,9 @@ from surveyapp.core.orientation.unfinished import lacking
 from surveyapp.core.swing.card_physics import card_at
 from surveyapp.core.swing.goodness import Judge
 from surveyapp.core.swing.gyrofit import (
-    SwingFit,
+    DampedFit,
     expected_weight_norm,
-    fit_swing,
+    fit_damped_swing,
     schuler_means,
     side_signs,
     unwrap,
@@ -42,8 +41,7 @@ from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import Reading, ReadingKind
 from surveyapp.errors import SurveyError
 from surveyapp_models.angles import wrap_two_pi
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 
 def tracking_period(card: InstrumentCard, latitude: float | None) -> float | None:
@@ -120,14 +118,14 @@ def _absolute(origin: float, offset: float | None) -> float | None:
     return None if offset is None else wrap_two_pi(origin + offset)
 
 
-def _fit(values: Floats, index: Floats, sides: Floats) -> SwingFit | None:
+def _fit(values: Floats, index: Floats, sides: Floats) -> DampedFit | None:
     if values.size < MIN_POINTS or not (np.any(sides > 0) and np.any(sides < 0)):
         return None
-    return fit_swing(values, index, sides)
+    return fit_damped_swing(values, index, sides)
 
 
 def _sigma(
-    session: OrientationSession, card: InstrumentCard, rows: list[Reading], fit: SwingFit | None
+    session: OrientationSession, card: InstrumentCard, rows: list[Reading], fit: DampedFit | None
 ) -> ReadingSigma:
     stated = session.resolution
     return reading_sigma(
@@ -187,7 +185,7 @@ def _north(
 
 def _two_more(
     north: Uncertain | None,
-    fit: SwingFit | None,
+    fit: DampedFit | None,
     index: Floats,
     sides: Floats,
     known: tuple[int, ReadingSigma],
@@ -207,7 +205,7 @@ def _two_more(
 
 
 def _alert(
-    fit: SwingFit | None,
+    fit: DampedFit | None,
     index: Floats,
     sides: Floats,
     rows: list[Reading],

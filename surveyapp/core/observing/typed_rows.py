@@ -19,7 +19,6 @@ from surveyapp_models.angles import (
     AngleError,
     AngleUnit,
     parse_angle,
-    wrap_pi,
     wrap_two_pi,
 )
 
@@ -214,8 +213,3 @@ def complete_number(text: str, *, unit: str, largest: float) -> Entry:
     if not math.isfinite(value) or abs(value) > largest:
         raise EntryError(f"{typed} {unit} is impossible", f"at most {largest:g} {unit}")
     return Entry(value, typed, unit)
-
-
-def distance_between(first: float, second: float) -> float:
-    """How far apart two circle readings are [rad], across 0/360 as well, not negative."""
-    return abs(wrap_pi(first - second))

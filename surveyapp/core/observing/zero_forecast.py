@@ -9,16 +9,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.book.resolution import reading_resolution
 from surveyapp.core.observing.forecast import forecast_reading
 from surveyapp.core.swing.clamped import NOMINAL_SIGMA_DIV
-from surveyapp.core.swing.gyrofit import fit_swing
+from surveyapp.core.swing.gyrofit import fit_damped_swing
 from surveyapp.core.swing.reduction import reading_sigma
 from surveyapp.domain.readings import Reading, Side
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +60,7 @@ def forecast_zero(rows: Sequence[Reading], *, card_sigma: float | None) -> ZeroF
     if values.size < 2:
         return None
     sides, index = _sides(values)
-    fit = fit_swing(values, index, sides) if values.size > 2 else None
+    fit = fit_damped_swing(values, index, sides) if values.size > 2 else None
     sigma = reading_sigma(
         count=values.size,
         variance=None if fit is None else fit.variance,

@@ -18,7 +18,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.geodesy import Position
 from surveyapp.core.orientation.campaign_columns import (
@@ -34,10 +33,9 @@ from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import AdoptedEffect, Instrument
 from surveyapp.domain.project import ResultWarning
 from surveyapp_models.angles import RHO_ARCSEC
+from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Effect
-
-Floats = NDArray[np.float64]
 
 SOURCE = "adopted effect"
 STEPS = 25

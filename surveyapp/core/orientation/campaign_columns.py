@@ -12,14 +12,12 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.orientation.sequence import session_timestamp
 from surveyapp.core.swing.session import ReducedSession, TargetReduction
 from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import SWING_KINDS, ReadingKind
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 SECONDS_PER_DAY = 86400.0
 BLOCK_GAP_DAYS = 0.25

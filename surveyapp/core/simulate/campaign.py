@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from surveyapp.core.simulate.specification import Effect, EffectKind
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp_models.angles import ARCSEC, TWO_PI
+from surveyapp_models.arrays import Floats
 
-FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 CAMPAIGN_EFFECTS: Final = (
@@ -167,20 +167,20 @@ class SimulatedCampaign:
     """
 
     spec: CampaignSpec
-    elapsed_days: FloatArray
-    temperature_c: FloatArray
-    latitude: FloatArray
+    elapsed_days: Floats
+    temperature_c: Floats
+    latitude: Floats
     line: IntArray
     block: IntArray
-    running_s: FloatArray
-    azimuth: FloatArray
-    azimuth_known: FloatArray
+    running_s: Floats
+    azimuth: Floats
+    azimuth_known: Floats
     rounds: IntArray
-    line_reading: FloatArray
-    north_reading: FloatArray
-    constant: FloatArray
-    sigma: FloatArray
-    true_constant: FloatArray
+    line_reading: Floats
+    north_reading: Floats
+    constant: Floats
+    sigma: Floats
+    true_constant: Floats
     drawn: dict[str, float]
 
 
@@ -188,13 +188,13 @@ class SimulatedCampaign:
 class _Layout:
     """When and where: one entry per determination."""
 
-    days: FloatArray
-    temperature: FloatArray
+    days: Floats
+    temperature: Floats
     line: IntArray
     block: IntArray
-    running: FloatArray
-    latitude: FloatArray
-    azimuth: FloatArray
+    running: Floats
+    latitude: Floats
+    azimuth: Floats
     observed: int
 
 
@@ -246,14 +246,14 @@ def _layout(spec: CampaignSpec, rng: np.random.Generator) -> _Layout:
 class _Acting:
     """What the effects add, and where."""
 
-    constant: FloatArray
-    line_offset: FloatArray
-    gross: FloatArray
+    constant: Floats
+    line_offset: Floats
+    gross: Floats
     sine: float
     cosine: float
     drawn: dict[str, float]
 
-    def read(self, true_reading: FloatArray) -> FloatArray:
+    def read(self, true_reading: Floats) -> Floats:
         """A reading of the eccentric circle [rad]."""
         error = self.sine * np.sin(true_reading) + self.cosine * np.cos(true_reading)
         return np.asarray(true_reading + error)
@@ -326,7 +326,7 @@ def simulate_campaign(spec: CampaignSpec, rng: np.random.Generator) -> Simulated
     )
 
 
-def _rounded(reading: FloatArray) -> FloatArray:
+def _rounded(reading: Floats) -> Floats:
     return np.asarray(np.round(reading / RESOLUTION) * RESOLUTION)
 
 
@@ -343,7 +343,7 @@ def _instrument_shift(
     spec: CampaignSpec,
     layout: _Layout,
     draw: tuple[np.random.Generator, dict[str, float]],
-) -> FloatArray:
+) -> Floats:
     """What an effect adds to the instrument's own constant, (n,) [rad]."""
     rng, drawn = draw
     size, count = effect.size, layout.days.size

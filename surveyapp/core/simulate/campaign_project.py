@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from datetime import datetime, timedelta
+from typing import Any
 
 from surveyapp.core.simulate.campaign import CAMPAIGN_EFFECTS, SimulatedCampaign
 from surveyapp.core.simulate.project import station_pair, toml_head
@@ -43,7 +44,7 @@ azimuth_arcsec = {spec.sigma_round * RHO_ARCSEC:.3f}
     return files
 
 
-def campaign_truth(campaign: SimulatedCampaign) -> dict[str, object]:
+def campaign_truth(campaign: SimulatedCampaign) -> dict[str, Any]:
     """Return the truth of a campaign, for a file that no other command reads."""
     kinds = {kind.id: kind for kind in CAMPAIGN_EFFECTS}
     return {

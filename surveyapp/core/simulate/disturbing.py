@@ -14,15 +14,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from surveyapp.core.simulate.specification import RUN_EFFECTS, Effect, SessionSpec
+from surveyapp_models.arrays import Floats
 from surveyapp_models.gyro.integration import Disturbance, TapeTop
 from surveyapp_models.gyro.moments import directive_moment, effective_inertia
 from surveyapp_models.gyro.suspended import SuspendedGyro
 
-FloatArray = NDArray[np.float64]
-OfTime = Callable[[FloatArray], FloatArray]
+OfTime = Callable[[Floats], Floats]
 """Times of shape (), (runs, 1) or (runs, n) to values of each run, (runs, 1) or (runs, n)."""
 
 PATH_STEPS = 16
@@ -83,7 +83,7 @@ class Disturbed:
     north_shift: OfTime
     temperature_c: OfTime
     asymmetry: float
-    drawn: dict[str, FloatArray]
+    drawn: dict[str, Floats]
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +94,7 @@ class _Draw:
     design: RunDesign
     rng: np.random.Generator
     temperature: OfTime
-    drawn: dict[str, FloatArray]
+    drawn: dict[str, Floats]
 
 
 def damped_gyro(spec: SessionSpec) -> SuspendedGyro:
@@ -125,7 +125,7 @@ def disturb(spec: SessionSpec, design: RunDesign, rng: np.random.Generator) -> D
     moment = directive_moment(gyro, spec.latitude)
     shifts = [SHIFTS[effect.id](effect, draw) for effect in spec.effects if effect.id in SHIFTS]
 
-    def north_shift(t: FloatArray) -> FloatArray:
+    def north_shift(t: Floats) -> Floats:
         total = np.zeros(np.broadcast_shapes(np.shape(t), (design.runs, 1)))
         for shift in shifts:
             total = total + shift(t)
@@ -152,7 +152,7 @@ def total_size(spec: SessionSpec, identity: str) -> float:
     return sum(effect.size for effect in spec.effects if effect.id == identity)
 
 
-def _friction(draw: _Draw, stiffness: float) -> float | Callable[[float], FloatArray]:
+def _friction(draw: _Draw, stiffness: float) -> float | Callable[[float], Floats]:
     """Torque of dry friction, and of a follow-up that is uneven from half swing to half swing."""
     spec, design = draw.spec, draw.design
     steady = 0.5 * total_size(spec, "dry_friction") * stiffness
@@ -161,7 +161,7 @@ def _friction(draw: _Draw, stiffness: float) -> float | Callable[[float], FloatA
         return steady
     loss = jitter * draw.rng.normal(size=(design.points + 2 * PATH_LEAD, design.runs))
 
-    def friction(t: float) -> FloatArray:
+    def friction(t: float) -> Floats:
         return np.asarray(
             steady + 0.5 * stiffness * loss[int(t // design.half_swing_s) + PATH_LEAD]
         )
@@ -169,7 +169,7 @@ def _friction(draw: _Draw, stiffness: float) -> float | Callable[[float], FloatA
     return friction
 
 
-def tripod_twist(spec: SessionSpec, time_s: ArrayLike, length_s: float) -> FloatArray:
+def tripod_twist(spec: SessionSpec, time_s: ArrayLike, length_s: float) -> Floats:
     """Return by how much the tripod has turned clockwise against the middle of the run [rad]."""
     share = np.asarray(time_s, dtype=np.float64) / length_s - 0.5
     return np.asarray(total_size(spec, "tripod_twist") * share)
@@ -181,7 +181,7 @@ def tape_top(spec: SessionSpec, disturbed: Disturbed, zero_div: OfTime, length_s
     A held top turns with the tripod; ``length_s`` is the time from first to last point.
     """
 
-    def zero(t: float) -> FloatArray:
+    def zero(t: float) -> Floats:
         twist = tripod_twist(spec, t, length_s) if spec.clamped else 0.0
         return np.asarray(spec.scale_value * zero_div(np.asarray(t)) + twist)
 
@@ -193,7 +193,7 @@ def tape_top(spec: SessionSpec, disturbed: Disturbed, zero_div: OfTime, length_s
     )
 
 
-def _drawn_option(effect: Effect, name: str, draw: _Draw, values: FloatArray) -> FloatArray:
+def _drawn_option(effect: Effect, name: str, draw: _Draw, values: Floats) -> Floats:
     """The option as given or by its default, else as drawn; kept for the truth; (runs, 1)."""
     given = effect.option(name)
     if given is None:
@@ -204,19 +204,19 @@ def _drawn_option(effect: Effect, name: str, draw: _Draw, values: FloatArray) ->
     return result[:, None]
 
 
-def _ramp(t: FloatArray, at: FloatArray, duration: float) -> FloatArray:
+def _ramp(t: Floats, at: Floats, duration: float) -> Floats:
     """A step of finite duration, from 0 to 1."""
     return np.asarray(np.clip((t - at) / duration + 0.5, 0.0, 1.0))
 
 
-def _moment(effect: Effect, draw: _Draw) -> FloatArray:
+def _moment(effect: Effect, draw: _Draw) -> Floats:
     """When a sudden change comes [s], not near the ends, where nothing could be told."""
     margin = min(0.3, 3.0 / draw.design.points)
     share = draw.rng.uniform(margin, 1.0 - margin, draw.design.runs)
     return _drawn_option(effect, "at", draw, share) * draw.design.length_s
 
 
-def _damping(gyro: SuspendedGyro, draw: _Draw) -> Callable[[float], FloatArray] | None:
+def _damping(gyro: SuspendedGyro, draw: _Draw) -> Callable[[float], Floats] | None:
     """The viscous coefficient as a function of time, None where it does not change."""
     spec, design = draw.spec, draw.design
     changes = []
@@ -226,7 +226,7 @@ def _damping(gyro: SuspendedGyro, draw: _Draw) -> Callable[[float], FloatArray] 
             change = damped_gyro(changed).damping - gyro.damping
             changes.append((_moment(effect, draw)[:, 0], change))
 
-    def damping(t: float) -> FloatArray:
+    def damping(t: float) -> Floats:
         total = np.full(design.runs, gyro.damping)
         for at, change in changes:
             total = total + change * _ramp(np.asarray(t), at, STEP_DURATION * design.half_swing_s)
@@ -302,12 +302,12 @@ def _path_shape(design: RunDesign) -> tuple[int, int]:
     return (design.points + 2 * PATH_LEAD) * PATH_STEPS, design.runs
 
 
-def _path(path: FloatArray, design: RunDesign) -> OfTime:
+def _path(path: Floats, design: RunDesign) -> OfTime:
     """Interpolate a path of shape (steps, runs) that begins ``PATH_LEAD`` half swings early."""
     width = design.half_swing_s / PATH_STEPS
     runs = np.arange(design.runs)[:, None]
 
-    def at(t: FloatArray) -> FloatArray:
+    def at(t: Floats) -> Floats:
         place = np.broadcast_to(t / width, np.broadcast_shapes(np.shape(t), (design.runs, 1)))
         place = np.clip(place + PATH_LEAD * PATH_STEPS, 0.0, len(path) - 1.001)
         low = place.astype(np.intp)
@@ -324,7 +324,7 @@ def _temperature(spec: SessionSpec, design: RunDesign, rng: np.random.Generator)
     rates = 2.0 * math.pi / max(design.length_s, 1.0) * np.array([0.6, 1.3, 2.4])
     scale = spec.temperature_span_c / math.sqrt(0.5 * (1.0 + 0.49 + 0.16))
 
-    def at(t: FloatArray) -> FloatArray:
+    def at(t: Floats) -> Floats:
         total = np.zeros(np.broadcast_shapes(np.shape(t), (design.runs, 1)))
         for gain, rate, phase in zip(gains, rates, phases, strict=True):
             total = total + gain * (np.cos(rate * t + phase) - np.cos(phase))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -35,7 +35,7 @@ TEMPERATURE_SPAN_C: Final = 1.0
 
 def simulate_kind(
     kind: str, *, effects: Sequence[str], seed: int
-) -> tuple[dict[str, str], dict[str, object]]:
+) -> tuple[dict[str, str], dict[str, Any]]:
     """Simulate a whole project.
 
     Parameters

@@ -12,7 +12,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import timedelta
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -130,7 +130,7 @@ def project_files(project: SimulatedProject) -> dict[str, str]:
     return files
 
 
-def project_truth(project: SimulatedProject) -> dict[str, object]:
+def project_truth(project: SimulatedProject) -> dict[str, Any]:
     """Return the truth of every session, for a file that no other command reads."""
     return {
         "schema": "surveyapp.truth/1",

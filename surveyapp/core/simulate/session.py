@@ -12,6 +12,7 @@ import io
 import math
 from dataclasses import dataclass
 from datetime import timedelta
+from typing import Any
 
 import numpy as np
 
@@ -66,7 +67,7 @@ class SimulatedSession:
 
     spec: SessionSpec
     rows: tuple[Row, ...]
-    truth: dict[str, object]
+    truth: dict[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
@@ -260,7 +261,7 @@ def _swing(spec: SessionSpec, points: SimulatedPoints, rng: np.random.Generator)
     return entries
 
 
-def _truth(spec: SessionSpec, points: SimulatedPoints, table: Timetable) -> dict[str, object]:
+def _truth(spec: SessionSpec, points: SimulatedPoints, table: Timetable) -> dict[str, Any]:
     north = float(points.gyro_north[0].mean())
     line = spec.circle_of_north + spec.line_azimuth
     gyro = spec.gyro

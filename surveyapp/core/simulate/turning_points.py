@@ -25,12 +25,11 @@ from surveyapp.core.simulate.disturbing import (
     tripod_twist,
 )
 from surveyapp.core.simulate.specification import SessionSpec
+from surveyapp_models.arrays import Floats
 from surveyapp_models.gyro.integration import Start, integrate
 from surveyapp_models.gyro.moments import directive_moment
 from surveyapp_models.gyro.motion import Events, Motion, passages, turning_points
 from surveyapp_models.gyro.periods import clamped_period_s, tracking_period_s, unspun_period_s
-
-FloatArray = NDArray[np.float64]
 
 STEPS_PER_HALF_SWING = 48
 """Integration steps; 0.001 arc-second at 2 degrees of amplitude."""
@@ -71,17 +70,17 @@ class SimulatedPoints:
         Places, phases and the like that were drawn, (runs,) each.
     """
 
-    readings: FloatArray
-    motion: FloatArray
-    time_s: FloatArray
-    midpoint: FloatArray
-    swing_centre: FloatArray
-    gyro_north: FloatArray
-    run_north: FloatArray
-    temperature_c: FloatArray
-    passage_time_s: FloatArray
+    readings: Floats
+    motion: Floats
+    time_s: Floats
+    midpoint: Floats
+    swing_centre: Floats
+    gyro_north: Floats
+    run_north: Floats
+    temperature_c: Floats
+    passage_time_s: Floats
     passage_eastward: NDArray[np.bool_]
-    drawn: dict[str, FloatArray]
+    drawn: dict[str, Floats]
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,9 +116,7 @@ def timetable(spec: SessionSpec) -> Timetable:
     return Timetable(half, unspun, last, -600.0 - reach, last + 600.0 + reach)
 
 
-def tape_zero_div(
-    spec: SessionSpec, time_s: FloatArray, table: Timetable | None = None
-) -> FloatArray:
+def tape_zero_div(spec: SessionSpec, time_s: Floats, table: Timetable | None = None) -> Floats:
     """Return the true tape zero [div] at times from the first turning point [s].
 
     Whoever asks at every step of an integration hands over the ``table`` of the session.
@@ -204,9 +201,7 @@ def _reading_sigma(spec: SessionSpec) -> float:
     return spec.noise.scale_div if spec.clamped else spec.noise.reading
 
 
-def _equilibrium(
-    spec: SessionSpec, ratio: float, shift: FloatArray, time_s: FloatArray
-) -> FloatArray:
+def _equilibrium(spec: SessionSpec, ratio: float, shift: Floats, time_s: Floats) -> Floats:
     """Azimuth at which the gyro would rest, from its own undisturbed north [rad]."""
     zero = spec.scale_value * tape_zero_div(spec, time_s)
     if spec.clamped:
@@ -271,7 +266,7 @@ def _passages(spec: SessionSpec, motion: Motion, design: RunDesign) -> Events:
     )
 
 
-def _gross(spec: SessionSpec, shape: tuple[int, ...], rng: np.random.Generator) -> FloatArray:
+def _gross(spec: SessionSpec, shape: tuple[int, ...], rng: np.random.Generator) -> Floats:
     """Gross errors of readings: the size as given for the first of each run, then either sign."""
     result = np.zeros(shape)
     for effect in spec.effects:
@@ -286,5 +281,5 @@ def _gross(spec: SessionSpec, shape: tuple[int, ...], rng: np.random.Generator) 
     return result
 
 
-def _rounded(values: FloatArray, resolution: float) -> FloatArray:
+def _rounded(values: Floats, resolution: float) -> Floats:
     return values if resolution <= 0.0 else np.round(values / resolution) * resolution

@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.book.resolution import reading_resolution, rounding_sigma
 from surveyapp.core.swing.gyrofit import side_signs
@@ -23,8 +22,7 @@ from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import Reading, ReadingKind
 from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.angles import ARCSEC, circular_mean
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 SCALE_RANGE_DIV = 15.0
 """Half length of the gyro scale (physics.md 2.6: +-15 div)."""

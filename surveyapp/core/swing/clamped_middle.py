@@ -18,7 +18,7 @@ from surveyapp.core.swing.card_physics import CardAt, card_at
 from surveyapp.core.swing.clamped import LEAST_OF_SCALE, Observed, session_problem, triples_of
 from surveyapp.core.swing.gyrofit import (
     LEAST_SQUARES_FROM,
-    fit_swing,
+    fit_damped_swing,
     fitted_middle,
     schuler_middle,
 )
@@ -27,8 +27,7 @@ from surveyapp.core.swing.swingfit import ClampedFit, ClampedSwing, fit_clamped
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession
 from surveyapp_models.angles import RHO_ARCSEC
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 MIN_FULL_FIT = 7
 """Observations from which the full fit (5 unknowns) has two degrees of freedom."""
@@ -192,7 +191,7 @@ def _of_scale(
     need_points(
         session, found=values.size, needed=LEAST_OF_SCALE["amplitude"], kind="scale_reversal"
     )
-    fit = fit_swing(values, index, sides)
+    fit = fit_damped_swing(values, index, sides)
     sigma = reading_sigma(
         count=values.size,
         variance=fit.variance,

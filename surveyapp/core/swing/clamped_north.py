@@ -11,14 +11,13 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.book.resolution import reading_resolution
 from surveyapp.core.swing.card_physics import card_at
 from surveyapp.core.swing.clamped import Observed, clamp_reading, observe, session_problem
 from surveyapp.core.swing.clamped_middle import Middle, middle_of
 from surveyapp.core.swing.goodness import FitTest, Judge, goodness_of_fit
-from surveyapp.core.swing.gyrofit import fit_swing
+from surveyapp.core.swing.gyrofit import fit_damped_swing
 from surveyapp.core.swing.reduction import Reduction, point_results, tape_zero_parts
 from surveyapp.core.swing.sights import TripodTwist, moments
 from surveyapp.core.swing.swingfit import ClampedFit
@@ -33,8 +32,7 @@ from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession, ResultWarning
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.domain.results import PointResult
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,7 +229,7 @@ def _residuals(observed: Observed, fit: ClampedFit | None) -> Floats | None:
     if fit is not None:
         return fit.reading_residuals
     if swing.readings.size >= 3:
-        return fit_swing(swing.readings, swing.index, swing.sides).residuals
+        return fit_damped_swing(swing.readings, swing.index, swing.sides).residuals
     return None
 
 
@@ -272,7 +270,7 @@ def _tests(
         )
     if swing.readings.size < 4:
         return ()
-    own = fit_swing(swing.readings, swing.index, swing.sides)
+    own = fit_damped_swing(swing.readings, swing.index, swing.sides)
     return goodness_of_fit(
         own.residuals,
         own.jacobian(swing.index, swing.sides),

@@ -11,11 +11,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.statistics.distributions import chi_square_quantile
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 SIGNIFICANCE = 0.01
 """Of each kind of test over ALL sessions of a project together: a clean project of ten sessions

@@ -15,12 +15,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.domain.readings import Reading, Side
 from surveyapp_models.angles import wrap_pi_array
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 LEAST_SQUARES_FROM = 6
 """Turning points from which least squares is the default, for tracked and scale swings alike."""
@@ -30,7 +28,7 @@ LOG_DECREMENT_BOUND = 3.0
 
 
 @dataclass(frozen=True, slots=True)
-class SwingFit:
+class DampedFit:
     """Least-squares fit of one run.
 
     Parameters
@@ -116,7 +114,7 @@ def side_signs(rows: Iterable[Reading]) -> Floats:
     return np.array([1.0 if row.side is Side.RIGHT else -1.0 for row in rows])
 
 
-def fit_swing(values: Floats, index: Floats, sides: Floats) -> SwingFit:
+def fit_damped_swing(values: Floats, index: Floats, sides: Floats) -> DampedFit:
     """Fit N, A and the damping to at least three turning points by Gauss-Newton.
 
     Parameters
@@ -130,7 +128,7 @@ def fit_swing(values: Floats, index: Floats, sides: Floats) -> SwingFit:
 
     Returns
     -------
-    SwingFit
+    DampedFit
         ``converged`` is False where the damping ran to its bound: then nothing in it is to be
         trusted.
 
@@ -160,7 +158,7 @@ def fit_swing(values: Floats, index: Floats, sides: Floats) -> SwingFit:
         if abs(change) < 1e-13 + 1e-9 * abs(decrement):
             converged = True
             break
-    return SwingFit(
+    return DampedFit(
         north=mean + step.north,
         amplitude=step.amplitude,
         log_decrement=decrement,
@@ -244,13 +242,13 @@ class SwingMiddle:
     damping_left: float = 0.0
 
 
-def fitted_middle(fit: SwingFit) -> SwingMiddle:
+def fitted_middle(fit: DampedFit) -> SwingMiddle:
     """The midpoint of the damped fit."""
     return SwingMiddle(fit.north, math.sqrt(fit.cofactor[0, 0]))
 
 
 def schuler_middle(
-    fit: SwingFit, values: Floats, *, index: Floats, sides: Floats
+    fit: DampedFit, values: Floats, *, index: Floats, sides: Floats
 ) -> SwingMiddle | None:
     """The mean of all Schuler means, None where no three turning points are consecutive."""
     means, weights = schuler_means(values, index)
@@ -260,7 +258,7 @@ def schuler_middle(
     return SwingMiddle(float(means.mean()), float(np.sqrt(weights @ weights)), left)
 
 
-def expected_weight_norm(fit: SwingFit, *, index: Floats, sides: Floats) -> float:
+def expected_weight_norm(fit: DampedFit, *, index: Floats, sides: Floats) -> float:
     """``weight_norm`` of the default estimator if a swing like this had these turning points."""
     if index.size < LEAST_SQUARES_FROM:
         _, weights = schuler_means(np.zeros(index.size), index)
@@ -293,7 +291,7 @@ def schuler_means(values: Floats, index: Floats) -> tuple[Floats, Floats]:
     return means, weights
 
 
-def damping_left(fit: SwingFit, weights: Floats, *, index: Floats, sides: Floats) -> float:
+def damping_left(fit: DampedFit, weights: Floats, *, index: Floats, sides: Floats) -> float:
     """What the damping leaves in a mean with these weights, as the fit sees it; 0 without a fit.
 
     The mean of three turning points is off by A (1 - q)^2 / 4 (physics.md 2.1): nothing where the

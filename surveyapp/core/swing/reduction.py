@@ -10,9 +10,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-import numpy as np
-from numpy.typing import NDArray
-
 from surveyapp.core.book.resolution import rounding_sigma
 from surveyapp.core.swing.goodness import FitTest
 from surveyapp.core.swing.tape_zero import MIN_POINTS_FOR_RESIDUALS, TapeZero, TapeZeroCoefficient
@@ -21,8 +18,7 @@ from surveyapp.domain.project import OrientationSession, ResultWarning
 from surveyapp.domain.readings import Reading
 from surveyapp.domain.results import PointResult
 from surveyapp.errors import Problem, SurveyError
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 
 @dataclass(frozen=True, slots=True)

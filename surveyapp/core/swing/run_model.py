@@ -9,15 +9,11 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
-from surveyapp.core.swing.gyrofit import SwingFit
+from surveyapp.core.swing.gyrofit import DampedFit
 from surveyapp.core.swing.sights import TripodTwist
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +72,7 @@ class ShownModel:
 
 
 def shown_model(
-    fit: SwingFit, index: Floats, sides: Floats, modelled: ModelledNorth | None
+    fit: DampedFit, index: Floats, sides: Floats, modelled: ModelledNorth | None
 ) -> ShownModel:
     """The damped swing, or the model with adopted effects where there are any."""
     if modelled is None:

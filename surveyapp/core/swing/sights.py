@@ -18,8 +18,7 @@ from surveyapp.core.statistics.distributions import student_tail
 from surveyapp.domain.readings import Face, FieldBook, Place, Reading, ReadingKind
 from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.angles import wrap_pi, wrap_two_pi
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 SIGHT_MIDDLE = (
     ReadingKind.REVERSAL,

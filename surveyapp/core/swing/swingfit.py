@@ -12,11 +12,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from surveyapp.core.swing.gyrofit import fit_swing
-
-Floats = NDArray[np.float64]
+from surveyapp.core.swing.gyrofit import fit_damped_swing
+from surveyapp_models.arrays import Floats
 
 PARAMETERS = 5
 MAX_ITERATIONS = 60
@@ -74,8 +72,8 @@ class ClampedFit:
         A at the first turning point [div].
     log_decrement : float
         c per half swing.
-    first_turning_s, period_s : float
-        t0 and T [s]; NaN-free only where there are passages, else 0.
+    period_s : float
+        T [s]; 0 where there are no passages.
     reading_residuals : ndarray, shape (n,)
         [div].
     passage_residuals : ndarray, shape (m,)
@@ -93,7 +91,6 @@ class ClampedFit:
     middle_div: float
     amplitude_div: float
     log_decrement: float
-    first_turning_s: float
     period_s: float
     reading_residuals: Floats
     passage_residuals: Floats
@@ -190,7 +187,7 @@ def whitened_jacobian(swing: ClampedSwing, parameters: Floats) -> Floats:
 def _start(swing: ClampedSwing, period: float) -> Floats:
     """First guess: turning points give B, A, c; the passages t0."""
     if swing.readings.size >= 3:
-        fit = fit_swing(swing.readings, swing.index, swing.sides)
+        fit = fit_damped_swing(swing.readings, swing.index, swing.sides)
         middle, amplitude, decrement = fit.north, fit.amplitude, fit.log_decrement
         decrement = min(max(decrement, -0.05), 0.2)
     else:
@@ -253,7 +250,6 @@ def fit_clamped(swing: ClampedSwing, *, period_s: float) -> ClampedFit:
         middle_div=float(parameters[0]),
         amplitude_div=float(parameters[1]),
         log_decrement=float(parameters[2]),
-        first_turning_s=float(parameters[3]),
         period_s=float(parameters[4]),
         reading_residuals=v_readings,
         passage_residuals=v_times,

@@ -12,15 +12,13 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.swing.card_physics import card_at
-from surveyapp.core.swing.gyrofit import fit_swing, schuler_means, side_signs
+from surveyapp.core.swing.gyrofit import fit_damped_swing, schuler_means, side_signs
 from surveyapp.core.swing.sights import swing_moments
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.readings import FieldBook, Place, Reading, ReadingKind
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 MIN_POINTS_FOR_RESIDUALS = 5
 """Below this number the reading sigma is the card's (physics.md 2.1)."""
@@ -94,7 +92,7 @@ def rest_position(readings: Floats, sides: Floats) -> RestPosition:
     means, weights = schuler_means(readings, index)
     variance, dof = None, 0
     if readings.size >= MIN_POINTS_FOR_RESIDUALS and np.unique(sides).size == 2:
-        fit = fit_swing(readings, index, sides)
+        fit = fit_damped_swing(readings, index, sides)
         variance, dof = fit.variance, fit.dof
     return RestPosition(
         value_div=float(means.mean()),

@@ -10,16 +10,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.book.resolution import reading_resolution
 from surveyapp.core.swing.clamped import session_problem
 from surveyapp.core.swing.goodness import FitTest, Judge, goodness_of_fit
 from surveyapp.core.swing.gyrofit import (
     LEAST_SQUARES_FROM,
-    SwingFit,
+    DampedFit,
     SwingMiddle,
-    fit_swing,
+    fit_damped_swing,
     fitted_middle,
     schuler_means,
     schuler_middle,
@@ -52,14 +51,13 @@ from surveyapp.domain.readings import Reading, ReadingKind
 from surveyapp.domain.results import PointResult
 from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.angles import RHO_ARCSEC, wrap_pi, wrap_two_pi
-
-Floats = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 MIN_POINTS = 3
 
 
 @dataclass(frozen=True, slots=True)
-class TurningPoints:
+class RunPoints:
     """Turning points of one run, ready for estimation.
 
     Parameters
@@ -87,7 +85,7 @@ class TurningPoints:
 
 def turning_points(
     session: OrientationSession, kind: ReadingKind = ReadingKind.REVERSAL
-) -> TurningPoints:
+) -> RunPoints:
     """Collect the live turning points of one session; missed ones count in the index."""
     swing = session.book.of_kind(kind, ReadingKind.MISSED)
     numbered = [(i, row) for i, row in enumerate(swing) if row.kind is kind]
@@ -106,7 +104,7 @@ def turning_points(
         )
     angular = kind is ReadingKind.REVERSAL
     stated = session.resolution if angular else None
-    return TurningPoints(
+    return RunPoints(
         rows=rows,
         values=unwrap(readings) if angular else readings - readings[0],
         index=index - index[0],
@@ -117,8 +115,8 @@ def turning_points(
 
 
 def without_tape_drift(
-    points: TurningPoints, zero: TapeZero | None, coefficient: TapeZeroCoefficient | None
-) -> TurningPoints:
+    points: RunPoints, zero: TapeZero | None, coefficient: TapeZeroCoefficient | None
+) -> RunPoints:
     """Refer every turning point to the tape zero at the middle of the run.
 
     A zero that changes from before to after moves the middle of the swing while it is observed:
@@ -130,7 +128,7 @@ def without_tape_drift(
     return replace(points, values=points.values + coefficient.value * zero.drift_at(times))
 
 
-def without_twist(points: TurningPoints, twist: TripodTwist | None) -> TurningPoints:
+def without_twist(points: RunPoints, twist: TripodTwist | None) -> RunPoints:
     """Refer every turning point to the circle as it stood at the middle of the observation."""
     times = moments(points.rows)
     if twist is None or times is None:
@@ -226,7 +224,7 @@ def reduce_tracking(
 
 
 def _middle(
-    session: OrientationSession, points: TurningPoints, fit: SwingFit, estimator: str | None
+    session: OrientationSession, points: RunPoints, fit: DampedFit, estimator: str | None
 ) -> tuple[str, SwingMiddle]:
     """The estimator and its middle; without three consecutive points the default is the fit."""
     chosen = estimator or (
@@ -244,7 +242,7 @@ def _middle(
 
 
 def _north(
-    session: OrientationSession, points: TurningPoints, middle: SwingMiddle, sigma: ReadingSigma
+    session: OrientationSession, points: RunPoints, middle: SwingMiddle, sigma: ReadingSigma
 ) -> Uncertain:
     return Uncertain(
         points.origin + middle.value,
@@ -256,7 +254,7 @@ def _north(
 
 
 def _modelled_north(
-    session: OrientationSession, points: TurningPoints, middle: SwingMiddle, modelled: ModelledNorth
+    session: OrientationSession, points: RunPoints, middle: SwingMiddle, modelled: ModelledNorth
 ) -> Uncertain:
     """North of the model with adopted effects, on the turn of the circle where the swing stands."""
     shift = wrap_pi(modelled.value - points.origin - middle.value)
@@ -266,14 +264,14 @@ def _modelled_north(
     )
 
 
-def _fit(session: OrientationSession, points: TurningPoints) -> SwingFit:
-    fit = fit_swing(points.values, points.index, points.sides)
+def _fit(session: OrientationSession, points: RunPoints) -> DampedFit:
+    fit = fit_damped_swing(points.values, points.index, points.sides)
     if fit.converged or points.values.size < LEAST_SQUARES_FROM:
         return fit
     raise SurveyError(_no_fit(session, points))
 
 
-def _no_fit(session: OrientationSession, points: TurningPoints) -> Problem:
+def _no_fit(session: OrientationSession, points: RunPoints) -> Problem:
     return Problem(
         what="the damped swing does not fit: the turning points do not swing about one middle",
         where=f"session {session.id}, {session.book_path}",
@@ -338,7 +336,7 @@ def _correction_value(zero: TapeZero | None, correction: Uncertain | None) -> fl
 
 
 def _tests(
-    points: TurningPoints, shown: ShownModel, judge: Judge, card: InstrumentCard
+    points: RunPoints, shown: ShownModel, judge: Judge, card: InstrumentCard
 ) -> tuple[FitTest, ...]:
     return goodness_of_fit(
         shown.residuals,
@@ -349,7 +347,7 @@ def _tests(
     )
 
 
-def _point_results(points: TurningPoints, found: Floats) -> tuple[PointResult, ...]:
+def _point_results(points: RunPoints, found: Floats) -> tuple[PointResult, ...]:
     observed = [row.value or 0.0 for row in points.rows]
     residuals = found.tolist()
     return point_results(

@@ -13,10 +13,10 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.long_records.lines import judges_lines
-from surveyapp.diagnosis.problem import Array, Problem
-from surveyapp.errors import Problem as InputProblem
-from surveyapp.errors import SurveyError
+from surveyapp.errors import Problem, SurveyError
+from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Effect
 
 LEAST_BLOCKS = 50
@@ -53,12 +53,12 @@ class Blocks:
         """Samples of each block, shape (m,)."""
         return np.diff(np.append(self.first, self.size))
 
-    def sums(self, values: Array) -> Array:
+    def sums(self, values: Floats) -> Floats:
         """Sums over the blocks of values (n, ...), shape (m, ...)."""
         return np.asarray(np.add.reduceat(values, self.first, axis=0))
 
 
-def runs_of(problem: Problem) -> NDArray[np.intp]:
+def runs_of(problem: Case) -> NDArray[np.intp]:
     """First sample of each run in which every numbered column keeps its value."""
     changed = np.zeros(max(problem.size - 1, 0), dtype=bool)
     for name in problem.grid_labels:
@@ -68,7 +68,7 @@ def runs_of(problem: Problem) -> NDArray[np.intp]:
     return np.concatenate([[0], np.flatnonzero(changed) + 1]).astype(np.intp)
 
 
-def finer_than_blocks(problem: Problem, most: int) -> tuple[str, ...]:
+def finer_than_blocks(problem: Case, most: int) -> tuple[str, ...]:
     """Numbered columns that never come back to a value and change more often than ``most`` times.
 
     They count stretches of time (days, set-ups) that are shorter than a block, and say nothing
@@ -85,7 +85,7 @@ def finer_than_blocks(problem: Problem, most: int) -> tuple[str, ...]:
     return tuple(found)
 
 
-def split(position: Array, runs: NDArray[np.intp], count: int) -> Blocks:
+def split(position: Floats, runs: NDArray[np.intp], count: int) -> Blocks:
     """Cut a sorted record into about ``count`` blocks of equal extent in time.
 
     Parameters
@@ -115,7 +115,7 @@ def split(position: Array, runs: NDArray[np.intp], count: int) -> Blocks:
     return best
 
 
-def _cut(position: Array, runs: NDArray[np.intp], duration: float) -> Blocks:
+def _cut(position: Floats, runs: NDArray[np.intp], duration: float) -> Blocks:
     ends = np.append(runs[1:], position.size) - 1
     extent = position[ends] - position[runs]
     parts = np.maximum(np.rint(extent / duration), 1.0)
@@ -130,18 +130,18 @@ def _cut(position: Array, runs: NDArray[np.intp], duration: float) -> Blocks:
     return Blocks(first, position.size, duration)
 
 
-def block_means(problem: Problem, blocks: Blocks) -> Problem:
+def block_means(problem: Case, blocks: Blocks) -> Case:
     """The problem of the block means.
 
     Parameters
     ----------
-    problem : Problem
+    problem : Case
         Sorted by position, finite observations, no swing.
     blocks : Blocks
 
     Returns
     -------
-    Problem
+    Case
         Observations, base and covariates averaged with the weights of the samples; each block has
         the summed weight of its samples and their share of the value, so that the value stays the
         mean over the record. Effects that an average of covariates would blur are left out.
@@ -157,7 +157,7 @@ def block_means(problem: Problem, blocks: Blocks) -> Problem:
         weight = problem.sigma**-2
     total = blocks.sums(weight)
 
-    def mean(values: Array) -> Array:
+    def mean(values: Floats) -> Floats:
         parts = blocks.sums((values.T * weight).T)
         return np.asarray((parts.T / total).T)
 
@@ -185,10 +185,10 @@ def block_means(problem: Problem, blocks: Blocks) -> Problem:
     )
 
 
-def _check(problem: Problem, blocks: Blocks) -> None:
+def _check(problem: Case, blocks: Blocks) -> None:
     if problem.has_swing:
         raise SurveyError(
-            InputProblem(
+            Problem(
                 "a swing cannot be averaged over blocks",
                 problem.identity,
                 f"{problem.size} turning points",
@@ -197,7 +197,7 @@ def _check(problem: Problem, blocks: Blocks) -> None:
         )
     if blocks.first.size < LEAST_BLOCKS:
         raise SurveyError(
-            InputProblem(
+            Problem(
                 "too few blocks to diagnose a long record",
                 problem.identity,
                 f"{blocks.first.size} blocks from {problem.size} samples",
@@ -207,7 +207,7 @@ def _check(problem: Problem, blocks: Blocks) -> None:
         )
 
 
-def averaged_columns(problem: Problem, blocks: Blocks, weight: Array) -> dict[str, Array]:
+def averaged_columns(problem: Case, blocks: Blocks, weight: Floats) -> dict[str, Floats]:
     """Covariates of the blocks: numbered ones as they are, angles on the circle, others averaged.
 
     Missing samples are left out; a block with fewer than half has no value (NaN).
@@ -233,7 +233,7 @@ def averaged_columns(problem: Problem, blocks: Blocks, weight: Array) -> dict[st
     return found
 
 
-def blurred(effect: Effect, problem: Problem, blocks: Blocks, columns: Mapping[str, Array]) -> bool:
+def blurred(effect: Effect, problem: Case, blocks: Blocks, columns: Mapping[str, Floats]) -> bool:
     """Whether an effect of averaged covariates is not the average of the effect.
 
     Judged at the middle of its grid. An effect whose columns are missing is not: that is said
@@ -254,7 +254,7 @@ def blurred(effect: Effect, problem: Problem, blocks: Blocks, columns: Mapping[s
     return bool(np.any(np.sqrt((lost**2).sum(axis=0)) > BLURRED * size))
 
 
-def _resolution(problem: Problem, blocks: Blocks) -> float:
+def _resolution(problem: Case, blocks: Blocks) -> float:
     """Resolution of which the rounding error of a block mean is that of a single reading [SI].
 
     Of noise with standard deviation s = r q, rounding to q leaves errors that averaging does not

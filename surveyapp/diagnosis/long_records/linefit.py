@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surveyapp.diagnosis.long_records.spectrum import Array
+from surveyapp_models.arrays import Floats
 
 PIECE = 65_536
 """Samples held as columns at once."""
@@ -30,16 +30,16 @@ class Sines:
         [SI].
     """
 
-    cycles: Array
-    cosine: Array
-    sine: Array
+    cycles: Floats
+    cosine: Floats
+    sine: Floats
 
     @property
-    def amplitude(self) -> Array:
+    def amplitude(self) -> Floats:
         """Amplitudes [SI]."""
         return np.hypot(self.cosine, self.sine)
 
-    def at(self, u: Array) -> Array:
+    def at(self, u: Floats) -> Floats:
         """Sum of the sines, shape (n,) [SI]."""
         total = np.zeros(u.size)
         for f, c, s in zip(self.cycles, self.cosine, self.sine, strict=True):
@@ -48,7 +48,7 @@ class Sines:
         return total
 
 
-def fit_sines(u: Array, values: Array, cycles: Array) -> Sines:
+def fit_sines(u: Floats, values: Floats, cycles: Floats) -> Sines:
     """Least squares of sines, an offset and a slope, beginning at given frequencies.
 
     Parameters
@@ -80,7 +80,7 @@ def fit_sines(u: Array, values: Array, cycles: Array) -> Sines:
     return Sines(found.cycles, last[2 : 2 + start.size], last[2 + start.size :])
 
 
-def _solve(u: Array, values: Array, sines: Sines, *, frequencies: bool) -> Array:
+def _solve(u: Floats, values: Floats, sines: Sines, *, frequencies: bool) -> Floats:
     """Offset, slope, cosines, sines and shifts of the frequencies of one linearised fit."""
     count = 2 + (3 if frequencies else 2) * sines.cycles.size
     normal, right = np.zeros((count, count)), np.zeros(count)

@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.diagnosis.long_records.linefit import Sines, fit_sines
-from surveyapp.diagnosis.long_records.spectrum import Array, Spectrum, exceedance, spectrum
+from surveyapp.diagnosis.long_records.spectrum import Spectrum, exceedance, spectrum
+from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Effect
 
 ALARM = 0.05
@@ -89,7 +90,7 @@ class LineSearch:
     """
 
     lines: tuple[SpectralLine, ...]
-    signal: Array
+    signal: Floats
     unsearched: str = ""
     crowded: bool = False
 
@@ -106,7 +107,7 @@ class Grid:
         """Places of the grid."""
         return int(self.index[-1]) + 1
 
-    def spread(self, values: Array) -> tuple[Array, NDArray[np.bool_]]:
+    def spread(self, values: Floats) -> tuple[Floats, NDArray[np.bool_]]:
         """Values on the grid, 0 where a sample is missing, and where there is one."""
         full, filled = np.zeros(self.size), np.zeros(self.size, dtype=np.bool_)
         full[self.index] = values
@@ -114,7 +115,7 @@ class Grid:
         return full, filled
 
 
-def even_grid(position: Array) -> Grid | str:
+def even_grid(position: Floats) -> Grid | str:
     """Grid of sorted positions, gaps allowed, or why there is none."""
     gaps = np.diff(position)
     middle = float(np.median(gaps))
@@ -134,10 +135,10 @@ def even_grid(position: Array) -> Grid | str:
 
 
 def find_lines(
-    position: Array,
-    values: Array,
+    position: Floats,
+    values: Floats,
     *,
-    columns: Mapping[str, Array],
+    columns: Mapping[str, Floats],
     effects: Sequence[Effect],
 ) -> LineSearch:
     """Every line of a record.
@@ -190,14 +191,14 @@ class _Found:
     alarms: tuple[float, ...]
 
 
-def detrended(u: Array, values: Array) -> Array:
+def detrended(u: Floats, values: Floats) -> Floats:
     """Values without their straight line."""
     centred = u - u.mean()
     slope = float(centred @ values) / float(centred @ centred)
     return np.asarray(values - values.mean() - slope * centred)
 
 
-def _peaks(seen: Spectrum, known: Array) -> list[tuple[float, float]]:
+def _peaks(seen: Spectrum, known: Floats) -> list[tuple[float, float]]:
     """(cycles, false alarm) of the peaks that are not leakage of stronger ones, strongest first."""
     alarm = seen.false_alarm()
     high = np.flatnonzero(alarm <= ALARM)
@@ -260,7 +261,7 @@ def judges_lines(effect: Effect) -> bool:
     return any(g.unit == "Hz" for g in effect.grid)
 
 
-def named_by(effects: Sequence[Effect], columns: Mapping[str, Array], frequency: float) -> str:
+def named_by(effects: Sequence[Effect], columns: Mapping[str, Floats], frequency: float) -> str:
     """Id of the first effect that has this frequency [Hz] on its grid, or an empty text.
 
     A continuous parameter covers everything between its ends; of a list, a value counts that lies
@@ -283,7 +284,9 @@ def named_by(effects: Sequence[Effect], columns: Mapping[str, Array], frequency:
     return ""
 
 
-def _carriers(grid: Grid, u: Array, cycles: Array, columns: Mapping[str, Array]) -> tuple[str, ...]:
+def _carriers(
+    grid: Grid, u: Floats, cycles: Floats, columns: Mapping[str, Floats]
+) -> tuple[str, ...]:
     """Name of a column that has a line at the same frequency, or an empty text, for each line."""
     found = [""] * cycles.size
     if cycles.size == 0:

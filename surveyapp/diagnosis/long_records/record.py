@@ -13,6 +13,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
+from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.long_records.blocks import (
     LEAST_BLOCKS,
     Blocks,
@@ -29,11 +30,10 @@ from surveyapp.diagnosis.long_records.lines import (
 )
 from surveyapp.diagnosis.long_records.whiteness import Whiteness, whiteness
 from surveyapp.diagnosis.loop import Search
-from surveyapp.diagnosis.problem import Array, Problem
 from surveyapp.diagnosis.result import CandidateResult, CandidateVerdict, Diagnosis
 from surveyapp.domain.project import ResultWarning
-from surveyapp.errors import Problem as InputProblem
-from surveyapp.errors import SurveyError
+from surveyapp.errors import Problem, SurveyError
+from surveyapp_models.arrays import Floats
 
 LONG = 400
 """Observations up to which a record is diagnosed as it is: 0.7 GB, of a swing 1 GB."""
@@ -52,7 +52,7 @@ class LongRecord:
 
     Parameters
     ----------
-    problem : Problem
+    problem : Case
         Of block means.
     lines : tuple of SpectralLine
     white : bool
@@ -63,14 +63,14 @@ class LongRecord:
         Entry of the ledger under ``blocks``.
     """
 
-    problem: Problem
+    problem: Case
     lines: tuple[SpectralLine, ...]
     white: bool
     left_out: tuple[tuple[str, str], ...]
     ledger: dict[str, Any]
 
 
-def is_long(problem: Problem) -> bool:
+def is_long(problem: Case) -> bool:
     """Whether a record must be reduced before it is diagnosed."""
     if problem.size <= LONG:
         return False
@@ -78,12 +78,12 @@ def is_long(problem: Problem) -> bool:
     return known.size == 0 or float(np.ptp(known)) > 0.0
 
 
-def reduce_record(problem: Problem) -> LongRecord:
+def reduce_record(problem: Case) -> LongRecord:
     """Take the lines out of a long record and average it over blocks.
 
     Parameters
     ----------
-    problem : Problem
+    problem : Case
 
     Returns
     -------
@@ -134,16 +134,16 @@ def reduce_record(problem: Problem) -> LongRecord:
     )
 
 
-def _refuse(problem: Problem, what: str, *, found: str, expected: str, hint: str) -> NoReturn:
-    raise SurveyError(InputProblem(what, problem.identity, found, expected, hint))
+def _refuse(problem: Case, what: str, *, found: str, expected: str, hint: str) -> NoReturn:
+    raise SurveyError(Problem(what, problem.identity, found, expected, hint))
 
 
-def _used(problem: Problem) -> set[str]:
+def _used(problem: Case) -> set[str]:
     """Covariates that some effect of the record itself uses."""
     return {n.name for e in problem.effects if not judges_lines(e) for n in e.needs}
 
 
-def _sorted_and_finite(problem: Problem) -> Problem:
+def _sorted_and_finite(problem: Case) -> Case:
     """Samples with a value, a time and a base, in their order; the value's weights as before."""
     good = np.isfinite(problem.observations) & np.isfinite(problem.position)
     good &= np.isfinite(problem.base).all(axis=1) & np.isfinite(problem.value_weights)
@@ -173,7 +173,7 @@ def _sorted_and_finite(problem: Problem) -> Problem:
     )
 
 
-def _residual(problem: Problem) -> Array:
+def _residual(problem: Case) -> Floats:
     """Residuals of the base model, not weighted (n,) [SI]."""
     root = problem.root_weights
     q, r = np.linalg.qr(problem.base * root[:, None])
@@ -181,7 +181,7 @@ def _residual(problem: Problem) -> Array:
     return np.asarray(problem.observations - problem.base @ along)
 
 
-def _need_variation(problem: Problem, residual: Array) -> None:
+def _need_variation(problem: Case, residual: Floats) -> None:
     size = float(np.abs(problem.observations).max(initial=0.0))
     if float(np.std(residual)) <= 1e-12 * max(size, problem.resolution):
         _refuse(
@@ -193,7 +193,7 @@ def _need_variation(problem: Problem, residual: Array) -> None:
         )
 
 
-def _until_white(problem: Problem) -> tuple[Problem, Blocks, tuple[Whiteness, ...]]:
+def _until_white(problem: Case) -> tuple[Case, Blocks, tuple[Whiteness, ...]]:
     """Ever longer blocks until their means do not show any correlation, 50 at least."""
     runs = runs_of(problem)
     if runs.size > LONG:
@@ -221,7 +221,7 @@ def _until_white(problem: Problem) -> tuple[Problem, Blocks, tuple[Whiteness, ..
     return (*best, tuple(tests))
 
 
-def _explained(problem: Problem) -> Array:
+def _explained(problem: Case) -> Floats:
     """Columns of the base and of every effect without a scan, shape (m, p), not weighted."""
     parts = [problem.base]
     for effect in problem.effects:
@@ -233,7 +233,7 @@ def _explained(problem: Problem) -> Array:
     return joined if joined.shape[1] <= problem.size // 4 else problem.base
 
 
-def _left_out(raw: Problem, reduced: Problem) -> tuple[tuple[str, str], ...]:
+def _left_out(raw: Case, reduced: Case) -> tuple[tuple[str, str], ...]:
     kept = {effect.id for effect in reduced.effects}
     return tuple(
         (
@@ -246,7 +246,7 @@ def _left_out(raw: Problem, reduced: Problem) -> tuple[tuple[str, str], ...]:
 
 
 def _warnings(
-    problem: Problem,
+    problem: Case,
     search: LineSearch,
     blocks: Blocks,
     tests: tuple[Whiteness, ...],
@@ -280,7 +280,7 @@ def _warnings(
 
 
 def _ledger(
-    problem: Problem,
+    problem: Case,
     search: LineSearch,
     blocks: Blocks,
     tests: tuple[Whiteness, ...],

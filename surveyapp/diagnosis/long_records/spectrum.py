@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
 
 WINDOW = 61
 """Frequencies of one running median; they lie two apart, so the median spans twice as many."""
@@ -42,8 +42,8 @@ class Spectrum:
     """
 
     transform: NDArray[np.complex128]
-    power: Array
-    background: Array
+    power: Floats
+    background: Floats
     window: int
 
     @property
@@ -51,7 +51,7 @@ class Spectrum:
         """Frequencies at which a line is looked for: not the slowest ones, not the last two."""
         return slice(LOWEST, max(self.power.size - 2, LOWEST))
 
-    def false_alarm(self) -> Array:
+    def false_alarm(self) -> Floats:
         """Probability that noise stands out as much at any frequency, shape (m,); 1 elsewhere."""
         found = np.ones(self.power.size)
         part = self.searched
@@ -73,7 +73,7 @@ def median_bias(window: int) -> float:
     return float(np.sum(np.where(k % 2.0 == 1.0, 1.0, -1.0) / k))
 
 
-def exceedance(ratio: Array, window: int) -> Array:
+def exceedance(ratio: Floats, window: int) -> Floats:
     """Probability that noise reaches a ratio of power to background at one frequency.
 
     The power of noise is exponential. The median M of ``window = 2 m + 1`` of them, one of which
@@ -98,12 +98,12 @@ def exceedance(ratio: Array, window: int) -> Array:
     return np.asarray(np.maximum(np.exp(-total), 1e-300))
 
 
-def hann(count: int) -> Array:
+def hann(count: int) -> Floats:
     """Periodic Hann taper: a strong line or an offset of the ends does not leak over the rest."""
     return np.asarray(0.5 - 0.5 * np.cos(2.0 * np.pi * (np.arange(count) + 0.5) / count))
 
 
-def spectrum(values: Array, filled: NDArray[np.bool_]) -> Spectrum:
+def spectrum(values: Floats, filled: NDArray[np.bool_]) -> Spectrum:
     """Periodogram and background of a detrended record on a uniform grid.
 
     Parameters
@@ -123,7 +123,7 @@ def spectrum(values: Array, filled: NDArray[np.bool_]) -> Spectrum:
     return Spectrum(transform, power, background, window)
 
 
-def _background(power: Array) -> tuple[Array, int]:
+def _background(power: Floats) -> tuple[Floats, int]:
     """Running median over the record flattened by a coarse background, and its window."""
     coarse = _coarse(power)
     flat = power / coarse
@@ -137,7 +137,7 @@ def _background(power: Array) -> tuple[Array, int]:
     return np.asarray(result * coarse / median_bias(window)), window
 
 
-def _running_median(values: Array, window: int) -> Array:
+def _running_median(values: Floats, window: int) -> Floats:
     starts = np.unique(np.append(np.arange(0, values.size - window, STRIDE), values.size - window))
     views = np.lib.stride_tricks.sliding_window_view(values, window)[starts]
     medians = np.median(views, axis=1)
@@ -146,7 +146,7 @@ def _running_median(values: Array, window: int) -> Array:
     return np.asarray(medians[nearest])
 
 
-def _coarse(power: Array) -> Array:
+def _coarse(power: Floats) -> Floats:
     """Mean logarithm of the power in octaves, joined by straight lines over log frequency.
 
     It takes the slope out of the median's window and need not be right in level.
@@ -165,7 +165,7 @@ def _coarse(power: Array) -> Array:
     return np.asarray(np.exp(np.append(levels[0], _piecewise(at, centres, levels))))
 
 
-def _piecewise(at: Array, centres: list[float], levels: list[float]) -> Array:
+def _piecewise(at: Floats, centres: list[float], levels: list[float]) -> Floats:
     """Straight lines through the levels, the first and the last continued."""
     if len(centres) < 2:
         return np.full(at.size, levels[0])

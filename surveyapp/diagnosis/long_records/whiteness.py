@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surveyapp.diagnosis.problem import Array
+from surveyapp_models.arrays import Floats
 
 REACH = 5
 """Neighbours on either side with which a block mean is compared."""
@@ -49,7 +49,7 @@ class Whiteness:
         return self.p > LEVEL
 
 
-def whiteness(values: Array, design: Array, root: Array, seed: int) -> Whiteness:
+def whiteness(values: Floats, design: Floats, root: Floats, seed: int) -> Whiteness:
     """Test block means for correlation of neighbours.
 
     Parameters
@@ -81,7 +81,7 @@ def whiteness(values: Array, design: Array, root: Array, seed: int) -> Whiteness
     return Whiteness(values.size, seen, (1.0 + float((null <= seen).sum())) / (DRAWS + 1.0))
 
 
-def _ratio(sample: Array, q: Array, root: Array) -> Array:
+def _ratio(sample: Floats, q: Floats, root: Floats) -> Floats:
     """Von Neumann's ratio of each row (d, m), beside the model and its neighbours."""
     residual = (sample - (sample @ q) @ q.T) / root
     rest = beside_neighbours(residual) * root[REACH:-REACH]
@@ -93,7 +93,7 @@ def _ratio(sample: Array, q: Array, root: Array) -> Array:
     return np.asarray((np.diff(rest, axis=1) ** 2).sum(axis=1) / total)
 
 
-def beside_neighbours(rows: Array) -> Array:
+def beside_neighbours(rows: Floats) -> Floats:
     """Each value less the median of the means of pairs of neighbours, shape (d, m - 2 REACH).
 
     Both of a pair are equally far away, so that a straight line leaves nothing. A bend leaves a

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from surveyapp.core.orientation.campaign_columns import block_names
-from surveyapp.diagnosis.problem import Array, Problem
+from surveyapp.diagnosis.case import Case
 from surveyapp.domain.project import ResultWarning
-from surveyapp.errors import Problem as InputProblem
-from surveyapp.errors import SurveyError
+from surveyapp.errors import Problem, SurveyError
+from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Effect
 
@@ -60,7 +60,7 @@ def campaign(
     reference_temperature_c: float | None = None,
     resolution: float = 0.0,
     extra: tuple[Effect, ...] = (),
-) -> Problem:
+) -> Case:
     """Make the problem of a campaign.
 
     Parameters
@@ -75,7 +75,7 @@ def campaign(
 
     Returns
     -------
-    Problem
+    Case
 
     Raises
     ------
@@ -102,8 +102,10 @@ def campaign(
             ResultWarning("no_sigmas", "no stated sigmas: all determinations count the same")
         )
     offset = float(np.median(values))
-    return Problem(
+    return Case(
         subject="campaign",
+        title="campaign",
+        value_name="the constant",
         observations=values - offset,
         base=np.ones((n, 1)),
         base_names=("constant",),
@@ -131,7 +133,7 @@ def _check(determinations: Sequence[Determination], instrument: str) -> None:
     where = f"campaign of {instrument}" if instrument else "campaign"
     if len(determinations) < 2:
         faults.append(
-            InputProblem(
+            Problem(
                 "too few determinations for a campaign",
                 where,
                 str(len(determinations)),
@@ -141,7 +143,7 @@ def _check(determinations: Sequence[Determination], instrument: str) -> None:
     with_sigma = sum(d.sigma is not None for d in determinations)
     if 0 < with_sigma < len(determinations):
         faults.append(
-            InputProblem(
+            Problem(
                 "some determinations have a sigma and others have none",
                 where,
                 f"{with_sigma} of {len(determinations)}",
@@ -149,13 +151,13 @@ def _check(determinations: Sequence[Determination], instrument: str) -> None:
             )
         )
     if any(d.sigma is not None and not d.sigma > 0.0 for d in determinations):
-        faults.append(InputProblem("a sigma is not positive", where, "", "sigmas above 0"))
+        faults.append(Problem("a sigma is not positive", where, "", "sigmas above 0"))
     if not all(np.isfinite(d.value) for d in determinations):
-        faults.append(InputProblem("a determination is no number", where, "nan", "angles"))
+        faults.append(Problem("a determination is no number", where, "nan", "angles"))
     few = len(determinations) < 6 and with_sigma < len(determinations)
     if few and len(determinations) >= 2:
         faults.append(
-            InputProblem(
+            Problem(
                 "too few determinations to judge their scatter, and no stated sigmas",
                 where,
                 str(len(determinations)),
@@ -167,7 +169,7 @@ def _check(determinations: Sequence[Determination], instrument: str) -> None:
         raise SurveyError(faults)
 
 
-def _numbered(names: Sequence[str]) -> tuple[Array, dict[float, str]]:
+def _numbered(names: Sequence[str]) -> tuple[Floats, dict[float, str]]:
     order = list(dict.fromkeys(names))
     return (
         np.array([float(order.index(name)) for name in names]),
@@ -177,8 +179,8 @@ def _numbered(names: Sequence[str]) -> tuple[Array, dict[float, str]]:
 
 def _columns(
     determinations: Sequence[Determination],
-) -> tuple[dict[str, Array], dict[str, dict[float, str]], list[ResultWarning]]:
-    columns: dict[str, Array] = {}
+) -> tuple[dict[str, Floats], dict[str, dict[float, str]], list[ResultWarning]]:
+    columns: dict[str, Floats] = {}
     labels: dict[str, dict[float, str]] = {}
     warnings: list[ResultWarning] = []
     for name in ("temperature_c", "latitude", "line_reading", "north_reading", "running_s"):

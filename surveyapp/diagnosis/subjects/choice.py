@@ -27,16 +27,15 @@ from surveyapp.core.swing.tracking import (
 )
 from surveyapp.core.uncertain import Uncertain
 from surveyapp.diagnosis.candidates import Candidate, all_candidates
+from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.fits import Fit, Member, fit_members
-from surveyapp.diagnosis.problem import Problem
 from surveyapp.diagnosis.run_value import value_of
 from surveyapp.diagnosis.subjects.campaign import Determination, campaign
 from surveyapp.diagnosis.subjects.reversal_run import TurningPoints, reversal_run
 from surveyapp.domain.instrument import AdoptedEffect, InstrumentCard
 from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import ReadingKind
-from surveyapp.errors import Problem as InputProblem
-from surveyapp.errors import SurveyError, nearest_names
+from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp_models.angles import wrap_pi
 from surveyapp_models.effects.effect import Effect
 
@@ -56,7 +55,7 @@ def run_problem(
     latitude: float | None,
     twist: TripodTwist | None = None,
     extra: tuple[Effect, ...] = (),
-) -> Problem:
+) -> Case:
     """The turning points of one session as a problem.
 
     Parameters
@@ -77,7 +76,7 @@ def run_problem(
     """
     if not is_run(session):
         raise SurveyError(
-            InputProblem(
+            Problem(
                 "only a reversal run can be diagnosed by itself",
                 f"session {session.id}",
                 f"method {session.method} without reversal rows",
@@ -110,7 +109,7 @@ def run_problem(
     )
 
 
-def adopted_fit(problem: Problem, effects: Sequence[AdoptedEffect]) -> Fit:
+def adopted_fit(problem: Case, effects: Sequence[AdoptedEffect]) -> Fit:
     """Fit of a run with its adopted effects in the model, all estimated anew.
 
     Raises
@@ -129,7 +128,7 @@ def adopted_fit(problem: Problem, effects: Sequence[AdoptedEffect]) -> Fit:
         candidate = known.get(adopted.id)
         if candidate is None or candidate.missing:
             raise SurveyError(
-                InputProblem(
+                Problem(
                     "an adopted effect cannot be applied to this run",
                     problem.identity,
                     adopted.id if candidate is None else f"{adopted.id}: {candidate.missing}",
@@ -286,7 +285,7 @@ def campaign_problem(
     *,
     extra: tuple[Effect, ...] = (),
     confirm_from: str | None = None,
-) -> tuple[Problem, Problem | None]:
+) -> tuple[Case, Case | None]:
     """The campaign of one instrument, and the part of it that is held back to confirm.
 
     Parameters
@@ -313,7 +312,7 @@ def campaign_problem(
         labels = [item.label.split(" (")[0] for item in items]
         if confirm_from not in labels:
             raise SurveyError(
-                InputProblem(
+                Problem(
                     "the confirming session is no determination of this instrument",
                     "--confirm",
                     confirm_from,
@@ -338,7 +337,7 @@ def _check_parts(cut: int, count: int, confirm_from: str) -> None:
     """Both parts of a campaign must be campaigns, in order of time."""
     if min(cut, count - cut) < 2:
         raise SurveyError(
-            InputProblem(
+            Problem(
                 "the confirming session leaves no two parts of the campaign",
                 "--confirm",
                 f"{confirm_from}: {cut} determinations before it, {count - cut} from it on",

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from surveyapp.diagnosis.problem import Array, Problem
+from surveyapp.diagnosis.case import Case
 from surveyapp.domain.project import ResultWarning
-from surveyapp.errors import Problem as InputProblem
-from surveyapp.errors import SurveyError
+from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.angles import circular_mean, wrap_pi_array
+from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Effect
 
@@ -56,7 +56,7 @@ class TurningPoints:
     identity: str = ""
 
 
-def reversal_run(points: TurningPoints, extra: tuple[Effect, ...] = ()) -> Problem:
+def reversal_run(points: TurningPoints, extra: tuple[Effect, ...] = ()) -> Case:
     """Make the problem of a reversal run.
 
     Parameters
@@ -67,7 +67,7 @@ def reversal_run(points: TurningPoints, extra: tuple[Effect, ...] = ()) -> Probl
 
     Returns
     -------
-    Problem
+    Case
 
     Raises
     ------
@@ -82,8 +82,10 @@ def reversal_run(points: TurningPoints, extra: tuple[Effect, ...] = ()) -> Probl
     offset = _middle(readings)
     y = wrap_pi_array(readings - offset)
     temperature = points.reference_temperature_c
-    return Problem(
+    return Case(
         subject="reversal_run",
+        title="run",
+        value_name="north over the run",
         observations=y,
         base=np.ones((n, 1)),
         base_names=("north",),
@@ -106,14 +108,14 @@ def reversal_run(points: TurningPoints, extra: tuple[Effect, ...] = ()) -> Probl
     )
 
 
-def _columns(points: TurningPoints) -> dict[str, Array]:
+def _columns(points: TurningPoints) -> dict[str, Floats]:
     columns = {name: np.asarray(v, dtype=np.float64) for name, v in points.covariates.items()}
     if points.elapsed_s is not None:
         columns["elapsed_s"] = np.asarray(points.elapsed_s, dtype=np.float64)
     return columns
 
 
-def _middle(readings: Array) -> float:
+def _middle(readings: Floats) -> float:
     """Middle of the swing; of one wider than half a circle, as read without passing zero."""
     try:
         return circular_mean(readings)
@@ -121,11 +123,11 @@ def _middle(readings: Array) -> float:
         return float(0.5 * (readings.min() + readings.max()))
 
 
-def _check(points: TurningPoints, readings: Array) -> None:
+def _check(points: TurningPoints, readings: Floats) -> None:
     faults = []
     if readings.size < LEAST_POINTS:
         faults.append(
-            InputProblem(
+            Problem(
                 "too few turning points to diagnose a run",
                 points.identity,
                 str(readings.size),
@@ -135,7 +137,7 @@ def _check(points: TurningPoints, readings: Array) -> None:
         )
     elif np.ptp(wrap_pi_array(readings - readings[0])) == 0.0:
         faults.append(
-            InputProblem(
+            Problem(
                 "the turning points do not swing",
                 points.identity,
                 "all readings equal",
@@ -146,7 +148,7 @@ def _check(points: TurningPoints, readings: Array) -> None:
     for name, values in (("count", points.count), ("elapsed_s", points.elapsed_s)):
         if values is not None and len(values) != readings.size:
             faults.append(
-                InputProblem(
+                Problem(
                     f"{name} does not belong to these readings",
                     points.identity,
                     str(len(values)),
@@ -155,22 +157,22 @@ def _check(points: TurningPoints, readings: Array) -> None:
             )
         elif values is not None and np.any(np.diff(np.asarray(values, dtype=float)) <= 0.0):
             faults.append(
-                InputProblem(f"{name} does not increase", points.identity, "", "increasing values")
+                Problem(f"{name} does not increase", points.identity, "", "increasing values")
             )
     if not np.isfinite(readings).all():
-        faults.append(InputProblem("a reading is no number", points.identity, "nan", "angles"))
+        faults.append(Problem("a reading is no number", points.identity, "nan", "angles"))
     if faults:
         raise SurveyError(faults)
 
 
-def _sides(points: TurningPoints, y: Array, count: Array) -> Array:
+def _sides(points: TurningPoints, y: Floats, count: Floats) -> Floats:
     """+1 right, -1 left; alternating with the count, whatever single readings look like."""
     parity = np.where(np.round(count - count[0]) % 2 == 0, 1.0, -1.0)
     if points.right is not None:
         side = np.where(np.asarray(points.right, dtype=bool), 1.0, -1.0)
         if np.any(side * side[0] != parity):
             raise SurveyError(
-                InputProblem(
+                Problem(
                     "two turning points on one side follow each other",
                     points.identity,
                     "",
@@ -184,7 +186,7 @@ def _sides(points: TurningPoints, y: Array, count: Array) -> Array:
     return parity if first_is_right else -parity
 
 
-def _warnings(points: TurningPoints, count: Array) -> tuple[ResultWarning, ...]:
+def _warnings(points: TurningPoints, count: Floats) -> tuple[ResultWarning, ...]:
     if points.elapsed_s is None:
         text = (
             "no times: the number of the turning point stands in for time, rates and time "
@@ -194,7 +196,7 @@ def _warnings(points: TurningPoints, count: Array) -> tuple[ResultWarning, ...]:
     return tuple(_time_warnings(np.asarray(points.elapsed_s, dtype=np.float64), count))
 
 
-def _time_warnings(times: Array, count: Array) -> list[ResultWarning]:
+def _time_warnings(times: Floats, count: Floats) -> list[ResultWarning]:
     if not np.isfinite(times).all() or times.size < 3:
         return [ResultWarning("times_incomplete", "times are incomplete and are not used")]
     slope, start = np.polyfit(count, times, 1)

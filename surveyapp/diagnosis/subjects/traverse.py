@@ -23,12 +23,12 @@ import numpy as np
 from surveyapp.core.network.adjustment import solve_network
 from surveyapp.core.network.model import Model, compile_network
 from surveyapp.core.network.observation_equations import equations, linearised, misclosures
-from surveyapp.diagnosis.problem import Array, Problem
+from surveyapp.diagnosis.case import Case
 from surveyapp.domain.observations import Observation, ObservationKind
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network
-from surveyapp.errors import Problem as InputProblem
-from surveyapp.errors import SurveyError
+from surveyapp.errors import Problem, SurveyError
+from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Columns, Effect
 
@@ -49,7 +49,7 @@ def traverse(
     name: str = "",
     atmosphere_applied: bool | None = None,
     extra: tuple[Effect, ...] = (),
-) -> Problem:
+) -> Case:
     """Make the problem of a network.
 
     Parameters
@@ -65,7 +65,7 @@ def traverse(
 
     Returns
     -------
-    Problem
+    Case
         ``columns`` are those of the observations, ``observations`` the conditions.
 
     Raises
@@ -76,7 +76,7 @@ def traverse(
     identity = name or network.name or "traverse"
     if len(network.observations) > MOST_OBSERVATIONS:
         raise SurveyError(
-            InputProblem(
+            Problem(
                 "too many observations to diagnose them together",
                 identity,
                 str(len(network.observations)),
@@ -91,7 +91,7 @@ def traverse(
     transform = _conditions(design, towards)
     if transform.shape[0] < 2:
         raise SurveyError(
-            InputProblem(
+            Problem(
                 "nothing controls the traverse",
                 identity,
                 f"{len(model.observations)} observations, all of them necessary",
@@ -102,8 +102,10 @@ def traverse(
     base = np.zeros((size, 1))
     base[0, 0] = 1.0
     columns = {**observation_columns(network, model, values), TRANSFORM: transform @ whitener}
-    return Problem(
+    return Case(
         subject="traverse",
+        title="traverse",
+        value_name="the place of the least certain point",
         observations=transform @ right,
         base=base,
         base_names=(f"place of {weakest}",),
@@ -125,13 +127,13 @@ def traverse(
 def _in_conditions(effect: Effect) -> Effect:
     """The same effect, its basis taken from the observations to the conditions."""
 
-    def basis(columns: Columns, /, **grid: float) -> Array:
+    def basis(columns: Columns, /, **grid: float) -> Floats:
         return np.asarray(columns[TRANSFORM] @ effect.basis(columns, **grid))
 
     return replace(effect, basis=basis)
 
 
-def _whitened(model: Model, values: Array) -> tuple[Array, Array, Array]:
+def _whitened(model: Model, values: Floats) -> tuple[Floats, Floats, Floats]:
     """Whitener (n, n), whitened design (n, u) and misclosures (n,) at the adjusted values."""
     computed, partials = linearised(model, values)
     n, u = len(model.value), model.structure.count
@@ -148,11 +150,11 @@ def _whitened(model: Model, values: Array) -> tuple[Array, Array, Array]:
     return whitener, design[:, :u], right
 
 
-def _weakest_point(network: Network, model: Model, design: Array) -> tuple[str, Array]:
+def _weakest_point(network: Network, model: Model, design: Floats) -> tuple[str, Floats]:
     """Name of the least certain point, and the unit row that estimates its worst coordinate."""
     pseudo = np.linalg.pinv(design, rcond=RANK)
     unknowns = model.unknown_of[: 3 * len(network.points)].reshape(-1, 3)
-    best: tuple[float, str, Array] = (0.0, "", np.zeros(design.shape[0]))
+    best: tuple[float, str, Floats] = (0.0, "", np.zeros(design.shape[0]))
     for point, own in zip(network.points, unknowns, strict=True):
         rows = pseudo[own[own >= 0]]
         if not len(rows):
@@ -164,14 +166,14 @@ def _weakest_point(network: Network, model: Model, design: Array) -> tuple[str, 
     return best[1], best[2] / norm if norm > 0.0 else best[2]
 
 
-def _conditions(design: Array, towards: Array) -> Array:
+def _conditions(design: Floats, towards: Floats) -> Floats:
     """The row of the result and an orthonormal base of what the unknowns leave, (r + 1, n)."""
     left, singular, _ = np.linalg.svd(design, full_matrices=True)
     rank = int((singular > RANK * singular[0]).sum()) if singular.size else 0
     return np.vstack([towards[None, :], left[:, rank:].T])
 
 
-def _positions(network: Network, values: Array) -> dict[str, Array]:
+def _positions(network: Network, values: Floats) -> dict[str, Floats]:
     places = values[: 3 * len(network.points)].reshape(-1, 3)
     return {point.name: places[i, :2] for i, point in enumerate(network.points)}
 
@@ -188,7 +190,7 @@ def _walls(observations: Sequence[Observation]) -> dict[tuple[str, str], float]:
     return found
 
 
-def observation_columns(network: Network, model: Model, values: Array) -> dict[str, Array]:
+def observation_columns(network: Network, model: Model, values: Floats) -> dict[str, Floats]:
     """Columns of the observations, each of shape (n,); 0 where the kind has no such thing.
 
     Lengths are adjusted ones: where the sides are multiples of the unit length of a cyclic error,
@@ -234,7 +236,7 @@ def observation_columns(network: Network, model: Model, values: Array) -> dict[s
     return columns
 
 
-def _gyro_sides(model: Model) -> tuple[Array, Array]:
+def _gyro_sides(model: Model) -> tuple[Floats, Floats]:
     """Number of each gyro side, constants one after the other, and of its constant."""
     side, group = np.zeros(len(model.observations)), np.zeros(len(model.observations))
     count = 0
@@ -260,7 +262,7 @@ def _labels(model: Model) -> dict[str, dict[float, str]]:
 
 
 def _warnings(
-    atmosphere_applied: bool | None, columns: Mapping[str, Array], weakest: str
+    atmosphere_applied: bool | None, columns: Mapping[str, Floats], weakest: str
 ) -> tuple[ResultWarning, ...]:
     value = f"values are the place of {weakest}, the least certain point, in its own sigmas"
     found = [ResultWarning("weakest_point", value)]
@@ -281,12 +283,12 @@ def _warnings(
     return tuple(found)
 
 
-def condition_count(problem: Problem) -> int:
+def condition_count(problem: Case) -> int:
     """Independent conditions of a traverse, the degrees of freedom of its adjustment."""
     return problem.size - 1
 
 
-def chi_square_ratio(problem: Problem) -> float:
+def chi_square_ratio(problem: Case) -> float:
     """Root of the sum of squares of the conditions over their number: sigma0 over its a priori."""
     conditions = problem.observations[1:]
     return math.sqrt(float(conditions @ conditions) / condition_count(problem))

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Final
 
-from surveyapp.domain.readings import QUANTITY, Face, Quantity, Reading, ReadingKind, Side
+from surveyapp.domain.readings import QUANTITY, Dimension, Face, Reading, ReadingKind, Side
 from surveyapp.errors import Problem, nearest_names
 from surveyapp.io.files import has_control, shown
 from surveyapp_models.angles import ARCSEC, TWO_PI, AngleError, AngleUnit, parse_angle
@@ -35,17 +35,17 @@ COLUMNS: Final = (
 REQUIRED_COLUMNS: Final = ("seq", "kind", "value")
 
 _UNITS: Final = {
-    Quantity.ANGLE: ("dms", "gon", "deg"),
-    Quantity.DIVISIONS: ("div",),
-    Quantity.TILT: ("arcsec",),
-    Quantity.SUPPLY: ("V", "Hz", "mA"),
-    Quantity.TEMPERATURE: ("C",),
+    Dimension.ANGLE: ("dms", "gon", "deg"),
+    Dimension.DIVISIONS: ("div",),
+    Dimension.TILT: ("arcsec",),
+    Dimension.SUPPLY: ("V", "Hz", "mA"),
+    Dimension.TEMPERATURE: ("C",),
 }
 _LIMITS: Final = {
-    Quantity.DIVISIONS: (-1e4, 1e4),
-    Quantity.TILT: (-36000.0, 36000.0),
-    Quantity.SUPPLY: (-1e6, 1e6),
-    Quantity.TEMPERATURE: (-90.0, 150.0),
+    Dimension.DIVISIONS: (-1e4, 1e4),
+    Dimension.TILT: (-36000.0, 36000.0),
+    Dimension.SUPPLY: (-1e6, 1e6),
+    Dimension.TEMPERATURE: (-90.0, 150.0),
 }
 """Plausible values, far wider than any instrument: outside is a slip of the pen."""
 _STRIKING: Final = (ReadingKind.STRIKE, ReadingKind.UNSTRIKE)
@@ -231,7 +231,7 @@ class _RowReader:
             side=self._side(cell["side"]),
             target=cell["target"],
             temperature_c=self._optional_number(
-                cell["temperature_c"], "temperature_c", *_LIMITS[Quantity.TEMPERATURE]
+                cell["temperature_c"], "temperature_c", *_LIMITS[Dimension.TEMPERATURE]
             ),
             note=cell["note"],
             line=self.line,
@@ -241,14 +241,14 @@ class _RowReader:
     def _unit(self, kind: ReadingKind, token: str) -> str | None:
         """Unit in force, None where the token cannot be used."""
         quantity = QUANTITY[kind]
-        if quantity is Quantity.NONE:
+        if quantity is Dimension.NONE:
             return ""
         allowed = _UNITS[quantity]
-        if not token and quantity is Quantity.SUPPLY:
+        if not token and quantity is Dimension.SUPPLY:
             self.fail_value("a supply reading needs its unit", "", " | ".join(allowed))
             return None
         if not token:
-            return str(self.angle_unit) if quantity is Quantity.ANGLE else allowed[0]
+            return str(self.angle_unit) if quantity is Dimension.ANGLE else allowed[0]
         if token in allowed:
             return token
         hint = _POINT_HINT if token.isdigit() else ""
@@ -257,7 +257,7 @@ class _RowReader:
 
     def _value(self, kind: ReadingKind, text: str, unit: str) -> float | None:
         quantity = QUANTITY[kind]
-        if quantity is Quantity.NONE:
+        if quantity is Dimension.NONE:
             if kind is ReadingKind.MISSED and text:
                 self.fail_value(
                     "a missed turning point has no value",
@@ -271,10 +271,10 @@ class _RowReader:
             hint = "a turning point that was not read is entered as missed" if swing else ""
             self.fail_value(f"{kind} has no value", "", f"a reading in {unit}", hint)
             return None
-        if quantity is Quantity.ANGLE:
+        if quantity is Dimension.ANGLE:
             return self._angle(text, AngleUnit(unit))
         value = self._number(text, str(kind), *_LIMITS[quantity])
-        return value * ARCSEC if value is not None and quantity is Quantity.TILT else value
+        return value * ARCSEC if value is not None and quantity is Dimension.TILT else value
 
     def _angle(self, text: str, unit: AngleUnit) -> float | None:
         """Circle reading in [0, 2 pi)."""

@@ -16,7 +16,8 @@ from typing import Any
 import numpy as np
 
 from surveyapp.errors import Problem, SurveyError
-from surveyapp_models.effects.effect import Array, Columns, Effect, GridParameter
+from surveyapp_models.arrays import Floats
+from surveyapp_models.effects.effect import Columns, Effect, GridParameter
 
 FAULTS = (Exception, SystemExit, GeneratorExit)
 """What code of a user may raise without ending the program: all but the interrupt key."""
@@ -83,7 +84,7 @@ def _frozen(value: Any) -> Any:
     return view
 
 
-def real_array(value: Any, where: str, expected: str) -> Array:
+def real_array(value: Any, where: str, expected: str) -> Floats:
     """A finite array of real numbers, or a SurveyError."""
     try:
         array = np.asarray(value)
@@ -105,10 +106,10 @@ def _rows(columns: Columns, effect: Effect) -> int | None:
     return None
 
 
-def _basis(function: Callable[..., Any], effect: Effect, where: str) -> Callable[..., Array]:
+def _basis(function: Callable[..., Any], effect: Effect, where: str) -> Callable[..., Floats]:
     p = len(effect.coefficients)
 
-    def basis(columns: Columns, /, **grid: float) -> Array:
+    def basis(columns: Columns, /, **grid: float) -> Floats:
         frozen = MappingProxyType({name: _frozen(values) for name, values in columns.items()})
         with _calling(where):
             value = function(frozen, **grid)
@@ -123,8 +124,8 @@ def _basis(function: Callable[..., Any], effect: Effect, where: str) -> Callable
     return basis
 
 
-def _law(function: Callable[..., Any], where: str) -> Callable[..., Array]:
-    def law(*arguments: Array, **grid: float | Array) -> Array:
+def _law(function: Callable[..., Any], where: str) -> Callable[..., Floats]:
+    def law(*arguments: Floats, **grid: float | Floats) -> Floats:
         with _calling(where):
             value = function(
                 *(_frozen(item) for item in arguments),
@@ -160,7 +161,7 @@ def _parameter(item: GridParameter, where: str) -> GridParameter:
     place = f"{where}, grid {item.name}"
     function = item.values
 
-    def values(columns: Columns) -> Array:
+    def values(columns: Columns) -> Floats:
         frozen = MappingProxyType({name: _frozen(column) for name, column in columns.items()})
         with _calling(place):
             value = function(frozen)

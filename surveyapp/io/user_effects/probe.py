@@ -8,14 +8,15 @@ import numpy as np
 
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.user_effects.calls import guarded
-from surveyapp_models.effects.effect import Array, Effect
+from surveyapp_models.arrays import Floats
+from surveyapp_models.effects.effect import Effect
 
 MOST_POINTS = 200
 """Values of the scanned parameters that are tried."""
 SIZE = 24
 
 
-def _run_columns(generator: np.random.Generator) -> dict[str, Array]:
+def _run_columns(generator: np.random.Generator) -> dict[str, Floats]:
     time = np.delete(np.arange(SIZE + 1.0), 7)
     return {
         "half_swing": time,
@@ -28,7 +29,7 @@ def _run_columns(generator: np.random.Generator) -> dict[str, Array]:
     }
 
 
-def _campaign_columns(generator: np.random.Generator) -> dict[str, Array]:
+def _campaign_columns(generator: np.random.Generator) -> dict[str, Floats]:
     return {
         "elapsed_days": 20000.0 + np.cumsum(generator.uniform(1.0, 20.0, SIZE)),
         "temperature_c": 15.0 + 5.0 * generator.normal(size=SIZE),
@@ -41,7 +42,7 @@ def _campaign_columns(generator: np.random.Generator) -> dict[str, Array]:
     }
 
 
-def _traverse_columns(generator: np.random.Generator) -> dict[str, Array]:
+def _traverse_columns(generator: np.random.Generator) -> dict[str, Floats]:
     kind = np.arange(SIZE) % 3
     gyro = (np.arange(SIZE) % 10 == 9).astype(float)
     return {
@@ -57,7 +58,7 @@ def _traverse_columns(generator: np.random.Generator) -> dict[str, Array]:
     }
 
 
-_MAKERS: dict[str, Callable[[np.random.Generator], dict[str, Array]]] = {
+_MAKERS: dict[str, Callable[[np.random.Generator], dict[str, Floats]]] = {
     "reversal_run": _run_columns,
     "campaign": _campaign_columns,
     "traverse": _traverse_columns,
@@ -90,7 +91,7 @@ def probe_problems(effect: Effect, file: str) -> list[Problem]:
     return []
 
 
-def _probe(effect: Effect, columns: dict[str, Array], where: str) -> None:
+def _probe(effect: Effect, columns: dict[str, Floats], where: str) -> None:
     points = effect.grid_points(columns)
     if not points:
         raise _wrong(
@@ -116,7 +117,7 @@ def _probe(effect: Effect, columns: dict[str, Array], where: str) -> None:
 
 
 def _probe_law(
-    effect: Effect, point: dict[str, float], columns: dict[str, Array], where: str
+    effect: Effect, point: dict[str, float], columns: dict[str, Floats], where: str
 ) -> None:
     """A law is the exponential one where its coefficient is 0, and its basis is its derivative."""
     law = effect.law

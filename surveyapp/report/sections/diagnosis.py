@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from surveyapp.diagnosis.result import Diagnosis, ModelResult, Quantity
+from surveyapp.diagnosis.result import Diagnosis, Estimate, ModelResult
 from surveyapp.report.blocks import Block, Figure, Heading, Paragraph, Table
 from surveyapp.report.numbers import plain
 from surveyapp.report.plots import Frame, axis
@@ -50,7 +50,7 @@ def blocks(
     return tuple(found)
 
 
-def value_text(diagnosis: Diagnosis, quantity: Quantity, unit: AngleUnit) -> str:
+def value_text(diagnosis: Diagnosis, quantity: Estimate, unit: AngleUnit) -> str:
     """A value with its sigma, a direction in the project's unit."""
     sigma = None if quantity.sigma is None else quantity.sigma / diagnosis.scale
     if diagnosis.direction:

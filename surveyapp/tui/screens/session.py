@@ -18,7 +18,7 @@ from textual.widgets import Footer, Input
 from surveyapp.core.observing.steps import Step
 from surveyapp.errors import SurveyError
 from surveyapp.observation.practice import Practice
-from surveyapp.observation.session import Observation
+from surveyapp.observation.session import SessionDesk
 from surveyapp.tui import texts
 from surveyapp.tui.drafts import Draft
 from surveyapp.tui.entry_desk import Desk, NotWrittenError, Pending, problem_text
@@ -40,7 +40,7 @@ class SessionScreen(Screen[None]):
 
     Parameters
     ----------
-    observation : Observation
+    observation : SessionDesk
         Open; the screen closes it when it is left.
     draft : Pending or None
         What was half typed when the session was left.
@@ -55,7 +55,7 @@ class SessionScreen(Screen[None]):
 
     def __init__(
         self,
-        observation: Observation,
+        observation: SessionDesk,
         draft: Pending | None = None,
         practice: Practice | None = None,
     ) -> None:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from surveyapp.observation.session import Observation
+from surveyapp.observation.session import SessionDesk
 from surveyapp.tui import texts
 
 
-def session_title(observation: Observation) -> str:
+def session_title(observation: SessionDesk) -> str:
     """Project, session, method and line."""
     session = observation.session
     return texts.SESSION_TITLE.format(
@@ -17,7 +17,7 @@ def session_title(observation: Observation) -> str:
     )
 
 
-def opening_warning(observation: Observation) -> str:
+def opening_warning(observation: SessionDesk) -> str:
     """A torn line, or a clock that went back; empty where all is well."""
     if observation.torn is not None:
         return texts.TORN.format(file=observation.torn)
@@ -25,7 +25,7 @@ def opening_warning(observation: Observation) -> str:
     return texts.CLOCK_BACK.format(seconds=back) if back else ""
 
 
-def session_state(observation: Observation) -> str:
+def session_state(observation: SessionDesk) -> str:
     """Whether readings are written, or why not."""
     if observation.writable:
         return texts.WRITING

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
-from surveyapp_models.effects.effect import Array, Coefficient, Column, Columns, Effect
+from surveyapp_models.arrays import Floats
+from surveyapp_models.effects.effect import Coefficient, Column, Columns, Effect
 
 
-def basis(columns: Columns, /, **grid: float) -> Array:
+def basis(columns: Columns, /, **grid: float) -> Floats:
     """Sin and cos of the reading of gyro north minus those of the line.
 
     The constant is A_true - (R_line - R_north); a reading is too large by e1 sin R + e2 cos R.

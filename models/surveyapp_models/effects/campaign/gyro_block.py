@@ -5,22 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
-from surveyapp_models.effects.effect import (
-    Array,
-    Coefficient,
-    Column,
-    Columns,
-    Effect,
-    GridParameter,
-)
+from surveyapp_models.arrays import Floats
+from surveyapp_models.effects.effect import Coefficient, Column, Columns, Effect, GridParameter
 
 
-def basis(columns: Columns, /, **grid: float) -> Array:
+def basis(columns: Columns, /, **grid: float) -> Floats:
     """1 in the block, else 0."""
     return np.asarray(columns["block"] == grid["block"], dtype=np.float64)[:, None]
 
 
-def blocks(columns: Columns) -> Array:
+def blocks(columns: Columns) -> Floats:
     """Inner blocks of at least two determinations; the first and last would be a step."""
     different, counts = np.unique(columns["block"], return_counts=True)
     inner = (counts >= 2) & (different != different[0]) & (different != different[-1])

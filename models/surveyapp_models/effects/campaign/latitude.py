@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
+from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.datum import at_mean_secant
-from surveyapp_models.effects.effect import Array, Coefficient, Column, Columns, Effect
+from surveyapp_models.effects.effect import Coefficient, Column, Columns, Effect
 
 
-def basis(columns: Columns, /, **grid: float) -> Array:
+def basis(columns: Columns, /, **grid: float) -> Floats:
     """sec(phi) - mean(sec(phi))."""
     del grid
     secant = 1.0 / np.cos(columns["latitude"])

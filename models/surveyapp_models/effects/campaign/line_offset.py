@@ -5,22 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
-from surveyapp_models.effects.effect import (
-    Array,
-    Coefficient,
-    Column,
-    Columns,
-    Effect,
-    GridParameter,
-)
+from surveyapp_models.arrays import Floats
+from surveyapp_models.effects.effect import Coefficient, Column, Columns, Effect, GridParameter
 
 
-def basis(columns: Columns, /, **grid: float) -> Array:
+def basis(columns: Columns, /, **grid: float) -> Floats:
     """1 on the line, else 0."""
     return np.asarray(columns["line"] == grid["line"], dtype=np.float64)[:, None]
 
 
-def lines(columns: Columns) -> Array:
+def lines(columns: Columns) -> Floats:
     """Every line; of two lines the second."""
     different = np.unique(columns["line"])
     if different.size < 2:

@@ -5,26 +5,20 @@ from __future__ import annotations
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
+from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.datum import at_last_date, both_plateaus
-from surveyapp_models.effects.effect import (
-    Array,
-    Coefficient,
-    Column,
-    Columns,
-    Effect,
-    GridParameter,
-)
+from surveyapp_models.effects.effect import Coefficient, Column, Columns, Effect, GridParameter
 
 FEW = 6
 """Below this number of dates a plateau may consist of one determination."""
 
 
-def basis(columns: Columns, /, **grid: float) -> Array:
+def basis(columns: Columns, /, **grid: float) -> Floats:
     """H(t - t0)."""
     return (columns["elapsed_days"] > grid["after_day"] + 1e-9).astype(np.float64)[:, None]
 
 
-def positions(columns: Columns) -> Array:
+def positions(columns: Columns) -> Floats:
     """Last date before the step, two determinations on either side (one where there are few)."""
     dates = np.sort(columns["elapsed_days"])
     margin = 2 if dates.size >= FEW else 1

@@ -5,23 +5,17 @@ from __future__ import annotations
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
+from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.datum import asymptote
-from surveyapp_models.effects.effect import (
-    Array,
-    Coefficient,
-    Column,
-    Columns,
-    Effect,
-    GridParameter,
-)
+from surveyapp_models.effects.effect import Coefficient, Column, Columns, Effect, GridParameter
 
 
-def basis(columns: Columns, /, **grid: float) -> Array:
+def basis(columns: Columns, /, **grid: float) -> Floats:
     """exp(-running time / tau)."""
     return np.exp(-columns["running_s"] / grid["tau_s"])[:, None]
 
 
-def taus(columns: Columns) -> Array:
+def taus(columns: Columns) -> Floats:
     """5, 7.5, 10, 15, 20 and 30 minutes."""
     del columns
     return 60.0 * np.array([5.0, 7.5, 10.0, 15.0, 20.0, 30.0])

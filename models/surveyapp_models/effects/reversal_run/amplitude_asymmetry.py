@@ -5,16 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
-from surveyapp_models.effects.effect import (
-    RELATIVE_AMPLITUDE,
-    Array,
-    Coefficient,
-    Columns,
-    Effect,
-)
+from surveyapp_models.arrays import Floats
+from surveyapp_models.effects.effect import RELATIVE_AMPLITUDE, Coefficient, Columns, Effect
 
 
-def basis(columns: Columns, /, **grid: float) -> Array:
+def basis(columns: Columns, /, **grid: float) -> Floats:
     """(A_k / A_0)^2."""
     del grid
     return np.asarray(columns["relative_amplitude"] ** 2)[:, None]

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import (
     DECAY,
     FIRST_AMPLITUDE,
     HALF_SWING,
     RELATIVE_AMPLITUDE,
     SIDE,
-    Array,
     Coefficient,
     Columns,
     Effect,
@@ -19,26 +19,26 @@ from surveyapp_models.effects.effect import (
 
 
 def law(
-    half_swing: Array,
-    first_amplitude: Array,
-    decay: Array,
-    coefficient: Array,
+    half_swing: Floats,
+    first_amplitude: Floats,
+    decay: Floats,
+    coefficient: Floats,
     /,
-    **grid: float | Array,
-) -> Array:
+    **grid: float | Floats,
+) -> Floats:
     """A exp(-k t - dk max(0, t - t0))."""
     late = np.maximum(half_swing - grid["position"], 0.0)
     return np.asarray(first_amplitude * np.exp(-decay * half_swing - coefficient * late))
 
 
-def basis(columns: Columns, /, **grid: float) -> Array:
+def basis(columns: Columns, /, **grid: float) -> Floats:
     """-s_k A_k max(0, t - t0)."""
     late = np.maximum(columns["half_swing"] - grid["position"], 0.0)
     amplitude = columns["first_amplitude"] * columns["relative_amplitude"]
     return np.asarray(-columns["side"] * amplitude * late)[:, None]
 
 
-def positions(columns: Columns) -> Array:
+def positions(columns: Columns) -> Floats:
     """Turning points with at least two others on either side."""
     return np.unique(columns["half_swing"])[2:-2]
 

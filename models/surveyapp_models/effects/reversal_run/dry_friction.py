@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
+from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import (
     DECAY,
     FIRST_AMPLITUDE,
     HALF_SWING,
     RELATIVE_AMPLITUDE,
     SIDE,
-    Array,
     Coefficient,
     Columns,
     Effect,
@@ -20,13 +20,13 @@ from surveyapp_models.effects.effect import (
 
 
 def law(
-    half_swing: Array,
-    first_amplitude: Array,
-    decay: Array,
-    coefficient: Array,
+    half_swing: Floats,
+    first_amplitude: Floats,
+    decay: Floats,
+    coefficient: Floats,
     /,
-    **grid: float | Array,
-) -> Array:
+    **grid: float | Floats,
+) -> Floats:
     """Solution of a' = -k a - c: A exp(-k t) - c (1 - exp(-k t)) / k, at rest at 0."""
     del grid
     loss = coefficient * mean_loss_time(half_swing, decay)
@@ -34,7 +34,7 @@ def law(
     return np.asarray(np.sign(first_amplitude) * np.maximum(left, 0.0))
 
 
-def basis(columns: Columns, /, **grid: float) -> Array:
+def basis(columns: Columns, /, **grid: float) -> Floats:
     """-s_k (1 - exp(-k t)) / k, with the sign of the swing."""
     del grid
     time = mean_loss_time(columns["half_swing"], columns["decay"])

@@ -5,22 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
-from surveyapp_models.effects.effect import (
-    HALF_SWING,
-    Array,
-    Coefficient,
-    Columns,
-    Effect,
-    GridParameter,
-)
+from surveyapp_models.arrays import Floats
+from surveyapp_models.effects.effect import HALF_SWING, Coefficient, Columns, Effect, GridParameter
 
 
-def basis(columns: Columns, /, **grid: float) -> Array:
+def basis(columns: Columns, /, **grid: float) -> Floats:
     """1 at the faulty reading, else 0."""
     return (np.abs(columns["half_swing"] - grid["point"]) < 1e-6).astype(np.float64)[:, None]
 
 
-def points(columns: Columns) -> Array:
+def points(columns: Columns) -> Floats:
     """Every turning point."""
     return np.unique(columns["half_swing"])
 

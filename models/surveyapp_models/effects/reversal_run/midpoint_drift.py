@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
-from surveyapp_models.effects.effect import HALF_SWING, Array, Coefficient, Columns, Effect
+from surveyapp_models.arrays import Floats
+from surveyapp_models.effects.effect import HALF_SWING, Coefficient, Columns, Effect
 
 
-def basis(columns: Columns, /, **grid: float) -> Array:
+def basis(columns: Columns, /, **grid: float) -> Floats:
     """T - mean(t)."""
     del grid
     time = columns["half_swing"]

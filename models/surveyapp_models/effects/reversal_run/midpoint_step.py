@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
+from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.datum import both_plateaus
 from surveyapp_models.effects.effect import (
     DECAY,
     HALF_SWING,
     SIDE,
-    Array,
     Coefficient,
     Columns,
     Effect,
@@ -21,7 +21,7 @@ MID_SWING = 0.5
 """A step at meridian passage leaves the amplitude as it was."""
 
 
-def basis(columns: Columns, /, **grid: float) -> Array:
+def basis(columns: Columns, /, **grid: float) -> Floats:
     """H(t - t0) (1 - s_k s_0 cos(pi f) exp(-k (t - t0))), f the phase of the step.
 
     A step between two turning points changes the amplitude too, by the share of the swing that is
@@ -36,17 +36,17 @@ def basis(columns: Columns, /, **grid: float) -> Array:
     return np.asarray(after * (1.0 - kick * damped))[:, None]
 
 
-def midpoint(columns: Columns, /, **grid: float) -> Array:
+def midpoint(columns: Columns, /, **grid: float) -> Floats:
     """H(t - t0): what north itself does."""
     return (columns["half_swing"] > grid["after_point"] + 1e-9).astype(np.float64)[:, None]
 
 
-def positions(columns: Columns) -> Array:
+def positions(columns: Columns) -> Floats:
     """Last turning point before the step; at least three points on either side."""
     return np.unique(columns["half_swing"])[2:-3]
 
 
-def phases(columns: Columns) -> Array:
+def phases(columns: Columns) -> Floats:
     """Quarters of a half swing."""
     del columns
     return np.array([0.0, 0.25, MID_SWING, 0.75])

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import (
     DECAY,
     FIRST_AMPLITUDE,
     HALF_SWING,
     RELATIVE_AMPLITUDE,
     SIDE,
-    Array,
     Coefficient,
     Columns,
     Effect,
@@ -19,20 +19,20 @@ from surveyapp_models.effects.effect import (
 
 
 def law(
-    half_swing: Array,
-    first_amplitude: Array,
-    decay: Array,
-    coefficient: Array,
+    half_swing: Floats,
+    first_amplitude: Floats,
+    decay: Floats,
+    coefficient: Floats,
     /,
-    **grid: float | Array,
-) -> Array:
+    **grid: float | Floats,
+) -> Floats:
     """Solution of a' = -k a - b a^2: A exp(-k t) / (1 + b A (1 - exp(-k t)) / k)."""
     del grid
     loss = coefficient * np.abs(first_amplitude) * mean_loss_time(half_swing, decay)
     return np.asarray(first_amplitude * np.exp(-decay * half_swing) / np.maximum(1.0 + loss, 1e-3))
 
 
-def basis(columns: Columns, /, **grid: float) -> Array:
+def basis(columns: Columns, /, **grid: float) -> Floats:
     """-s_k A_k A (1 - exp(-k t)) / k."""
     del grid
     first = columns["first_amplitude"]

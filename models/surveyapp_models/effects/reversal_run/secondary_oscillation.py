@@ -5,14 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
-from surveyapp_models.effects.effect import (
-    HALF_SWING,
-    Array,
-    Coefficient,
-    Columns,
-    Effect,
-    GridParameter,
-)
+from surveyapp_models.arrays import Floats
+from surveyapp_models.effects.effect import HALF_SWING, Coefficient, Columns, Effect, GridParameter
 
 SHORTEST = 4.0
 """Shortest period [half swings] that turning points can tell from the swing itself."""
@@ -20,13 +14,13 @@ OVERSAMPLING = 4.0
 """Frequencies per independent frequency, so that no peak falls between two of them."""
 
 
-def basis(columns: Columns, /, **grid: float) -> Array:
+def basis(columns: Columns, /, **grid: float) -> Floats:
     """Cos and sin of 2 pi t / P."""
     phase = 2.0 * np.pi * columns["half_swing"] / grid["period"]
     return np.column_stack([np.cos(phase), np.sin(phase)])
 
 
-def periods(columns: Columns) -> Array:
+def periods(columns: Columns) -> Floats:
     """From 4 half swings to the length of the run / 1.5, evenly in frequency."""
     length = float(np.ptp(columns["half_swing"])) + 1.0
     longest = length / 1.5

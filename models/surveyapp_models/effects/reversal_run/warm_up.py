@@ -5,23 +5,17 @@ from __future__ import annotations
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
+from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.datum import asymptote
-from surveyapp_models.effects.effect import (
-    HALF_SWING,
-    Array,
-    Coefficient,
-    Columns,
-    Effect,
-    GridParameter,
-)
+from surveyapp_models.effects.effect import HALF_SWING, Coefficient, Columns, Effect, GridParameter
 
 
-def basis(columns: Columns, /, **grid: float) -> Array:
+def basis(columns: Columns, /, **grid: float) -> Floats:
     """exp(-t / tau)."""
     return np.exp(-columns["half_swing"] / grid["tau"])[:, None]
 
 
-def taus(columns: Columns) -> Array:
+def taus(columns: Columns) -> Floats:
     """From 1.4 to 8.5 half swings (5 to 30 minutes)."""
     del columns
     return np.array([1.4, 1.8, 2.3, 2.9, 3.4, 4.0, 5.0, 6.0, 7.0, 8.5])

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
-from surveyapp_models.effects.effect import Array, Coefficient, Column, Columns, Effect
+from surveyapp_models.arrays import Floats
+from surveyapp_models.effects.effect import Coefficient, Column, Columns, Effect
 
 
-def basis(columns: Columns, /, **grid: float) -> Array:
+def basis(columns: Columns, /, **grid: float) -> Floats:
     """Sights turned since the first of the set: 1 for an angle, 0, 1, 2 ... for directions."""
     del grid
     return np.asarray(columns["sights_turned"], dtype=np.float64)[:, None]

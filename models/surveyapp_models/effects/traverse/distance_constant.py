@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from surveyapp_models.effects.effect import Array, Coefficient, Column, Columns, Effect
+from surveyapp_models.arrays import Floats
+from surveyapp_models.effects.effect import Coefficient, Column, Columns, Effect
 
 
-def basis(columns: Columns, /, **grid: float) -> Array:
+def basis(columns: Columns, /, **grid: float) -> Floats:
     """1 for every distance, else 0."""
     del grid
     return np.asarray(columns["distance_m"] > 0.0, dtype=np.float64)[:, None]

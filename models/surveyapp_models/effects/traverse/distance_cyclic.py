@@ -6,20 +6,14 @@ import math
 
 import numpy as np
 
-from surveyapp_models.effects.effect import (
-    Array,
-    Coefficient,
-    Column,
-    Columns,
-    Effect,
-    GridParameter,
-)
+from surveyapp_models.arrays import Floats
+from surveyapp_models.effects.effect import Coefficient, Column, Columns, Effect, GridParameter
 
 UNIT_LENGTHS_M = (1.5, 10.0, 20.0)
 """Half the modulation wavelength: 100, 15 and 7.5 MHz."""
 
 
-def basis(columns: Columns, /, **grid: float) -> Array:
+def basis(columns: Columns, /, **grid: float) -> Floats:
     """Sine and cosine of the distance in its unit length; 0 where no distance was observed."""
     length = columns["distance_m"]
     phase = 2.0 * math.pi * length / grid["unit_length"]
@@ -27,7 +21,7 @@ def basis(columns: Columns, /, **grid: float) -> Array:
     return np.column_stack([np.where(observed, f(phase), 0.0) for f in (np.sin, np.cos)])
 
 
-def unit_lengths(columns: Columns) -> Array:
+def unit_lengths(columns: Columns) -> Floats:
     """The unit lengths of common instruments."""
     del columns
     return np.array(UNIT_LENGTHS_M)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from surveyapp_models.effects.effect import Array, Coefficient, Column, Columns, Effect
+from surveyapp_models.arrays import Floats
+from surveyapp_models.effects.effect import Coefficient, Column, Columns, Effect
 
 
-def basis(columns: Columns, /, **grid: float) -> Array:
+def basis(columns: Columns, /, **grid: float) -> Floats:
     """The distance; 0 for every other kind of observation."""
     del grid
     return np.asarray(columns["distance_m"], dtype=np.float64)[:, None]

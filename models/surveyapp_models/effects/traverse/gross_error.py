@@ -4,23 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from surveyapp_models.effects.effect import (
-    Array,
-    Coefficient,
-    Column,
-    Columns,
-    Effect,
-    GridParameter,
-)
+from surveyapp_models.arrays import Floats
+from surveyapp_models.effects.effect import Coefficient, Column, Columns, Effect, GridParameter
 
 
-def basis(columns: Columns, /, **grid: float) -> Array:
+def basis(columns: Columns, /, **grid: float) -> Floats:
     """Its own standard deviation at the faulty observation, else 0."""
     here = columns["observation"] == grid["observation"]
     return np.where(here, columns["own_sigma"], 0.0)[:, None]
 
 
-def observations(columns: Columns) -> Array:
+def observations(columns: Columns) -> Floats:
     """Every observation; a constant known beforehand has the sigma 0 here and is none."""
     return np.asarray(columns["observation"][columns["own_sigma"] > 0.0], dtype=np.float64)
 

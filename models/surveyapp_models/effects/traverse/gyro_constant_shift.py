@@ -5,17 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
-from surveyapp_models.effects.effect import (
-    Array,
-    Coefficient,
-    Column,
-    Columns,
-    Effect,
-    GridParameter,
-)
+from surveyapp_models.arrays import Floats
+from surveyapp_models.effects.effect import Coefficient, Column, Columns, Effect, GridParameter
 
 
-def basis(columns: Columns, /, **grid: float) -> Array:
+def basis(columns: Columns, /, **grid: float) -> Floats:
     """1 for this gyro side and every later one with the same constant, else 0."""
     side, group = columns["gyro_side"], columns["gyro_group"]
     own = group[side == grid["first_side"]]
@@ -23,7 +17,7 @@ def basis(columns: Columns, /, **grid: float) -> Array:
     return np.asarray(same, dtype=np.float64)[:, None]
 
 
-def first_sides(columns: Columns) -> Array:
+def first_sides(columns: Columns) -> Floats:
     """First side of every constant (all of them shift), and every later one but the last.
 
     A shift of the last side alone is a gross error of that side.

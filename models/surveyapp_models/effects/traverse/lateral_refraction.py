@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from surveyapp_models.angles import ARCSEC
-from surveyapp_models.effects.effect import Array, Coefficient, Column, Columns, Effect
+from surveyapp_models.arrays import Floats
+from surveyapp_models.effects.effect import Coefficient, Column, Columns, Effect
 
 
-def basis(columns: Columns, /, **grid: float) -> Array:
+def basis(columns: Columns, /, **grid: float) -> Floats:
     """Signed length of the sights past a wall; an angle has that of its fore minus its back sight.
 
     A ray of constant curvature leaves both ends of its chord by half the curvature times the

@@ -8,23 +8,22 @@ base; the other subjects have a linear base only. The engine works in SI units i
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from surveyapp.diagnosis.action import Action
 from surveyapp.domain.project import ResultWarning
 from surveyapp_models.angles import ARCSEC
-from surveyapp_models.effects.effect import Effect, Subject
-
-Array = NDArray[np.float64]
+from surveyapp_models.arrays import Floats
+from surveyapp_models.effects.effect import Columns, Effect, SubjectId
 
 FEW_OBSERVATIONS = 6
 """Below this number the stated sigmas serve instead of the residuals (diagnosis.md step 0)."""
 
 
-def _read_only(values: Array) -> Array:
+def _read_only(values: Floats) -> Floats:
     """A view through which nobody can write; the array of the caller stays as it is."""
     view = np.asarray(values).view()
     view.flags.writeable = False
@@ -32,7 +31,7 @@ def _read_only(values: Array) -> Array:
 
 
 @dataclass(frozen=True, slots=True)
-class Problem:
+class Case:
     """Observations with their base model.
 
     Parameters
@@ -83,20 +82,28 @@ class Problem:
     warnings : tuple of ResultWarning
     position_unit : str
         Of ``position`` where it is a time: ``s`` makes frequencies Hz; empty = an order.
+    title : str
+        The subject with its article; empty = its id.
+    value_name : str
+        What the result is called.
+    actions : tuple of Action
+        What can be observed next.
+    base_of : callable or None
+        The base design of other rows; None = the mean of the record's own rows.
     """
 
-    subject: Subject
-    observations: Array
-    base: Array
+    subject: SubjectId
+    observations: Floats
+    base: Floats
     base_names: tuple[str, ...]
-    value_base: Array
-    value_weights: Array
-    position: Array
-    columns: Mapping[str, Array]
+    value_base: Floats
+    value_weights: Floats
+    position: Floats
+    columns: Mapping[str, Floats]
     effects: tuple[Effect, ...]
-    side: Array | None = None
-    half_swing: Array | None = None
-    sigma: Array | None = None
+    side: Floats | None = None
+    half_swing: Floats | None = None
+    sigma: Floats | None = None
     weighted: bool = False
     resolution: float = 0.0
     references: Mapping[str, float] = field(default_factory=dict)
@@ -110,6 +117,10 @@ class Problem:
     grid_labels: Mapping[str, Mapping[float, str]] = field(default_factory=dict)
     warnings: tuple[ResultWarning, ...] = ()
     position_unit: str = ""
+    title: str = ""
+    value_name: str = "the result"
+    actions: tuple[Action, ...] = ()
+    base_of: Callable[[Columns], Floats] | None = None
 
     def __post_init__(self) -> None:
         """Hand out what effects may read so that they cannot write into it."""
@@ -146,7 +157,7 @@ class Problem:
         return self.size < FEW_OBSERVATIONS and self.sigma is not None
 
     @property
-    def root_weights(self) -> Array:
+    def root_weights(self) -> Floats:
         """Factors that make the observations equally good, with mean square 1."""
         if not self.weighted or self.sigma is None:
             return np.ones(self.size)
