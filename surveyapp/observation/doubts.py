@@ -147,8 +147,8 @@ def _about_sight(observation: SessionDesk, value: float, what: Expected) -> tupl
     assert what.face is not None
     if what.kind is ReadingKind.ZENITH:
         sights = sights_of(observation, what.target, ReadingKind.ZENITH)
-        ranged = doubt_zenith_range(value, what.face, _card(observation).valid)
-        return ranged or doubt_zenith(value, what.face, [row for row in sights if row in here])
+        apart = doubt_zenith(value, what.face, [row for row in sights if row in here])
+        return apart or doubt_zenith_range(value, what.face, _card(observation).valid)
     sights = sights_of(observation, what.target)
     return doubt_sight(
         value,

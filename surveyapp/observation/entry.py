@@ -14,7 +14,7 @@ from typing import Final
 
 from surveyapp.core.observing.doubts import Question
 from surveyapp.core.observing.progress import Progress
-from surveyapp.core.observing.retyped import Placed, open_strike, place_in_swing
+from surveyapp.core.observing.retyped import Placed, open_strike, place_in_swing, seconds_between
 from surveyapp.core.observing.steps import Expected, Step, kinds_of, next_sight
 from surveyapp.core.observing.typed_rows import EntryError, complete_angle, complete_number
 from surveyapp.domain.readings import (
@@ -44,6 +44,8 @@ _SUPPLY: Final = re.compile(r"(.*?)\s*(mA|Hz|V)?", re.IGNORECASE)
 _SUPPLY_UNITS: Final = {"ma": "mA", "hz": "Hz", "v": "V"}
 SWINGS: Final = (*TURNING, ReadingKind.TRANSIT)
 SHORTEST_HALF_SWING_S: Final = 60.0
+TYPED_UP_S: Final = 5.0
+"""Nobody reads two turning points within this time: such a row is typed up, its moment unknown."""
 _AGO: Final = re.compile(r"-\s*(\d+(?:\.\d*)?)\s*s?")
 _TIME: Final = re.compile(r"(\d{1,2}):(\d{2})(?::(\d{2}(?:\.\d*)?))?")
 
@@ -234,10 +236,19 @@ def understand(
         placed = place_in_swing(observation.book, _as_reading(row, entry.value, stamp))
         if not stated and what.kind in TURNING:
             stamp = _struck_moment(observation, placed, stamp)
-    timed = timed or stated
+    timed = stated or (timed and not _typed_up(placed, what.kind, stamp))
     typed = Typed(entry.value, entry.unit, stamp if timed else None, placed)
     questions = questions_about(observation, typed, what, progress)
     return Understood(row, entry.value, entry.completed, questions, stamp, timed)
+
+
+def _typed_up(placed: Placed | None, kind: ReadingKind, stamp: Stamp) -> bool:
+    """Whether a turning point follows so fast that it is typed up and was not read just now."""
+    if placed is None or placed.before is None or kind not in TURNING:
+        return False
+    new = replace(placed.before, time=stamp.time, elapsed_s=round(stamp.elapsed_s, 3))
+    apart = seconds_between(placed.before, new)
+    return apart is not None and abs(apart) < TYPED_UP_S * placed.turns
 
 
 def _as_reading(row: NewRow, value: float, stamp: Stamp) -> Reading:

@@ -216,8 +216,9 @@ class SessionDesk:
     def record(self, row: NewRow, stamp: Stamp | None = None, *, timed: bool = True) -> int:
         """Append one row; it is on the disk when this returns.
 
-        Elapsed seconds never go back in a book: a reading of an earlier moment than a row above it
-        carries its time alone, and so do strikes and remarks, which measure nothing.
+        A turning point of the very moment of another one is written without a moment. Elapsed
+        seconds never go back in a book: a reading of an earlier moment than a row above it carries
+        its time alone, and so do strikes and remarks, which measure nothing.
 
         Parameters
         ----------
@@ -245,6 +246,7 @@ class SessionDesk:
             raise SurveyError(edited_problem(self.path))
         moment = stamp or self.clock.stamp()
         latest = self.latest_elapsed_s()
+        timed = timed and not self._twice(row.kind, moment)
         quiet = row.kind in QUIET_KINDS and not row.note.startswith(STEP_NOTE)
         back = latest is not None and round(moment.elapsed_s, 3) < latest
         cells = {
@@ -271,6 +273,12 @@ class SessionDesk:
         if row.kind not in QUIET_KINDS or row.note.startswith(STEP_NOTE):
             self._step = None
         return seq
+
+    def _twice(self, kind: ReadingKind, moment: Stamp) -> bool:
+        """Whether a turning point of this very moment stands in the book: not both are right."""
+        elapsed = round(moment.elapsed_s, 3)
+        turning = kind in (ReadingKind.REVERSAL, ReadingKind.SCALE_REVERSAL)
+        return turning and any(row.elapsed_s == elapsed for row in self.book.of_kind(kind))
 
     def _fitting(self, cells: dict[str, str]) -> dict[str, str]:
         """Cells without the moment where an older book has no column for it."""

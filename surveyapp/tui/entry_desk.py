@@ -244,6 +244,8 @@ class Desk:
         kind = texts.KIND_NAMES[found.row.kind].split(",")[0]
         value = found.row.value or found.row.note
         told = texts.RECORDED.format(seq=seq, kind=kind, value=value)
+        if not found.timed and self.timed:
+            told += texts.RECORDED_UNTIMED
         return f"{told}{texts.STEP_COMPLETE if self.complete() else ''}"
 
     def clock_note(self) -> str:

@@ -1,4 +1,4 @@
-"""Doubts about supply, temperature, level, zenith angle and moment: can the instrument have them?
+"""Doubts about supply, temperature, level, zenith angle and moment, each against the card.
 
 The card tells the range; where it states none, a wide one does: a reading typed under the wrong
 kind falls out of it. As every doubt these ask once and refuse nothing.

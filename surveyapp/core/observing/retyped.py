@@ -20,8 +20,10 @@ class Placed:
     ----------
     index : int
         Its number among the rows of its kind and the missed ones, from 0.
-    before, after : Reading or None
-        Nearest rows of its kind on both sides that count.
+    before : Reading or None
+        Nearest row of its kind above that counts and has a moment.
+    after : Reading or None
+        Nearest row of its kind below that counts.
     turns : int
         Half swings from ``before`` to it.
     struck : Reading or None
@@ -54,7 +56,7 @@ def place_in_swing(book: FieldBook, row: Reading) -> Placed:
     struck = None
     if len(was) == len(swing) and was[index].seq in book.struck:
         struck = next(item for item in book.rows if item.seq == was[index].seq)
-    before = [i for i in range(index) if swing[i].kind is row.kind]
+    before = [i for i in range(index) if swing[i].kind is row.kind and _has_moment(swing[i])]
     after = [i for i in range(index + 1, len(swing)) if swing[i].kind is row.kind]
     return Placed(
         index=index,
@@ -63,6 +65,10 @@ def place_in_swing(book: FieldBook, row: Reading) -> Placed:
         turns=index - before[-1] if before else 1,
         struck=struck,
     )
+
+
+def _has_moment(row: Reading) -> bool:
+    return row.elapsed_s is not None or row.time is not None
 
 
 def open_strike(book: FieldBook, kind: ReadingKind) -> Reading | None:
