@@ -7,7 +7,8 @@ Each subject has a module of its own behind this one, which is all that scripts 
 from __future__ import annotations
 
 from surveyapp.api.batch import batch, batch_rows
-from surveyapp.api.judgement import SubjectKeyword, check, diagnose, subjects
+from surveyapp.api.importing import import_file
+from surveyapp.api.judgement import check, diagnose, subjects
 from surveyapp.api.network import (
     adjust,
     adjust_network,
@@ -27,7 +28,16 @@ from surveyapp.api.office import (
     report,
     report_text,
 )
-from surveyapp.api.orientation import demo, generator_of, orient, plan
+from surveyapp.api.orientation import (
+    Source,
+    compute,
+    demo,
+    generator_of,
+    orient,
+    plan,
+    unfinished,
+)
+from surveyapp.api.penetration import predict
 from surveyapp.api.project import (
     SOFTWARE,
     Folder,
@@ -37,25 +47,31 @@ from surveyapp.api.project import (
     open_project,
     simulate,
 )
-from surveyapp.api.unfinished import unfinished, without_unfinished
+from surveyapp.api.rate import north, plan_fog_station, spectrum
+from surveyapp.api.sensors import LogOptions, calibrate, open_sensor_log
+from surveyapp.api.shafts import shaft
 from surveyapp.domain.adjustment import AdjustmentResult
+from surveyapp.domain.calibration import Calibration
+from surveyapp.domain.fieldfile import ImportResult
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import Project
-from surveyapp.domain.results import Check, OrientationResult
+from surveyapp.domain.results import Check, OrientationResult, Subject, Verdicts
+from surveyapp.domain.subject import SubjectKeyword
 from surveyapp.domain.traverse import Network
 from surveyapp.errors import Problem, SurveyError
 
 __all__ = [
     "Folder",
+    "Source",
     "SOFTWARE",
     "open_project",
     "new_project",
     "simulate",
     "models",
     "model",
-    "unfinished",
-    "without_unfinished",
     "plan",
+    "unfinished",
+    "compute",
     "orient",
     "demo",
     "generator_of",
@@ -65,9 +81,17 @@ __all__ = [
     "compass_rule",
     "variance_components",
     "SubjectKeyword",
+    "predict",
+    "shaft",
     "subjects",
     "check",
     "diagnose",
+    "calibrate",
+    "plan_fog_station",
+    "north",
+    "spectrum",
+    "open_sensor_log",
+    "LogOptions",
     "batch",
     "batch_rows",
     "report",
@@ -76,14 +100,19 @@ __all__ = [
     "close",
     "reopen",
     "compare",
+    "import_file",
     "export_csv",
     "export_gkf",
     "export_json",
     "export_zip",
     "AdjustmentResult",
+    "ImportResult",
+    "Calibration",
     "InstrumentCard",
     "Project",
     "Check",
+    "Subject",
+    "Verdicts",
     "OrientationResult",
     "Network",
     "Problem",

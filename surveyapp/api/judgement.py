@@ -2,57 +2,44 @@
 
 from __future__ import annotations
 
+from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
-from surveyapp.api.network import network
-from surveyapp.api.orientation import computed, orient, oriented
+from surveyapp.api.orientation import Source, oriented
 from surveyapp.api.project import SOFTWARE, Folder, opened
-from surveyapp.api.unfinished import without_unfinished
 from surveyapp.domain.project import Project
-from surveyapp.domain.results import Check
-from surveyapp.errors import SurveyError
+from surveyapp.domain.results import Verdicts
+from surveyapp.domain.subject import SubjectKeyword
 
 if TYPE_CHECKING:
     from surveyapp.workflows.diagnosing import Diagnosed
 
-SubjectKeyword = Literal["session", "campaign", "traverse"]
 
-
-def check(project: Project | Folder) -> tuple[Check, ...]:
+def check(source: Source) -> Verdicts:
     """Apply every limit and test that the project's data can answer.
+
+    The same verdicts stand in the result of ``orient``, on the screens and in the record.
 
     Raises
     ------
     SurveyError
         If the project cannot be used; what was changed after its closing is among the problems.
     """
-    from surveyapp.io.project_checks import changed_after_closing
+    from surveyapp.workflows.computing import judged
 
-    try:
-        project = opened(project)
-        if project.tables.get("traverse"):
-            return _with_traverses(project, oriented(without_unfinished(project)).checks)
-        return orient(project).checks
-    except SurveyError as error:
-        folder = project.path if isinstance(project, Project) else project
-        raise SurveyError([*changed_after_closing(Path(folder)), *error.problems]) from None
-
-
-def _with_traverses(project: Project, checks: tuple[Check, ...]) -> tuple[Check, ...]:
-    """Checks of the orientation with those of the traverses."""
-    from surveyapp.io.traverse.checks import traverse_checks
-    from surveyapp.io.traverse.header import traverse_headers
-
-    networks = [
-        (header.traverse_class, network(project, traverse=header.name))
-        for header in traverse_headers(project)
-    ]
-    return traverse_checks(project, networks, checks)
+    if not isinstance(source, Project | str | PathLike):
+        found = source
+    else:
+        project = opened(source)
+        made = oriented(project, even_unfinished=bool(project.traverses))
+        found = judged(made, software=SOFTWARE)
+    told = tuple(w for w in found.result.warnings if w.code == "session_unfinished")
+    return Verdicts(found.result.checks, told)
 
 
 def diagnose(
-    project: Project | Folder,
+    source: Source,
     *,
     session: str | None = None,
     campaign: str | None = None,
@@ -66,7 +53,7 @@ def diagnose(
 
     Parameters
     ----------
-    project : Project or path
+    source : Project, path or Computed
     session : str or None
         Diagnose the turning points of this session.
     campaign : str or None
@@ -92,29 +79,27 @@ def diagnose(
     from surveyapp.workflows.choosing import Request
     from surveyapp.workflows.diagnosing import diagnose_project
 
-    project = opened(project)
     own = () if effects is None else load_effects(Path(effects), only_known_columns=True)
-    kept = without_unfinished(project, keep=[name for name in (session, confirm) if name])
+    keep = tuple(name for name in (session, confirm) if name)
+    if isinstance(source, Project | str | PathLike):
+        found = oriented(source, keep=keep)
+    else:
+        found = source.oriented
     return diagnose_project(
-        computed(kept if kept.sessions else project),
+        found.orientation,
         Request(session, campaign, confirm, own, traverse),
-        folder=Path(project.path) if project.path else None,
+        folder=Path(found.project.path) if found.project.path else None,
         adopt=adopt,
         software=SOFTWARE,
         log=log,
-        networks=lambda name: network(project, traverse=name),
+        networks=found.network,
     )
 
 
-def subjects(project: Project | Folder) -> tuple[tuple[SubjectKeyword, str], ...]:
+def subjects(source: Source) -> tuple[tuple[SubjectKeyword, str], ...]:
     """What ``diagnose`` can take of a project: its keyword and the id."""
+    from surveyapp.core.orientation.unfinished import without_unfinished
     from surveyapp.workflows.choosing import subjects_of
 
-    project = opened(project)
-    keywords: dict[str, SubjectKeyword] = {
-        "--session": "session",
-        "--campaign": "campaign",
-        "--traverse": "traverse",
-    }
-    kept = without_unfinished(project)
-    return tuple((keywords[item.option], item.id) for item in subjects_of(kept))
+    kept = without_unfinished(opened(source))
+    return tuple((item.keyword, item.id) for item in subjects_of(kept))

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from surveyapp.api.orientation import oriented
-from surveyapp.api.project import Folder, open_project
-from surveyapp.api.unfinished import without_unfinished
+from surveyapp.api.orientation import Source, oriented
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.project import Project
 from surveyapp.domain.traverse import Network
@@ -18,14 +17,14 @@ if TYPE_CHECKING:
 
 
 def adjust(
-    source: Project | Folder, *, traverse: str | None = None, family_level: float = 0.05
+    source: Source, *, traverse: str | None = None, family_level: float = 0.05
 ) -> AdjustmentResult:
     """Adjust the traverses of a project, gyro sides included, or a GNU Gama file.
 
     Parameters
     ----------
-    source : Project or path
-        A project, its folder, or a ``.gkf`` file.
+    source : Project, path or Computed
+        A project, its folder, what ``compute`` made of it, or a ``.gkf`` file.
     traverse : str or None
         One traverse; all of them together without it.
     family_level : float
@@ -60,22 +59,18 @@ def variance_components(network: Network) -> tuple[VarianceComponent, ...]:
     return components(network)[0]
 
 
-def network(source: Project | Folder, *, traverse: str | None = None) -> Network:
+def network(source: Source, *, traverse: str | None = None) -> Network:
     """Network of a project's traverses or of a ``.gkf`` file, as ``adjust`` takes it."""
-    from dataclasses import replace
-
-    from surveyapp.core.network.oriented import oriented_lines
-    from surveyapp.core.orientation.unfinished import waiting_sides
+    from surveyapp.core.checks.grid_checks import refuse_unfit_grid
     from surveyapp.io.importers.gkf import read_gkf
-    from surveyapp.io.traverse.book import network_of
 
+    if not isinstance(source, Project | str | PathLike):
+        return source.network(traverse)
     if not isinstance(source, Project):
         path = Path(source)
         if path.suffix.lower() in (".gkf", ".xml") or path.is_file():
             return read_gkf(path)
-        source = open_project(path)
-    kept = without_unfinished(source)
-    left_out = kept.warnings[len(source.warnings) :]
-    lines, constants, warnings = oriented_lines(oriented(kept).lines if kept.sessions else ())
-    found = network_of(source, traverse, lines, constants, waiting_sides(source, kept))
-    return replace(found, warnings=(*found.warnings, *warnings, *left_out))
+    found = oriented(source, even_unfinished=True)
+    if found.orientation.sessions:
+        refuse_unfit_grid(found.orientation.project)
+    return found.network(traverse)

@@ -14,9 +14,8 @@ from typing import TYPE_CHECKING
 
 from surveyapp.api.judgement import diagnose, subjects
 from surveyapp.api.network import adjust, network
-from surveyapp.api.orientation import orient
-from surveyapp.api.project import SOFTWARE, Folder, opened
-from surveyapp.domain.project import Project
+from surveyapp.api.orientation import Source, compute, orient
+from surveyapp.api.project import SOFTWARE, Folder
 
 if TYPE_CHECKING:
     from surveyapp.core.differences import Snapshot
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
     from surveyapp.report.blocks import Document
     from surveyapp.report.record import Extra
     from surveyapp.report.written import ReportResult
+    from surveyapp.workflows.computing import Computed
 
 
 def _local_now() -> datetime:
@@ -31,7 +31,7 @@ def _local_now() -> datetime:
 
 
 def report(
-    project: Project | Folder,
+    source: Source,
     output: Folder,
     *,
     font: Folder | None = None,
@@ -42,7 +42,7 @@ def report(
 
     Parameters
     ----------
-    project : Project or path
+    source : Project, path or Computed
     output : path
         PDF to be written, whole or not at all.
     font : path or None
@@ -58,68 +58,65 @@ def report(
     SurveyError
         If the project cannot be used, the face cannot be embedded or the file not be written.
     """
+    found = compute(source)
     if diagnosis:
-        extras = (*extras, *_diagnoses(project))
-    document, sections = _record(project, extras)
+        extras = (*extras, *_diagnoses(found))
+    document, sections = _record(found, extras)
     return _write_document(document, sections, Path(output), font)
 
 
-def _traverses(project: Project) -> tuple[Extra, ...]:
+def _traverses(found: Computed) -> tuple[Extra, ...]:
     """A section for every traverse; one that cannot be adjusted says why."""
     from surveyapp.errors import SurveyError
     from surveyapp.report.blocks import Heading, Paragraph
     from surveyapp.report.record import Extra
     from surveyapp.report.sections import traverse as section
 
-    if not project.tables.get("traverse"):
-        return ()
-    from surveyapp.io.traverse.header import traverse_headers
-
-    found = []
-    for header in traverse_headers(project):
-        identity = f"traverse {header.name}"
+    extras = []
+    for traverse in found.project.traverses:
+        identity = f"traverse {traverse.name}"
         try:
-            result = adjust(project, traverse=header.name)
+            result = adjust(found, traverse=traverse.name)
         except SurveyError as error:
             reasons = [Paragraph(str(problem), "warning") for problem in error.problems]
-            found.append(Extra(identity, (Heading(f"Traverse {header.name}"), *reasons)))
+            extras.append(Extra(identity, (Heading(f"Traverse {traverse.name}"), *reasons)))
             continue
-        made = section.blocks(header.name, result, unit=project.angle_unit)
-        found.append(Extra(identity, made))
-    return tuple(found)
+        made = section.blocks(traverse.name, result, unit=found.project.angle_unit)
+        extras.append(Extra(identity, made))
+    return tuple(extras)
 
 
-def _diagnoses(project: Project | Folder) -> tuple[Extra, ...]:
+def _diagnoses(found: Computed) -> tuple[Extra, ...]:
     """A section for every subject that can be diagnosed; too few observations are passed over."""
     from surveyapp.errors import SurveyError
     from surveyapp.report.record import Extra
     from surveyapp.report.sections import diagnosis as section
 
-    project = opened(project)
-    found = []
-    for option, identity in subjects(project):
+    unit = found.project.angle_unit
+    extras = []
+    for option, identity in subjects(found):
         try:
             if option == "session":
-                made = diagnose(project, session=identity, log=False)
+                made = diagnose(found, session=identity, log=False)
             elif option == "traverse":
-                made = diagnose(project, traverse=identity, log=False)
+                made = diagnose(found, traverse=identity, log=False)
             else:
-                made = diagnose(project, campaign=identity, log=False)
+                made = diagnose(found, campaign=identity, log=False)
         except SurveyError:
             continue
         if made.diagnosis is None:
             continue
         shown = {name: (before, after) for name, before, after in made.channels}
-        made_blocks = section.blocks(made.diagnosis, made.words, shown, unit=project.angle_unit)
-        found.append(Extra(f"diagnosis of {identity}", made_blocks))
-    return tuple(found)
+        made_blocks = section.blocks(made.diagnosis, made.words, shown, unit=unit)
+        extras.append(Extra(f"diagnosis of {identity}", made_blocks))
+    return tuple(extras)
 
 
-def report_text(project: Project | Folder) -> str:
+def report_text(source: Source) -> str:
     """The survey record as text for a terminal."""
     from surveyapp.report.text import document_text
 
-    return document_text(_record(project, ())[0])
+    return document_text(_record(compute(source), ())[0])
 
 
 def blank_form(method: str, output: Folder, *, font: Folder | None = None) -> ReportResult:
@@ -135,23 +132,13 @@ def blank_form(method: str, output: Folder, *, font: Folder | None = None) -> Re
     return _write_document(form(method, software=SOFTWARE), (method,), Path(output), font)
 
 
-def _record(
-    project: Project | Folder, extras: tuple[Extra, ...]
-) -> tuple[Document, tuple[str, ...]]:
-    from surveyapp.io.filing.ledger import read_ledger
-    from surveyapp.io.filing.seals import closings_in_force
-    from surveyapp.io.project_checks import project_rule_book
+def _record(found: Computed, extras: tuple[Extra, ...]) -> tuple[Document, tuple[str, ...]]:
     from surveyapp.report.record import Record, SealShown, record_document
 
-    project = opened(project)
-    result = orient(project)
-    extras = (*_traverses(project), *extras)
-    closing = closings_in_force(read_ledger(Path(project.path))).get("")
-    seal = None
-    if closing is not None:
-        values = [str(closing.data.get(key, "")) for key in ("by", "seal")]
-        seal = SealShown(closing.at, *values)
-    return record_document(Record(project, result, project_rule_book(project), seal, extras))
+    extras = (*_traverses(found), *extras)
+    closing = found.project.filing.project_closing
+    seal = None if closing is None else SealShown(closing.at, closing.by, closing.seal)
+    return record_document(Record(found.project, found.result, found.project.rules, seal, extras))
 
 
 def _write_document(
@@ -219,15 +206,15 @@ def export_zip(folder: Folder, output: Folder) -> ExportResult:
     return _write_export("zip", data, Path(output), count)
 
 
-def export_csv(project: Project | Folder, output: Folder, *, table: str = "lines") -> ExportResult:
+def export_csv(source: Source, output: Folder, *, table: str = "lines") -> ExportResult:
     """Write a table of the results as CSV (lines, sessions, constants, checks, all)."""
     from surveyapp.io.exporters.results_csv import results_csv
 
-    text, count = results_csv(orient(project), table)
+    text, count = results_csv(orient(source), table)
     return _write_export("csv", text.encode("utf-8"), Path(output), count)
 
 
-def export_gkf(project: Project | Folder, output: Folder) -> ExportResult:
+def export_gkf(source: Source, output: Folder) -> ExportResult:
     """Write the traverses of a project, gyro sides included, as a GNU Gama file.
 
     Raises
@@ -237,14 +224,14 @@ def export_gkf(project: Project | Folder, output: Folder) -> ExportResult:
     """
     from surveyapp.io.exporters.gkf import gkf_text
 
-    found = network(project)
+    found = network(source)
     data = gkf_text(found).encode("utf-8")
     return _write_export("gkf", data, Path(output), len(found.observations))
 
 
-def export_json(project: Project | Folder, output: Folder) -> ExportResult:
+def export_json(source: Source, output: Folder) -> ExportResult:
     """Write the result with its files, cards and rule book, for a later ``compare``."""
-    snapshot = _snapshot(project)
+    snapshot = _snapshot(source)
     data = json.dumps(snapshot.to_dict(), ensure_ascii=False, indent=1, allow_nan=False) + "\n"
     return _write_export("json", data.encode("utf-8"), Path(output), len(snapshot.files or ()))
 
@@ -281,9 +268,8 @@ def _side(path: Path) -> Snapshot:
     return read_snapshot(path) if path.is_file() else _snapshot(path)
 
 
-def _snapshot(project: Project | Folder) -> Snapshot:
+def _snapshot(source: Source) -> Snapshot:
     from surveyapp.io.filing.snapshots import folder_snapshot
-    from surveyapp.io.project_checks import project_rule_book
 
-    project = opened(project)
-    return folder_snapshot(project, orient(project), project_rule_book(project))
+    found = compute(source)
+    return folder_snapshot(found.project, found.result, found.project.rules)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from os import PathLike
+from typing import TYPE_CHECKING, Union
 
 from surveyapp.api.project import SOFTWARE, Folder, open_project, opened, require
-from surveyapp.api.unfinished import without_unfinished
-from surveyapp.domain.project import Project
+from surveyapp.domain.project import Project, ResultWarning
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import Problem, SurveyError
 
@@ -14,34 +14,103 @@ if TYPE_CHECKING:
     import numpy as np
 
     from surveyapp.core.comparison import DemonstratedSample
-    from surveyapp.core.orientation.whole_project import Orientation
     from surveyapp.core.plan import StationPlan
+    from surveyapp.workflows.computing import Computed, OrientedProject
+
+Source = Union[Project, Folder, "Computed"]
+"""What functions take: a project, its folder, or what ``compute`` made of it."""
+
+
+def compute(
+    source: Source, *, session: str | None = None, estimator: str | None = None
+) -> Computed:
+    """Orient and judge a project, once: every other function takes what this returns.
+
+    Parameters
+    ----------
+    source : Project, path or Computed
+        What has been computed is returned as it is, unless a session or an estimator is asked for.
+    session : str or None
+        Show this session alone, and orient its lines from it alone; constants come from all
+        calibration sessions.
+    estimator : str or None
+        ``least-squares``, ``schuler``, ``amplitude`` or ``transit``; None for the default.
+
+    Raises
+    ------
+    SurveyError
+        If the project cannot be used, there is no such session, or no session is finished.
+    """
+    from surveyapp.workflows.computing import judged
+
+    if session is None and estimator is None and not isinstance(source, Project | str | PathLike):
+        return source
+    found = oriented(source, session=session, estimator=estimator)
+    return judged(found, software=SOFTWARE, session=session)
 
 
 def generator_of(project: Project) -> np.random.Generator:
     """Random generator whose seed is the digest of the input: the same input, the same result."""
-    import numpy as np
+    from surveyapp.workflows.computing import generator_of as seeded
 
-    return np.random.default_rng(int(project.digest[:16] or "0", 16))
+    return seeded(project)
+
+
+def unfinished(source: Source) -> tuple[ResultWarning, ...]:
+    """What is left out of a project's results because it is still being observed."""
+    from surveyapp.core.orientation.unfinished import without_unfinished
+
+    project = opened(source)
+    return without_unfinished(project).warnings[len(project.warnings) :]
+
+
+def oriented(
+    source: Source,
+    *,
+    session: str | None = None,
+    estimator: str | None = None,
+    keep: tuple[str, ...] = (),
+    even_unfinished: bool = False,
+) -> OrientedProject:
+    """Orient a project without judging it.
+
+    Parameters
+    ----------
+    keep : tuple of str
+        Sessions that stay although they are not finished.
+    even_unfinished : bool
+        Whether a project may have no finished session at all; it has no line then.
+    """
+    from surveyapp.workflows.computing import oriented as oriented_project
+
+    if not isinstance(source, Project | str | PathLike) and session is None and estimator is None:
+        return source.oriented
+    project = opened(source)
+    if session is not None:
+        require(session, [item.id for item in project.sessions], "session")
+        keep = (*keep, session)
+    return oriented_project(
+        project, estimator=estimator, session=session, keep=keep, all_if_none=not even_unfinished
+    )
 
 
 def orient(
-    project: Project | Folder,
+    source: Source,
     *,
     session: str | None = None,
-    line: str | None = None,
+    line: str | tuple[str, str] | None = None,
     estimator: str | None = None,
 ) -> OrientationResult:
     """Reduce the sessions of a project and orient its lines.
 
     Parameters
     ----------
-    project : Project or path
+    source : Project, path or Computed
     session : str or None
         Show this session alone, and orient its lines from it alone; constants come from all
         calibration sessions.
-    line : str or None
-        Show this line (``station-target``) alone.
+    line : str, (str, str) or None
+        Show this line alone, as every instrument oriented it: ``station-target``, or the two names.
     estimator : str or None
         ``least-squares``, ``schuler``, ``amplitude`` or ``transit``; None for the default.
 
@@ -55,66 +124,38 @@ def orient(
     -----
     Sessions that are still being observed are left out, with a warning ``session_unfinished``.
     """
-    project = opened(project)
-    if session is not None:
-        require(session, [item.id for item in project.sessions], "session")
-    kept = without_unfinished(project, keep=() if session is None else (session,))
-    if not kept.sessions:
-        kept = project
-    return oriented(kept, session=session, line=line, estimator=estimator)
+    found = compute(source, session=session, estimator=estimator)
+    return found.result if line is None else with_line(found, line)
 
 
-def oriented(
-    project: Project,
-    *,
-    session: str | None = None,
-    line: str | None = None,
-    estimator: str | None = None,
-) -> OrientationResult:
-    """Orient every session of a project; it may have none."""
-    from surveyapp.core.orientation.outcome import outcome
-    from surveyapp.io.project_checks import project_checks
+def with_line(found: Computed, line: str | tuple[str, str]) -> OrientationResult:
+    """The result with one line alone, as every instrument oriented it.
 
-    found = computed(project, estimator=estimator, only=session)
-    checks = project_checks(project, found)
-    result = outcome(found, software=SOFTWARE, only=session, more_checks=checks)
-    return result if line is None else _with_line(result, line, project)
-
-
-def _with_line(result: OrientationResult, name: str, project: Project) -> OrientationResult:
-    """The result with one line alone; refused where there is none, or no azimuth of it."""
+    Raises
+    ------
+    SurveyError
+        If there is no such line, its name is ambiguous, or no azimuth of it can be determined.
+    """
     from dataclasses import replace
 
-    lines = {f"{item.station}-{item.target}": item for item in result.lines}
-    told = [item.text for item in project.warnings if item.code == "session_unfinished"]
-    require(name, lines, "line", "; ".join(told))
-    if lines[name].true_azimuth is None:
+    from surveyapp.core.orientation.line_names import resolve_line
+
+    result = found.result
+    stations = [item.name for item in found.project.stations]
+    told = [item.text for item in result.warnings if item.code == "session_unfinished"]
+    station, target = resolve_line(line, stations, result.lines, more="; ".join(told))
+    own = tuple(x for x in result.lines if (x.station, x.target) == (station, target))
+    if all(item.true_azimuth is None for item in own):
         raise SurveyError(
             Problem(
-                what=f"the azimuth of line {name} cannot be determined",
-                where=f"instrument {lines[name].instrument}",
+                what=f"the azimuth of line {station}-{target} cannot be determined",
+                where=", ".join(f"instrument {item.instrument}" for item in own),
                 found="no instrument constant",
                 expected="calibration sessions on a known line, or a known constant",
                 hint="Add a calibration session, or constant = { arcsec, sigma_arcsec }.",
             )
         )
-    return replace(result, lines=(lines[name],))
-
-
-def computed(
-    project: Project, *, estimator: str | None = None, only: str | None = None
-) -> Orientation:
-    """Orient a project; runs with adopted effects are estimated with them in the model."""
-    from surveyapp.core.orientation.whole_project import orient_project
-
-    run_model = None
-    if any(session.effects for session in project.sessions):
-        from surveyapp.diagnosis.subjects.choice import modelled_run
-
-        run_model = modelled_run
-    return orient_project(
-        project, generator_of(project), estimator=estimator, only=only, run_model=run_model
-    )
+    return replace(result, lines=own)
 
 
 def plan(
@@ -151,7 +192,9 @@ def plan(
     if not math.isfinite(interval_arcsec) or interval_arcsec <= 0.0:
         found = f"{interval_arcsec:g}"
         raise SurveyError(
-            Problem("the wanted interval is not positive", "--interval", found, "arc-seconds > 0")
+            Problem(
+                "the wanted interval is not positive", "interval_arcsec", found, "arc-seconds > 0"
+            )
         )
     return plan_stations(project, names, wanted=interval_arcsec * ARCSEC)
 

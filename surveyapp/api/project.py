@@ -14,6 +14,7 @@ from surveyapp.errors import Problem, SurveyError, nearest_names
 
 if TYPE_CHECKING:
     from surveyapp.io.simulated import SimulatedFiles
+    from surveyapp.workflows.computing import Computed
 
 Folder = str | os.PathLike[str]
 
@@ -33,9 +34,11 @@ def open_project(folder: Folder) -> Project:
     return read_project(Path(folder))
 
 
-def opened(project: Project | Folder) -> Project:
+def opened(source: Project | Folder | Computed) -> Project:
     """The project itself, read if it is given by its folder."""
-    return project if isinstance(project, Project) else open_project(project)
+    if isinstance(source, Project):
+        return source
+    return open_project(source) if isinstance(source, str | os.PathLike) else source.project
 
 
 def require(name: str, known: Iterable[str], kind: str, more: str = "") -> None:
@@ -45,7 +48,7 @@ def require(name: str, known: Iterable[str], kind: str, more: str = "") -> None:
         raise SurveyError(
             Problem(
                 what=f"there is no {kind} of this name",
-                where=f"--{kind}",
+                where=kind,
                 found=name,
                 expected=f"the name of a {kind} of the project",
                 hint=". ".join(filter(None, [nearest_names(name, names), more])),
@@ -76,20 +79,27 @@ def new_project(
 
 
 def simulate(
-    kind: str, out: Folder, *, effects: Sequence[str] = (), seed: int = 1
+    kind: str,
+    out: Folder,
+    *,
+    effects: Sequence[str] = (),
+    seed: int = 1,
+    programme: str | None = None,
 ) -> SimulatedFiles:
     """Write a simulated project, and its truth beside it.
 
     Parameters
     ----------
     kind : str
-        ``reversal-run`` or ``campaign``.
+        ``reversal-run``, ``campaign``, ``rate``, ``fog-station`` ...
     out : path
         A folder that does not exist or is empty.
     effects : sequence of str
         ``ID=VALUE[,option=value]`` each.
     seed : int
         The same seed, the same files.
+    programme : str, optional
+        Of a rate sensor: ``six-position``, ``temperature`` ...
 
     Raises
     ------
@@ -100,8 +110,8 @@ def simulate(
     from surveyapp.io.simulated import write_simulated
 
     if seed < 0:
-        raise SurveyError(Problem("the seed is negative", "--seed", str(seed), "0 or more"))
-    files, truth = simulate_kind(kind, effects=effects, seed=seed)
+        raise SurveyError(Problem("the seed is negative", "seed", str(seed), "0 or more"))
+    files, truth = simulate_kind(kind, effects=effects, seed=seed, programme=programme)
     return write_simulated(Path(out), files, truth)
 
 

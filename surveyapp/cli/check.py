@@ -18,13 +18,10 @@ def run(options: argparse.Namespace) -> int:
     """Check and print; 1 if a confirmed limit or test is not met."""
     from surveyapp import api
 
-    checks = api.check(options.folder)
-    warnings = api.unfinished(options.folder)
+    found = api.check(options.folder)
     if options.json:
-        rows = [check.to_dict() for check in checks]
-        told = [item.to_dict() for item in warnings]
-        print_json({"schema": "surveyapp.check/1", "checks": rows, "warnings": told})
+        print_json(found.to_dict())
     else:
-        text = checks_text(checks) or "Nothing in this project can be checked yet."
-        print("\n\n".join(filter(None, [text, warnings_text(warnings)])))
-    return int(any(check.confirmed and check.passed is False for check in checks))
+        text = checks_text(found.checks) or "Nothing in this project can be checked yet."
+        print("\n\n".join(filter(None, [text, warnings_text(found.warnings)])))
+    return 0 if found.passed else 1

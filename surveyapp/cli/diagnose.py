@@ -59,7 +59,7 @@ def subjects_text(found: Diagnosed) -> str:
     """What could be diagnosed."""
     if not found.subjects:
         return "\n".join(textwrap.fill(text, 79) for text in found.words)
-    rows = [[s.option, s.id, str(s.observations)] for s in found.subjects]
+    rows = [[f"--{s.keyword}", s.id, str(s.observations)] for s in found.subjects]
     return "Choose one:\n" + table(["option", "", "rows"], rows)
 
 

@@ -12,7 +12,7 @@ import importlib
 import os
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import ModuleType
 from typing import NoReturn
 
@@ -39,13 +39,19 @@ COMMANDS: tuple[Command, ...] = (
     Command("adjust", "adjust", "traverse or .gkf network to coordinates, sigmas and tests"),
     Command("report", "report", "the survey record as PDF, or a blank field-book form"),
     Command("diagnose", "diagnose", "which effect does the model lack, and how sure is that"),
+    Command("calibrate", "calibrate", "a sensor log to parameters, sigmas and a sensor card"),
+    Command("spectrum", "spectrum", "interference lines of a record, and a magnetic bias budget"),
+    Command("north", "north", "north by a rate sensor: on a total station, indexed, turned"),
     Command("close", "close", "seal a project or a session with a hash chain in the ledger"),
     Command("reopen", "reopen", "open what was closed; the ledger keeps the reason"),
     Command("compare", "compare", "what changed between two results, and because of what"),
+    Command("import", "import_file", "field files of total stations and gyros into a project"),
     Command("export", "export", "results and projects as csv, json or zip"),
     Command("batch", "batch", "many projects, one row each; failures are told, not fatal"),
     Command("new", "new", "make a new project folder"),
     Command("models", "models", "instrument cards and what is known of them"),
+    Command("predict", "predict", "how far two headings will miss each other, and what helps"),
+    Command("shaft", "shaft", "orientation through one shaft or two, joined with the gyro"),
     Command("plan", "plan", "method, points and minutes for a wanted interval at this latitude"),
     Command("simulate", "simulate", "a simulated project with any effect, its truth apart"),
     Command("practise", "practise", "observe a simulated instrument, then see the truth"),
@@ -84,6 +90,12 @@ class Parser(argparse.ArgumentParser):
                 hint=nearest_names(rest[0], known),
             )
         )
+
+    def as_typed(self, problem: Problem) -> Problem:
+        """A problem of an argument of the API under the name of the option that gave it."""
+        option = f"--{problem.where.replace('_', '-')}"
+        known = {name for action in self._actions for name in action.option_strings}
+        return replace(problem, where=option) if option in known else problem
 
     def _check_value(self, action: argparse.Action, value: object) -> None:
         if action.choices is None or value in action.choices:
@@ -171,8 +183,12 @@ def _run(arguments: list[str]) -> int:
                 hint=nearest_names(first, names),
             )
         )
-    options = parser_of(names[first]).parse_strictly(arguments[1:])
-    return int(_module(names[first].module).run(options))
+    parser = parser_of(names[first])
+    options = parser.parse_strictly(arguments[1:])
+    try:
+        return int(_module(names[first].module).run(options))
+    except SurveyError as error:
+        raise SurveyError([parser.as_typed(problem) for problem in error.problems]) from None
 
 
 def _module(name: str) -> ModuleType:

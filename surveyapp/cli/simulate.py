@@ -9,7 +9,7 @@ from surveyapp.cli.output import print_json
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    parser.add_argument("kind", metavar="KIND", help="reversal-run or campaign")
+    parser.add_argument("kind", metavar="KIND", help="reversal-run | campaign | rate | fog-station")
     parser.add_argument("out", metavar="OUT", help="folder to make; must not hold anything")
     parser.add_argument(
         "--effect",
@@ -17,6 +17,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=[],
         metavar="ID=VALUE",
         help="a disturbing effect and its size; may be given several times",
+    )
+    parser.add_argument(
+        "--programme", metavar="NAME", help="of rate: six-position (default) | temperature"
     )
     parser.add_argument("--seed", type=int, default=1, metavar="N", help="default 1")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
@@ -26,7 +29,13 @@ def run(options: argparse.Namespace) -> int:
     """Simulate and write."""
     from surveyapp import api
 
-    made = api.simulate(options.kind, options.out, effects=options.effect, seed=options.seed)
+    made = api.simulate(
+        options.kind,
+        options.out,
+        effects=options.effect,
+        seed=options.seed,
+        programme=options.programme,
+    )
     if options.json:
         print_json(made.to_dict())
         return 0

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from surveyapp.core.geodesy import open_grid, position_of
+from surveyapp.core.geodesy import grid_of, position_of
 from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp.core.swing.card_physics import CardAt, card_at
 from surveyapp.core.swing.gyrofit import LEAST_SQUARES_FROM, fit_damped_swing
@@ -240,7 +240,7 @@ def plan_stations(
     project: Project, names: Sequence[str], *, wanted: float
 ) -> tuple[StationPlan, ...]:
     """Plan every instrument of a project at the named stations, interval [rad]."""
-    grid = open_grid(project.crs) if project.crs is not None else None
+    grid = grid_of(project)
     plans = []
     for name in names:
         latitude = position_of(project.station(name), grid).latitude

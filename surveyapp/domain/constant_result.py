@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from surveyapp.domain.angle_result import finite, to_arcsec, to_degrees
+from surveyapp.domain.subject import Subject
 from surveyapp_models.angles import wrap_pi
 
 
@@ -49,6 +50,11 @@ class Determination:
     from_coordinates: float | None
 
     @property
+    def subject(self) -> Subject:
+        """The session and its target as a value."""
+        return Subject.session(self.session, self.target)
+
+    @property
     def known_minus_coordinates(self) -> float | None:
         """Known grid azimuth minus the one from the coordinates [rad], None without those."""
         if self.from_coordinates is None:
@@ -58,6 +64,7 @@ class Determination:
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""
         return {
+            "subject": self.subject.to_dict(),
             "session": self.session,
             "station": self.station,
             "target": self.target,

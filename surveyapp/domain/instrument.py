@@ -204,8 +204,9 @@ class Instrument:
     serial : str
     known_constant : tuple of (float, float) or None
         Instrument constant known beforehand and its sigma [rad].
-    constant_choice : str
-        pooled | interpolated | nearest | line:A-B | known.
+    constant_choice : str or None
+        predicted | pooled | interpolated | nearest | line:A-B | known; None = nobody chose:
+        predicted where there are determinations enough, else pooled.
     effects : tuple of AdoptedEffect
     """
 
@@ -213,5 +214,5 @@ class Instrument:
     card: InstrumentCard
     serial: str = ""
     known_constant: tuple[float, float] | None = None
-    constant_choice: str = "pooled"
+    constant_choice: str | None = None
     effects: tuple[AdoptedEffect, ...] = ()

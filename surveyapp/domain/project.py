@@ -8,10 +8,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from datetime import date
-from typing import Literal
+from typing import Any, Literal
 
+from surveyapp.domain.closing import Filing
 from surveyapp.domain.instrument import AdoptedEffect, Instrument
+from surveyapp.domain.mine_grid import MineGrid, StatedConvergence
 from surveyapp.domain.readings import FieldBook
+from surveyapp.domain.rulebook import RuleBook
+from surveyapp.domain.sensor_entry import SensorLogEntry
+from surveyapp.domain.subject import Subject
+from surveyapp.domain.traverse_book import Traverse
 from surveyapp_models.angles import ARCSEC, AngleUnit
 
 Method = Literal["tracking", "amplitude", "transit", "automatic"]
@@ -56,6 +62,12 @@ class Station:
         Height [m].
     fixed : bool
     deflection : Deflection
+    sigma_m : float or None
+        Standard deviation of each coordinate against the neighbouring stations [m].
+    convergence : StatedConvergence or None
+        As the record prints it.
+    planned : bool
+        Not yet built; an adjustment leaves it out.
     """
 
     name: str
@@ -66,6 +78,9 @@ class Station:
     h: float | None = None
     fixed: bool = False
     deflection: Deflection = field(default_factory=Deflection)
+    sigma_m: float | None = None
+    convergence: StatedConvergence | None = None
+    planned: bool = False
 
     @property
     def has_grid_position(self) -> bool:
@@ -115,6 +130,8 @@ class OrientationSession:
     target : str or None
     azimuth_known : float or None
         Known grid azimuth of the line [rad].
+    azimuth_known_sigma : float or None
+        Its standard deviation [rad]; None: from the coordinates' sigma.
     constant_choice : str or None
         Overrides the instrument's.
     date : datetime.date or None
@@ -128,6 +145,10 @@ class OrientationSession:
         Reading resolution [rad].
     eccentric : Eccentric or None
     effects : tuple of AdoptedEffect
+    convergence : StatedConvergence or None
+        As the record prints it.
+    recentred : bool
+        The instrument was centred anew for this session: its centring error is its own.
     override : tuple of (str, object)
         Further keys of the table, kept for those who know them.
     """
@@ -141,6 +162,7 @@ class OrientationSession:
     book_path: str = ""
     target: str | None = None
     azimuth_known: float | None = None
+    azimuth_known_sigma: float | None = None
     constant_choice: str | None = None
     date: date | None = None
     order: float | None = None
@@ -150,6 +172,8 @@ class OrientationSession:
     resolution: float | None = None
     eccentric: Eccentric | None = None
     effects: tuple[AdoptedEffect, ...] = ()
+    convergence: StatedConvergence | None = None
+    recentred: bool = False
     override: tuple[tuple[str, object], ...] = ()
 
 
@@ -164,19 +188,28 @@ class Centring:
 
 @dataclass(frozen=True, slots=True)
 class ResultWarning:
-    """Something a reader of the result must know; data, not a log line."""
+    """Something a reader of the result must know; data, not a log line.
+
+    Parameters
+    ----------
+    code, text : str
+    subject : Subject or None
+        What it is about; None: the project or the file as a whole.
+    """
 
     code: str
     text: str
+    subject: Subject | None = None
 
-    def to_dict(self) -> dict[str, str]:
+    def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""
-        return {"code": self.code, "text": self.text}
+        subject = None if self.subject is None else self.subject.to_dict()
+        return {"code": self.code, "text": self.text, "subject": subject}
 
 
 @dataclass(frozen=True, slots=True)
 class Project:
-    """A whole project as read.
+    """A whole project as read: everything that its folder says, once.
 
     Parameters
     ----------
@@ -184,20 +217,32 @@ class Project:
     stations : tuple of Station
     instruments : tuple of Instrument
     sessions : tuple of OrientationSession
+    traverses : tuple of Traverse
+        With the rows of their books.
     crs : str or None
         As written.
+    grid : MineGrid or None
+        The mine's own grid; wins over ``crs``, which is then its base.
+    station_sigma_m : float or None
+        Standard deviation of a station's coordinates where it states none [m].
     angle_unit : AngleUnit
+    angle_typing : str
+        How the screens take a plain number for dms: ``separated`` or ``packed``.
     rule_book : str or None
-        Id of an installed rule book or a path.
+        Id of an installed rule book or a path, as written.
+    rules : RuleBook or None
+        The rule book itself; None where none is named.
     centring : Centring
         For sights of orientation sessions.
     digest : str
         sha256 over project.toml and every file it names.
+    filing : Filing
+        Closings, and what was changed since.
     path : str
-        Folder, for messages only.
+        Folder; empty for a project that was never on a disk.
     tables : mapping
-        The parsed TOML of tables that other readers interpret (traverse, penetration, shaft,
-        sensor_log), by name.
+        The parsed TOML of what has no typed field yet, by name.
+    sensor_logs : tuple of SensorLogEntry
     warnings : tuple of ResultWarning
     """
 
@@ -205,13 +250,20 @@ class Project:
     stations: tuple[Station, ...] = ()
     instruments: tuple[Instrument, ...] = ()
     sessions: tuple[OrientationSession, ...] = ()
+    traverses: tuple[Traverse, ...] = ()
     crs: str | None = None
+    grid: MineGrid | None = None
+    station_sigma_m: float | None = None
     angle_unit: AngleUnit = AngleUnit.DMS
+    angle_typing: str = "separated"
     rule_book: str | None = None
+    rules: RuleBook | None = None
     centring: Centring = field(default_factory=Centring)
     digest: str = ""
+    filing: Filing = field(default_factory=Filing)
     path: str = ""
     tables: dict[str, object] = field(default_factory=dict)
+    sensor_logs: tuple[SensorLogEntry, ...] = ()
     warnings: tuple[ResultWarning, ...] = ()
 
     def station(self, name: str) -> Station:
@@ -225,6 +277,10 @@ class Project:
     def session(self, identity: str) -> OrientationSession:
         """Session by id."""
         return next(item for item in self.sessions if item.id == identity)
+
+    def traverse(self, name: str) -> Traverse:
+        """Traverse by name."""
+        return next(item for item in self.traverses if item.name == name)
 
 
 def grid_bearing(start: Station, end: Station) -> float | None:

@@ -7,6 +7,7 @@ constants have modules of their own; this one has the names of all.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -19,6 +20,7 @@ from surveyapp.domain.session_result import (
     TapeZeroResult,
     TargetResult,
 )
+from surveyapp.domain.subject import Subject
 
 __all__ = [
     "Reference",
@@ -34,6 +36,8 @@ __all__ = [
     "Determination",
     "ConstantResult",
     "Check",
+    "Subject",
+    "Verdicts",
     "BudgetLine",
     "LineResult",
     "OrientationResult",
@@ -57,9 +61,11 @@ class Check:
     passed : bool or None
         None where the project's data cannot answer.
     where : str
-        Session, line or instrument.
+        Session, line or instrument in words, for people only.
     text : str
         One sentence in the trade's words.
+    subject : Subject
+        What it is about: who belongs to a session or a line is told by this alone.
     """
 
     rule: str
@@ -71,6 +77,7 @@ class Check:
     unit: str = ""
     where: str = ""
     text: str = ""
+    subject: Subject = field(kw_only=True)
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""
@@ -84,6 +91,44 @@ class Check:
             "pass": self.passed,
             "where": self.where,
             "text": self.text,
+            "subject": self.subject.to_dict(),
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Verdicts:
+    """Every check of a project, in order; a sequence of checks.
+
+    Parameters
+    ----------
+    checks : tuple of Check
+    warnings : tuple of ResultWarning
+        Sessions that are left out because they are still being observed.
+    """
+
+    checks: tuple[Check, ...]
+    warnings: tuple[ResultWarning, ...] = ()
+
+    def __iter__(self) -> Iterator[Check]:
+        return iter(self.checks)
+
+    def __len__(self) -> int:
+        return len(self.checks)
+
+    def __getitem__(self, place: int) -> Check:
+        return self.checks[place]
+
+    @property
+    def passed(self) -> bool:
+        """Whether every confirmed limit and test is met."""
+        return not any(check.confirmed and check.passed is False for check in self.checks)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON, schema ``surveyapp.check/1``."""
+        return {
+            "schema": "surveyapp.check/1",
+            "checks": [check.to_dict() for check in self.checks],
+            "warnings": [warning.to_dict() for warning in self.warnings],
         }
 
 
@@ -126,6 +171,11 @@ class LineResult:
     budget: tuple[BudgetLine, ...]
     existing_azimuth: float | None = None
     distance_m: float | None = None
+
+    @property
+    def subject(self) -> Subject:
+        """The line as a value: its two stations and the instrument."""
+        return Subject.line(self.station, self.target, self.instrument)
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""

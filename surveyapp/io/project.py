@@ -1,41 +1,43 @@
-"""A project folder: project.toml and every book that it names, read strictly and as a whole.
+"""A project folder: project.toml and everything that it names, read strictly, once, as a whole.
 
-All problems of project.toml and of all books come in one error. Tables that other readers
-interpret (traverses, penetration, shafts, sensor logs) are passed on as they were parsed. Nothing
-is written here, except that a torn last line of a book is moved aside while nobody else writes.
+All problems of project.toml and of all books come in one error. Nothing is written here, except
+that a torn last line of a book is moved aside while nobody else writes.
 """
 
 from __future__ import annotations
 
-import hashlib
-import os
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
-from surveyapp.domain.project import Centring, OrientationSession, Project, ResultWarning
-from surveyapp.domain.readings import FieldBook
+from surveyapp.domain.closing import Filing
+from surveyapp.domain.project import Centring, Project, ResultWarning
+from surveyapp.domain.rulebook import RuleBook
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.cards import is_path
-from surveyapp.io.fieldbook.reading import interpret, move_tail_aside, split_tail
 from surveyapp.io.files import decode, read_bytes, shown, shown_path
+from surveyapp.io.filing.seals import changed_after_closing, read_filing
+from surveyapp.io.grid_tables import read_mine_grid, refuse_two_convergences
+from surveyapp.io.project_files import PROJECT_FILE, ProjectFiles, inside
 from surveyapp.io.project_tables import (
     Names,
     read_centring,
     read_instrument,
-    read_session,
     read_station,
     unique,
 )
+from surveyapp.io.rulebooks import read_rule_book
+from surveyapp.io.sensor_logs.tables import read_sensor_logs
+from surveyapp.io.session_books import read_sessions
 from surveyapp.io.tables import Findings, Table, parse_toml
+from surveyapp.io.traverse.book import read_traverses
 from surveyapp_models.angles import AngleUnit
 
-PROJECT_FILE: Final = "project.toml"
 FORMAT: Final = 1
-RAW_TABLES: Final = ("traverse", "penetration", "shaft", "sensor_log")
-"""Tables that their own readers interpret."""
+RAW_TABLES: Final = ("penetration", "shaft")
+"""Tables that have no typed field of the project yet: passed on as they were parsed."""
 
 ANGLE_TYPING: Final = ("separated", "packed")
 """How the screens take a plain number for dms: not at all, or as degrees.MMSS."""
@@ -43,45 +45,7 @@ ANGLE_TYPING: Final = ("separated", "packed")
 _HEADER = re.compile(r"^[ \t]*\[\[[ \t]*([A-Za-z_-]+)[ \t]*\]\]", re.MULTILINE)
 
 
-@dataclass(slots=True)
-class _Folder:
-    """The files of a project, each read once.
-
-    Parameters
-    ----------
-    path : Path
-        The folder.
-    findings : Findings
-    contents : dict of str to bytes or None
-        Every file that is part of the digest by its name as written; None where it is absent.
-    """
-
-    path: Path
-    findings: Findings
-    contents: dict[str, bytes | None] = field(default_factory=dict)
-
-    def read(self, name: str, where: str) -> bytes | None:
-        """Bytes of a file, None with a problem noted."""
-        if name not in self.contents:
-            try:
-                self.contents[name] = read_bytes(self.path / name, where=where)
-            except SurveyError as error:
-                self.findings.absorb(error)
-                self.contents[name] = None
-        return self.contents[name]
-
-    def digest(self) -> str:
-        """sha256 of names, lengths and contents, ordered by name, project.toml first."""
-        total = hashlib.sha256()
-        for name in sorted(self.contents, key=lambda n: (n != PROJECT_FILE, n)):
-            data = self.contents[name]
-            size = "absent" if data is None else str(len(data))
-            total.update(f"{name}\0{size}\0".encode("utf-8", errors="replace"))
-            total.update(data or b"")
-        return total.hexdigest()
-
-
-def read_project(folder: Path, *, repair: bool | None = None) -> Project:
+def read_project(folder: Path, *, repair: bool | None = None, observing: bool = False) -> Project:
     """Read a project folder.
 
     Parameters
@@ -91,32 +55,58 @@ def read_project(folder: Path, *, repair: bool | None = None) -> Project:
     repair : bool or None
         Whether a torn last line of a book is moved aside. By default it is while no other
         program holds the project's lock; the holder of the lock passes True.
+    observing : bool
+        Read it for observing a session: a rule book or a traverse that cannot be used is a warning
+        then (``rule_book_unusable``, ``traverse_unusable``) and does not keep a surveyor from the
+        instrument.
 
     Returns
     -------
     Project
-        With stations, instruments, sessions and their books, and a digest: sha256 over
-        project.toml and then every file it names (field books without a torn tail, traverse
-        books, shaft books, sensor logs that are not pinned by their own sha256, own cards and
-        rule books), ordered by the name as written, each as name, NUL, length, NUL, content.
+        Stations, instruments, sessions and traverses with their books, rule book and closings, and
+        a digest: sha256 over project.toml and then every file it names (field books without a torn
+        tail, traverse books, shaft books, sensor logs that are not pinned by their own sha256, own
+        cards and rule books), ordered by the name as written, each as name, NUL, length, NUL,
+        content.
 
     Raises
     ------
     SurveyError
-        With every problem of project.toml and of all its books.
+        With every problem of project.toml and of all its books; in a closed project also with what
+        was changed since it was closed.
     """
+    try:
+        return _read(folder, repair=repair, observing=observing)
+    except SurveyError as error:
+        raise SurveyError([*changed_after_closing(folder), *error.problems]) from None
+
+
+def _read(folder: Path, *, repair: bool | None, observing: bool) -> Project:
     findings = Findings()
-    files = _Folder(folder, findings)
+    files = ProjectFiles(folder, findings, observing=observing)
     text = _project_text(files)
     data = parse_toml(text, where=PROJECT_FILE)
     _check_format(data)
-    top = Table(data, PROJECT_FILE, findings)
-    project = _read_tables(top, files, _header_lines(text), repair)
+    top = _Top(Table(data, PROJECT_FILE, findings), files, _header_lines(text))
+    project = _read_tables(top, repair)
     findings.raise_if_any()
     return replace(project, digest=files.digest(), warnings=tuple(findings.warnings))
 
 
-def _project_text(files: _Folder) -> str:
+@dataclass(frozen=True, slots=True)
+class _Top:
+    """project.toml as parsed, the files beside it, and the lines of its table headers."""
+
+    table: Table
+    files: ProjectFiles
+    lines: Mapping[str, list[int]]
+
+    def tables(self, kind: str) -> list[Table]:
+        """Every [[kind]] table."""
+        return self.table.tables(kind, self.lines.get(kind, ()))
+
+
+def _project_text(files: ProjectFiles) -> str:
     folder, path = files.path, files.path / PROJECT_FILE
     hint = "surveyapp new DIR makes a project"
     try:
@@ -168,166 +158,93 @@ def _header_lines(text: str) -> dict[str, list[int]]:
     return lines
 
 
-def _read_tables(
-    top: Table, files: _Folder, lines: Mapping[str, list[int]], repair: bool | None
-) -> Project:
-    top.get("format")
-    unit = AngleUnit(top.choice("angle_unit", [str(u) for u in AngleUnit]) or AngleUnit.DMS)
-    findings = files.findings
-    stations = [read_station(t) for t in top.tables("station", lines.get("station", ()))]
-    cards = top.tables("instrument", lines.get("instrument", ()))
+def _read_tables(top: _Top, repair: bool | None) -> Project:
+    table, files = top.table, top.files
+    table.get("format")
+    unit = AngleUnit(table.choice("angle_unit", [str(u) for u in AngleUnit]) or AngleUnit.DMS)
+    stations = [read_station(t, unit) for t in top.tables("station")]
+    cards = top.tables("instrument")
     instruments = [read_instrument(t, files.path) for t in cards]
     names = Names(
-        stations=unique([s.name for s in stations], "station", findings),
-        instruments=unique([i.id for i in instruments], "instrument", findings),
+        stations=unique([s.name for s in stations], "station", files.findings),
+        instruments=unique([i.id for i in instruments], "instrument", files.findings),
         known_constants=frozenset(str(t.get("id")) for t in cards if "constant" in t),
         unit=unit,
     )
-    sessions = _read_sessions(top, files, names, (lines.get("orientation", ()), repair))
-    for instrument, table in zip(instruments, cards, strict=True):
-        names.check_choice(table, instrument.constant_choice, instrument.id)
-        if instrument.card.id and is_path(str(table.get("card"))):
-            files.read(str(table.get("card")), table.where)
-    rule_book = top.text("rule_book")
-    if rule_book is not None and is_path(rule_book):
-        files.read(rule_book, f"{PROJECT_FILE}, rule_book")
-    tables: dict[str, object] = {k: top.get(k) for k in RAW_TABLES if k in top}
-    typing = top.choice("angle_typing", ANGLE_TYPING)
-    if typing is not None:
-        tables["angle_typing"] = typing
-    _read_other_files(top, files, lines)
+    sessions = read_sessions(top.tables("orientation"), files, names, repair=repair)
+    for instrument, card in zip(instruments, cards, strict=True):
+        names.check_choice(card, instrument.constant_choice or "pooled", instrument.id)
+        if instrument.card.id and is_path(str(card.get("card"))):
+            files.read(str(card.get("card")), card.where)
+    rule_book, rules = _rules(top)
+    traverses = read_traverses(top.tables("traverse"), files, names.stations, unit)
+    _read_other_files(top)
+    crs = table.text("crs", multiline=True)
+    refuse_two_convergences(stations, sessions, files.findings)
+    sensor_logs = read_sensor_logs(table, top.lines.get("sensor_log", ()))
     project = Project(
-        name=top.text("name") or files.path.resolve().name,
+        name=table.text("name") or files.path.resolve().name,
         stations=tuple(stations),
         instruments=tuple(instruments),
         sessions=tuple(sessions),
-        crs=top.text("crs", multiline=True),
+        traverses=traverses,
+        crs=crs,
+        grid=read_mine_grid(table, unit, crs),
+        station_sigma_m=table.number("station_sigma_m", low=0.0, high=1e3),
         angle_unit=unit,
+        angle_typing=table.choice("angle_typing", ANGLE_TYPING) or ANGLE_TYPING[0],
         rule_book=rule_book,
-        centring=read_centring(top) or Centring(),
+        rules=rules,
+        centring=read_centring(table) or Centring(),
+        filing=_filing(files),
         path=str(files.path),
-        tables=tables,
+        tables={key: table.get(key) for key in RAW_TABLES if key in table},
+        sensor_logs=sensor_logs,
     )
-    top.get("note")
-    tables.update({key: top.data[key] for key in top.unread()})
-    top.warn_unknown(*RAW_TABLES)
+    table.get("note")
+    table.warn_unknown(*RAW_TABLES)
     return project
 
 
-def _read_sessions(
-    top: Table, files: _Folder, names: Names, options: tuple[Sequence[int], bool | None]
-) -> list[OrientationSession]:
-    """Sessions with their books."""
-    lines, repair = options
-    sessions = []
-    for table in top.tables("orientation", lines):
-        session = read_session(table, names)
-        book = _session_book(table, session.book_path, files, (names.unit, repair))
-        names.check_targets(table, book, session.book_path)
-        sessions.append(replace(session, book=book))
-    unique([s.id for s in sessions], "orientation", files.findings)
-    _warn_shared_books([s.book_path for s in sessions], files.findings)
-    return sessions
-
-
-def _session_book(
-    table: Table, name: str, files: _Folder, options: tuple[AngleUnit, bool | None]
-) -> FieldBook:
-    """Book of a session; problems are noted, an unreadable one is empty."""
-    empty = FieldBook((), ())
-    unit, repair = options
-    findings = files.findings
-    if not name or not inside(name, table):
-        return empty
-    data = files.read(name, table.where)
-    if data is None:
-        return empty
+def _rules(top: _Top) -> tuple[str | None, RuleBook | None]:
+    """Name and content of the rule book."""
+    name = top.table.text("rule_book")
+    if name is None:
+        return None, None
+    files, where = top.files, f"{PROJECT_FILE}, rule_book"
     try:
-        text, tail = split_tail(data, where=name)
-        files.contents[name] = data[: len(data) - len(tail)]
-        book, odd = interpret(text, angle_unit=unit, where=name)
+        if is_path(name):
+            files.contents[name] = None
+            files.contents[name] = read_bytes(files.path / name, where=where)
+        return name, read_rule_book(name, base=files.path)
     except SurveyError as error:
-        findings.absorb(error)
-        return empty
-    for column in odd:
-        text = f"{name}: the column {shown(column)} is not known and was not used"
-        findings.warnings.append(ResultWarning("unknown_column", text))
-    if not book.rows:
-        text = f"{name}: the book of {table.where} has no reading yet"
-        findings.warnings.append(ResultWarning("empty_book", text))
-    if not tail:
-        return book
-    moved = _repair(files.path, name, (len(data), tail), repair)
-    text = f"{name}: the last line has no newline and does not count: {shown(_torn(tail))}" + (
-        f"; it was moved to {name}.torn" if moved else ""
-    )
-    findings.warnings.append(ResultWarning("torn_tail", text))
-    return replace(book, torn_tail=_torn(tail))
+        if files.observing:
+            text = error.problems[0].what
+            files.findings.warnings.append(ResultWarning("rule_book_unusable", text))
+        else:
+            files.findings.absorb(error)
+        return name, None
 
 
-def _torn(tail: bytes) -> str:
-    return tail.decode("utf-8", errors="replace")
+def _filing(files: ProjectFiles) -> Filing:
+    """Closings of the folder; an unreadable ledger is a problem."""
+    try:
+        return read_filing(files.path)
+    except SurveyError as error:
+        if not files.observing:
+            files.findings.absorb(error)
+        return Filing()
 
 
-def _repair(folder: Path, name: str, torn: tuple[int, bytes], repair: bool | None) -> bool:
-    if repair is False:
-        return False
-    size, tail = torn
-    if repair:
-        return move_tail_aside(folder / name, size=size, tail=tail)
-    from surveyapp.io.filing.lock import ProjectLock
-
-    with ProjectLock(folder) as lock:
-        return lock.writable and move_tail_aside(folder / name, size=size, tail=tail)
-
-
-def inside(name: str, table: Table) -> bool:
-    """Whether a path stays in the project folder; notes a problem where it does not."""
-    path = os.path.normpath(name.replace("\\", "/"))
-    if Path(path).is_absolute() or path == ".." or path.startswith("../"):
-        table.problem(
-            "the book lies outside of the project folder",
-            name,
-            "a path below the project folder",
-            "copy it into observations/",
-        )
-        return False
-    return True
-
-
-def _read_other_files(top: Table, files: _Folder, lines: Mapping[str, list[int]]) -> None:
-    """Take the files of other tables into the digest."""
-    for kind, key in (("traverse", "book"), ("shaft", "book"), ("sensor_log", "file")):
-        for table in top.tables(kind, lines.get(kind, ())):
+def _read_other_files(top: _Top) -> None:
+    """Take the files of tables without a typed field into the digest."""
+    for kind, key in (("shaft", "book"), ("sensor_log", "file")):
+        for table in top.tables(kind):
             name = table.text(key)
             if name is None:
                 continue
             if key == "book":
                 if inside(name, table):
-                    files.read(name, table.where)
+                    top.files.read(name, table.where)
             elif "sha256" not in table:
-                _read_log(name, table, files)
-
-
-def _read_log(name: str, table: Table, files: _Folder) -> None:
-    """Digest of a sensor log that nobody pinned; a missing one is a warning here."""
-    digest = hashlib.sha256()
-    try:
-        path = files.path / name
-        if not path.is_file():
-            raise FileNotFoundError(name)
-        with path.open("rb") as stream:
-            while block := stream.read(1 << 20):
-                digest.update(block)
-    except (OSError, ValueError):
-        files.contents[name] = None
-        text = f"{table.where}: the file {shown(name)} cannot be read"
-        files.findings.warnings.append(ResultWarning("missing_file", text))
-        return
-    files.contents[name] = digest.digest()
-
-
-def _warn_shared_books(paths: list[str], findings: Findings) -> None:
-    for path in sorted({p for p in paths if p and paths.count(p) > 1}):
-        text = f"{PROJECT_FILE}: several sessions name the book {path}: it counts for each of them"
-        findings.warnings.append(ResultWarning("shared_book", text))
+                top.files.read_log(name, table)

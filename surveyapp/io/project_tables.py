@@ -29,12 +29,13 @@ from surveyapp.errors import Problem, nearest_names
 from surveyapp.io.adopted_effects import read_effect
 from surveyapp.io.cards import CARD_KEYS, load_card
 from surveyapp.io.files import shown
+from surveyapp.io.grid_tables import read_convergence
 from surveyapp.io.tables import Findings, Table
 from surveyapp_models.angles import ARCSEC, AngleUnit
 
 METHODS: Final = ("tracking", "amplitude", "transit", "automatic")
 PURPOSES: Final = ("calibration", "survey")
-CHOICES: Final = ("pooled", "interpolated", "nearest", "known")
+CHOICES: Final = ("predicted", "pooled", "interpolated", "nearest", "known")
 
 _GRID_LIMIT_M: Final = 1e8
 _HEIGHT_LIMITS_M: Final = (-12000.0, 12000.0)
@@ -120,7 +121,7 @@ def unique(names: Sequence[str], kind: str, findings: Findings) -> tuple[str, ..
     return tuple(dict.fromkeys(n for n in names if n))
 
 
-def read_station(table: Table) -> Station:
+def read_station(table: Table, unit: AngleUnit) -> Station:
     """One [[station]]: positions as e/n, y_west/x_south or lat/lon, all optional."""
     name = table.text("name", required=True) or ""
     e, n = _pair(table, ("e", "n"), (_GRID_LIMIT_M, _GRID_LIMIT_M))
@@ -145,6 +146,9 @@ def read_station(table: Table) -> Station:
         h=table.number("h", low=_HEIGHT_LIMITS_M[0], high=_HEIGHT_LIMITS_M[1]),
         fixed=table.boolean("fixed"),
         deflection=_deflection(table),
+        sigma_m=table.number("sigma_m", low=0.0, high=1e3),
+        convergence=read_convergence(table, unit),
+        planned=table.boolean("planned"),
     )
     table.get("note")
     table.warn_unknown()
@@ -216,7 +220,7 @@ def read_instrument(table: Table, folder: Path) -> Instrument:
         card=card or InstrumentCard("", "", "suspended", ""),
         serial=_serial(table),
         known_constant=known,
-        constant_choice=table.text("constant_choice") or "pooled",
+        constant_choice=table.text("constant_choice") or None,
         effects=tuple(read_effect(t) for t in table.tables("effect")),
     )
     table.get("note")
@@ -244,6 +248,9 @@ def read_session(table: Table, names: Names) -> OrientationSession:
     azimuth = table.angle("azimuth_known", names.unit)
     if azimuth is not None and purpose is None and "purpose" not in table:
         table.problem("azimuth_known stands without purpose", "", " | ".join(PURPOSES))
+    sigma = table.number("azimuth_known_sigma_arcsec", low=0.0, high=36000.0)
+    if sigma is not None and azimuth is None and purpose == "survey":
+        table.problem("azimuth_known_sigma_arcsec stands in a survey session", "", "a calibration")
     resolution = table.number("resolution_arcsec", high=36000.0, positive=True)
     session = OrientationSession(
         id=identity,
@@ -255,6 +262,7 @@ def read_session(table: Table, names: Names) -> OrientationSession:
         book_path=table.text("book", required=True) or "",
         target=target or None,
         azimuth_known=azimuth,
+        azimuth_known_sigma=None if sigma is None else sigma * ARCSEC,
         constant_choice=choice,
         date=table.date("date"),
         order=table.number("order"),
@@ -264,6 +272,8 @@ def read_session(table: Table, names: Names) -> OrientationSession:
         resolution=None if resolution is None else resolution * ARCSEC,
         eccentric=_eccentric(table, names.unit),
         effects=tuple(read_effect(t) for t in table.tables("effect")),
+        convergence=read_convergence(table, names.unit),
+        recentred=table.boolean("recentred"),
         override=_session_override(table),
     )
     table.warn_unknown("rounds", "sigma_arcsec", "level_division_arcsec")

@@ -31,7 +31,6 @@ from surveyapp.observation.doubts import TURNING, Typed, of_this_book, questions
 from surveyapp.observation.session import NewRow, SessionDesk
 from surveyapp_models.angles import wrap_two_pi
 
-TYPING_KEY: Final = "angle_typing"
 PACKED: Final = "packed"
 LARGEST: Final = {
     Dimension.DIVISIONS: ("div", 1000.0),
@@ -212,7 +211,7 @@ def understand(
     if quantity is Dimension.NONE:
         return _note(text, what, stamp)
     if quantity is Dimension.ANGLE:
-        packed = observation.project.tables.get(TYPING_KEY) == PACKED
+        packed = observation.project.angle_typing == PACKED
         near = what.near
         unit = observation.project.angle_unit
         entry = complete_angle(reading, unit=unit, packed=packed, near=near)

@@ -33,6 +33,7 @@ from surveyapp.io.fieldbook.clock import SessionClock, Stamp, local_now, steady_
 from surveyapp.io.fieldbook.problems import edited_problem, moment_problems, read_only_problem
 from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.io.filing.seals import is_closed
+from surveyapp.io.project import read_project
 
 FARTHEST: Final = 10.0
 """Periods beyond which a countdown is none: its moments stand on another clock than the session."""
@@ -115,7 +116,7 @@ class SessionDesk:
         self._lock = ProjectLock(self.folder)
         self.closed = is_closed(self.folder, session)
         try:
-            self.project = api.open_project(self.folder)
+            self.project = read_project(self.folder, observing=True)
             self._step: Step | None = None
             self._half_swing: tuple[float | None] | None = None
             self._clocks = now, steady
@@ -325,15 +326,13 @@ class SessionDesk:
 
     def aim(self) -> Aim:
         """Target of this session: its own wanted interval, else what the rule book tells."""
-        from surveyapp.io.project_checks import project_rule_book
-
         own = target_of(self.session, None)
         if own is not None:
             return Aim(own)
-        try:
-            book = project_rule_book(self.project)
-        except SurveyError as error:
-            return Aim(None, self.project.rule_book or "", error.problems[0].what)
+        unusable = [w.text for w in self.project.warnings if w.code == "rule_book_unusable"]
+        if unusable:
+            return Aim(None, self.project.rule_book or "", unusable[0])
+        book = self.project.rules
         return Aim(target_of(self.session, book), "" if book is None else book.id)
 
     def half_swing_s(self) -> float | None:
@@ -386,14 +385,15 @@ def progress(project: Project, session: str) -> Progress:
     session : str
         Id of the session.
     """
-    from surveyapp.core.geodesy import open_grid, position_of
+    from surveyapp.core.geodesy import grid_of, position_of
     from surveyapp.core.observing.by_method import progress_of
+    from surveyapp.workflows.computing import generator_of
 
     item = project.session(session)
-    grid = open_grid(project.crs) if project.crs is not None else None
+    grid = grid_of(project)
     position = position_of(project.station(item.station), grid)
     card = project.instrument(item.instrument).card
-    rng = api.generator_of(project)
+    rng = generator_of(project)
     return progress_of(item, card, rng, latitude=position.latitude)
 
 
@@ -405,13 +405,10 @@ def orient_observed(project: Project) -> OrientationResult:
     SurveyError
         If what has enough readings cannot be oriented.
     """
-    kept = api.without_unfinished(project)
-    try:
-        return api.orient(project)
-    except SurveyError:
-        if kept.sessions:
-            raise
-    return api.orient(kept)
+    from surveyapp.workflows.computing import judged, oriented
+
+    found = oriented(project, all_if_none=False)
+    return judged(found, software=api.SOFTWARE).result
 
 
 def write_record(folder: api.Folder) -> str:

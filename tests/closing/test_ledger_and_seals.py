@@ -17,9 +17,10 @@ from hypothesis import strategies as st
 
 from surveyapp import api
 from surveyapp.cli.main import main
+from surveyapp.core.checks.filing_checks import filing_checks
 from surveyapp.errors import SurveyError
 from surveyapp.io.filing.ledger import LEDGER_FILE, append_entry, parse_ledger, read_ledger
-from surveyapp.io.filing.seals import is_closed, project_file_names, seal_checks
+from surveyapp.io.filing.seals import is_closed, project_file_names, read_filing
 from surveyapp.io.template import create_project
 from surveyapp.io.tomltext import atomic_write
 from surveyapp.observation.session import SessionDesk
@@ -279,7 +280,7 @@ def test_a_torn_tail_is_tolerated_and_moved_aside(folder: Path) -> None:
     with (folder / LEDGER_FILE).open("ab") as stream:
         stream.write(b'{"at":"2026')
     assert len(read_ledger(folder).entries) == 1
-    (tail,) = [c for c in seal_checks(folder) if c.rule == "ledger.tail"]
+    (tail,) = [c for c in filing_checks(read_filing(folder)) if c.rule == "ledger.tail"]
     assert (tail.passed, tail.confirmed) == (False, False)
     append_entry(folder, "diagnosis", {"n": 2}, at="2026-01-03", software="s")
     ledger = read_ledger(folder)

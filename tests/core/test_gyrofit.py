@@ -79,7 +79,7 @@ def test_fit_equals_lmfit() -> None:
     assert sigma == pytest.approx(peer.params["n"].stderr, rel=1e-3)
 
 
-@settings(max_examples=100, derandomize=True)
+@settings(max_examples=100, deadline=None, derandomize=True)
 @given(
     north=st.floats(-100.0, 100.0),
     amplitude=st.floats(500.0, 20000.0),

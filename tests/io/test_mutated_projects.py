@@ -77,10 +77,17 @@ eccentric = { distance_m = 0.1, direction = "20-00-00" }
 book = "r.csv"
 [[traverse]]
 name = "t"
-book = "r.csv"
+book = "t.csv"
 [[sensor_log]]
 id = "s"
 file = "r.csv"
+"""
+TRAVERSE = """\
+kind,at,from,to,value,unit,sigma,sigma_unit,set,hi,ht,note
+angle,A,B,B,90-00-00,dms,7,arcsec,1,,,
+distance,A,,B,100.0,,2+2,mm+ppm,,,,
+zenith,A,,B,91-00-00,,10,arcsec,,1.5,1.6,steep
+gyro,A,,B,,,,,,,,
 """
 CARD = """\
 id = "own"
@@ -171,8 +178,8 @@ def outcome(folder: Path) -> str:
     return "read"
 
 
-VALID = {"project.toml": TOML, "r.csv": BOOK, "own.toml": CARD}
-TARGETS = st.sampled_from([*["project.toml"] * 4, *["r.csv"] * 4, "own.toml"])
+VALID = {"project.toml": TOML, "r.csv": BOOK, "t.csv": TRAVERSE, "own.toml": CARD}
+TARGETS = st.sampled_from([*["project.toml"] * 4, *["r.csv"] * 3, *["t.csv"] * 2, "own.toml"])
 COUNTS = {"read": 0, "refused": 0}
 
 

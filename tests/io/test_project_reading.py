@@ -105,7 +105,7 @@ def make(folder: Path, toml: str = TOML, book: str = BOOK) -> Path:
     (folder / "observations").mkdir(parents=True, exist_ok=True)
     (folder / "project.toml").write_text(toml, encoding="utf-8")
     (folder / "observations" / "r1.csv").write_text(book, encoding="utf-8")
-    (folder / "observations" / "main.csv").write_text("kind\n", encoding="utf-8")
+    (folder / "observations" / "main.csv").write_text("kind,at,to,value\n", encoding="utf-8")
     return folder
 
 
@@ -136,7 +136,9 @@ def test_every_key_arrives_in_si(tmp_path: Path) -> None:
     assert (third.latitude, third.longitude) == pytest.approx(
         (math.radians(-26.19), math.radians(28.03))
     )
-    assert set(project.tables) == {"traverse", "sensor_log", "penetration"}
+    assert set(project.tables) == {"penetration"}
+    assert [item.name for item in project.traverses] == ["main"]
+    assert [item.id for item in project.sensor_logs] == ["far"]
 
 
 def test_the_instrument_holds_card_override_and_effect(tmp_path: Path) -> None:
@@ -169,7 +171,7 @@ def test_the_session_holds_everything(tmp_path: Path) -> None:
     assert override["centring"] == Centring(0.001, 0.003, known=True)
     assert [e.id for e in session.effects] == ["midpoint_drift"]
     assert len(session.book.live) == 3
-    assert [w.code for w in project.warnings] == ["unknown_key"]
+    assert [w.code for w in project.warnings] == ["unknown_key", "empty_book"]
     assert "weather" in project.warnings[0].text
 
 
@@ -180,7 +182,6 @@ def test_unknown_keys_name_the_nearest_and_do_no_harm(tmp_path: Path) -> None:
     assert "Did you mean observer" in texts[0]
     project = changed(tmp_path, "[penetration]", "[penetratoin]")
     assert any("Did you mean penetration" in w.text for w in project.warnings)
-    assert "penetratoin" in project.tables
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from surveyapp.core.checks.traverse_checks import forward_back
 from surveyapp.core.network import adjust
 from surveyapp.core.network.bowditch import CompassInput, compass_adjust, compass_rule
 from surveyapp.core.network.closures import network_closures
@@ -16,13 +17,13 @@ from surveyapp.core.network.fieldchecks import (
     carried_azimuths,
     closure_measures,
     ellipse_measures,
-    forward_back,
     gyro_measures,
     repeated_angles,
     repeated_traverse,
-    side_lengths,
+    side_measures,
 )
 from surveyapp.domain.observations import Observation, ObservationKind
+from surveyapp.domain.subject import Subject
 from surveyapp.domain.traverse import GyroConstant, Network, NetworkPoint, Status
 
 K = ObservationKind
@@ -259,13 +260,13 @@ def test_forward_and_back_and_lengths_of_sides() -> None:
     network = square((0, 0, 0, 0), (0, 0, 0, 0))
     back = Observation(K.DISTANCE, "B", "A", 100.02, 0.002)
     again = replace(network, observations=(*network.observations, back))
-    (check,) = forward_back(again)
+    (check,) = forward_back(again, Subject.of("traverse", "main"))
     assert check.value == pytest.approx(20.0)
     assert check.limit == pytest.approx(3 * math.hypot(2.0, 2.0))
     assert check.passed is False
-    short, long = side_lengths(network, shortest_m=60.0, longest_m=90.0)
-    assert (short.passed, long.passed) == (True, False)
-    assert side_lengths(network, shortest_m=None, longest_m=None)[0].passed is None
+    short, long = side_measures(network)
+    assert short.value == pytest.approx(100.0)
+    assert long.value == pytest.approx(100.0)
 
 
 def test_relative_ellipses_are_measured_for_the_rule_book() -> None:

@@ -11,10 +11,10 @@ from surveyapp import api
 from surveyapp.cli.main import main
 from surveyapp.core.network import adjust
 from surveyapp.core.network.centring import angle_centring, direction_centring
+from surveyapp.core.network.traverse_network import network_of
 from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.traverse import GyroConstant, OrientedLine, Status
 from surveyapp.errors import SurveyError
-from surveyapp.io.traverse.book import network_of
 
 K = ObservationKind
 ARC = math.pi / 648000.0

@@ -7,7 +7,7 @@ import math
 
 import pypdf
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from surveyapp.report.blocks import Document, Heading, KeyValues, Label, Line, Table
@@ -23,6 +23,7 @@ from surveyapp_models.angles import ARCSEC
 COLUMN = st.tuples(st.floats(5.0, 900.0), st.floats(0.05, 1.0))
 
 
+@settings(deadline=None, derandomize=True)
 @given(st.lists(COLUMN, min_size=1, max_size=12))
 def test_columns_fill_the_page_and_never_leave_it(columns: list[tuple[float, float]]) -> None:
     natural = [width for width, _ in columns]
@@ -50,6 +51,7 @@ def test_runs_change_the_face_where_the_script_changes() -> None:
     assert runs("서", (LATIN, HAN)) == [("latin", MISSING)]
 
 
+@settings(deadline=None, derandomize=True)
 @given(st.text(max_size=40))
 def test_runs_lose_no_character(text: str) -> None:
     assert sum(len(run) for _, run in runs(text, (LATIN, HAN))) == len(text)
@@ -59,6 +61,7 @@ def test_language_decides_the_last_resort() -> None:
     assert [language_of(t) for t in ("潼金矿", "東京のかな", "서울")] == ["zh", "ja", "ko"]
 
 
+@settings(deadline=None, derandomize=True)
 @given(st.lists(st.floats(-1e6, 1e6), max_size=20), st.booleans())
 def test_an_axis_holds_its_values_and_has_ticks(values: list[float], centred: bool) -> None:
     made = axis(values, about_zero=centred)

@@ -13,10 +13,12 @@ from typing import Final
 from surveyapp.core.geodesy import Grid
 from surveyapp.core.orientation.lines import LineGeometry
 from surveyapp.core.swing.sights import SightSet
-from surveyapp.domain.project import OrientationSession, ResultWarning
+from surveyapp.domain.mine_grid import StatedConvergence
+from surveyapp.domain.project import OrientationSession, Project, ResultWarning, Station
 from surveyapp.domain.results import LineResult
+from surveyapp.domain.subject import Subject
 from surveyapp.errors import Problem, SurveyError
-from surveyapp_models.angles import wrap_pi
+from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, wrap_pi
 
 MAX_COLLIMATION: Final = math.radians(0.2)
 """No theodolite is as badly adjusted; a slip of one degree in one of four sights makes 0.25. A
@@ -25,6 +27,10 @@ SHORTEST_LINE_M: Final = 1.0
 """Below it lies the shortest focusing distance: two stations at one place."""
 LARGEST_CONSTANT: Final = math.radians(1.0)
 """Printed constants are minutes of arc (10'51" at Johannesburg); more is more likely a slip."""
+SIGMAS_OF_CONVERGENCE: Final = 4.0
+"""A stated convergence further from the computed one is another one (6 in 100000 by chance)."""
+LEAST_CONVERGENCE_LIMIT: Final = 0.1 * ARCSEC
+"""Old tables were computed by series to their last digit."""
 LONGEST_LINE_M: Final = 50_000.0
 """Nobody sights further with a gyro-theodolite: coordinates in the wrong order or grid do."""
 
@@ -74,6 +80,40 @@ def refuse_one_place(geometry: Mapping[tuple[str, str], LineGeometry]) -> None:
         raise SurveyError(problems.values())
 
 
+def stated_convergence(session: OrientationSession, station: Station) -> StatedConvergence | None:
+    """The convergence stated for a session: its own, else that of its station."""
+    return session.convergence if session.convergence is not None else station.convergence
+
+
+def refuse_other_convergence(
+    project: Project, geometry: Mapping[tuple[str, str], LineGeometry]
+) -> None:
+    """Refuse a printed convergence that is not the one of the grid: one of the two is wrong.
+
+    Raises
+    ------
+    SurveyError
+        With all such stations together.
+    """
+    problems = {}
+    for (name, _), line in geometry.items():
+        session = project.session(name)
+        stated = stated_convergence(session, project.station(session.station))
+        if stated is None or line.convergence is None:
+            continue
+        apart = wrap_pi(stated.value - line.convergence)
+        if abs(apart) > max(SIGMAS_OF_CONVERGENCE * stated.sigma, LEAST_CONVERGENCE_LIMIT):
+            problems[session.station] = Problem(
+                what=f"the convergence at {session.station} is given twice and differently",
+                where=f"session {session.id}",
+                found=f'stated {apart * RHO_ARCSEC:+.2f}" off the one of the grid',
+                expected="the same, or only one of the two",
+                hint="Is it the right crs, and has the stated convergence its right sign?",
+            )
+    if problems:
+        raise SurveyError(problems.values())
+
+
 def place_warnings(lines: Sequence[LineGeometry], grid: Grid | None) -> list[ResultWarning]:
     """Warn of lines too long to be sighted, and of stations beside the area of the grid."""
     warnings: dict[str, ResultWarning] = {}
@@ -84,7 +124,9 @@ def place_warnings(lines: Sequence[LineGeometry], grid: Grid | None) -> list[Res
                 f"line {name} is {line.distance_m / 1000.0:.0f} km long by its coordinates: "
                 "are they in the right order, and in this grid?"
             )
-            warnings[name] = ResultWarning("line_long", text)
+            warnings[name] = ResultWarning(
+                "line_long", text, Subject.side(line.start.name, line.end.name)
+            )
         at = line.position
         if grid is None or at.latitude is None or at.longitude is None:
             continue
@@ -94,7 +136,8 @@ def place_warnings(lines: Sequence[LineGeometry], grid: Grid | None) -> list[Res
                 f"{math.degrees(at.longitude):.2f}) lies beside the area of {grid.name}: are the "
                 "coordinates in the right order, and is it the right crs?"
             )
-            warnings[f"{line.start.name} of {name}"] = ResultWarning("outside_grid", text)
+            subject = Subject.of("station", line.start.name)
+            warnings[f"{line.start.name} of {name}"] = ResultWarning("outside_grid", text, subject)
     return list({warning.text: warning for warning in warnings.values()}.values())
 
 
@@ -107,7 +150,7 @@ def azimuth_warnings(line: LineResult) -> list[ResultWarning]:
             f"{name}: the instrument constant is {math.degrees(line.constant):+.4f} degrees: is "
             "the known azimuth right, and were sight and target the right ones?"
         )
-        warnings.append(ResultWarning("constant_large", text))
+        warnings.append(ResultWarning("constant_large", text, line.subject))
     if line.grid_azimuth is not None and line.existing_azimuth is not None:
         apart = wrap_pi(line.grid_azimuth.value - line.existing_azimuth)
         if abs(apart) > LARGEST_CONSTANT:
@@ -115,5 +158,5 @@ def azimuth_warnings(line: LineResult) -> list[ResultWarning]:
                 f"{name}: the grid azimuth lies {math.degrees(apart):+.4f} degrees off the "
                 "coordinates: was this the target, and are the coordinates in the right order?"
             )
-            warnings.append(ResultWarning("far_from_coordinates", text))
+            warnings.append(ResultWarning("far_from_coordinates", text, line.subject))
     return warnings

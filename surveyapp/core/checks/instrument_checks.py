@@ -20,6 +20,7 @@ from surveyapp.core.swing.sights import moments
 from surveyapp.core.swing.tape_zero import mean_level
 from surveyapp.domain.readings import Place, Reading, ReadingKind
 from surveyapp.domain.results import Check
+from surveyapp.domain.subject import Subject
 from surveyapp_models.angles import RHO_ARCSEC, wrap_pi
 from surveyapp_models.gyro.coefficients import torsion_ratio_from_clampings
 from surveyapp_models.gyro.estimates import Estimate
@@ -82,6 +83,7 @@ def _period_check(orientation: Orientation, item: ReducedSession) -> list[Check]
             unit="s",
             where=session.id,
             text=text,
+            subject=Subject.session(session.id),
         )
     ]
 
@@ -132,6 +134,7 @@ def _supply_checks(item: ReducedSession) -> list[Check]:
                 unit="%",
                 where=item.session.id,
                 text=f"supply between {min(values):g} and {max(values):g} {unit}",
+                subject=Subject.session(item.session.id),
             )
         )
     return checks
@@ -171,6 +174,7 @@ def _tilt_check(orientation: Orientation, item: ReducedSession) -> list[Check]:
                 f"tape zero changed by {measured:+.3f} div, the level across by "
                 f'{tilt * RHO_ARCSEC:+.1f}", which explains {factor * tilt:+.3f} div'
             ),
+            subject=Subject.session(item.session.id),
         )
     ]
 
@@ -249,6 +253,7 @@ def _clamping_checks(orientation: Orientation) -> list[Check]:
                 passed=passed,
                 where=f"{station}-{target}",
                 text=text,
+                subject=Subject.line(station, target, instrument),
             )
         )
     return checks

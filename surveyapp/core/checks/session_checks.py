@@ -7,6 +7,8 @@ because they compare the data with themselves. Each alarms by chance in 1 % of c
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from itertools import product
 
 from surveyapp.core.orientation.instrument_constant import InstrumentConstant, agreement_text
 from surveyapp.core.orientation.lines import OrientedLine
@@ -17,6 +19,7 @@ from surveyapp.core.swing.session import ReducedSession, SightSigma
 from surveyapp.core.swing.sights import drift_probability
 from surveyapp.core.uncertain import Uncertain
 from surveyapp.domain.results import Check
+from surveyapp.domain.subject import Subject
 from surveyapp_models.angles import RHO_ARCSEC, wrap_pi
 
 SIGNIFICANCE = 0.01
@@ -60,6 +63,7 @@ def _fit_checks(item: ReducedSession) -> list[Check]:
                 passed=test.passed,
                 where=item.session.id,
                 text=f"{words}: the run {verdict}",
+                subject=Subject.session(item.session.id),
             )
         )
     return checks
@@ -91,6 +95,7 @@ def _fit_summary(item: ReducedSession) -> list[Check]:
             unit="arcsec",
             where=item.session.id,
             text=text,
+            subject=Subject.session(item.session.id),
         )
     ]
 
@@ -120,6 +125,7 @@ def _tape_zero_checks(orientation: Orientation, item: ReducedSession) -> list[Ch
                     unit="div",
                     where=f"{item.session.id} {name}",
                     text=f"tape zero {name} {rest.value_div:+.3f} div",
+                    subject=Subject.session(item.session.id),
                 )
             )
     return checks
@@ -147,6 +153,7 @@ def _sight_checks(item: ReducedSession, sigma: SightSigma, level: float) -> list
                 unit="arcsec",
                 where=f"{item.session.id} to {target.target}",
                 text="sights after minus before: the tripod may have turned; it is taken out",
+                subject=Subject.session(item.session.id, target.target),
             )
         )
     return checks
@@ -170,15 +177,17 @@ def _constant_checks(constant: InstrumentConstant) -> list[Check]:
                     unit="arcsec",
                     where=constant.instrument.id,
                     text=agreement_text(test, what),
+                    subject=Subject.of("instrument", constant.instrument.id),
                 )
             )
     pooled = constant.pooled
     if pooled is not None and constant.known is not None:
-        checks.append(_compare("constant.known", pooled - constant.known, constant.instrument.id))
+        subject = Subject.of("instrument", constant.instrument.id)
+        checks.append(_compare("constant.known", pooled - constant.known, subject))
     return checks
 
 
-def _compare(rule: str, difference: Uncertain, where: str) -> Check:
+def _compare(rule: str, difference: Uncertain, subject: Subject, *, text: str = "") -> Check:
     limit = student_quantile(1.0 - 0.5 * SIGNIFICANCE, max(difference.dof, 1.0)) * difference.sigma
     value = abs(wrap_pi(difference.value))
     return Check(
@@ -189,10 +198,9 @@ def _compare(rule: str, difference: Uncertain, where: str) -> Check:
         confirmed=True,
         passed=value <= limit if math.isfinite(limit) else None,
         unit="arcsec",
-        where=where,
-        text="determined now against known beforehand"
-        if rule == "constant.known"
-        else "forward against back, the two ends of one line",
+        where=subject.text,
+        text=text or "determined now against known beforehand",
+        subject=subject,
     )
 
 
@@ -213,18 +221,37 @@ def _line_checks(line: OrientedLine) -> list[Check]:
                 f"{len(line.result.sessions)} sessions of one line, scatter against their own "
                 f"sigmas (p = {test.probability:.3g})"
             ),
+            subject=line.result.subject,
         )
     ]
 
 
 def _forward_back(orientation: Orientation) -> list[Check]:
-    """A-B against B-A: the grid azimuths differ by half a circle but for arc-to-chord in both."""
+    """A-B against B-A: the grid azimuths differ by half a circle but for arc-to-chord in both.
+
+    Every line one way is compared with every line the other way, whatever instruments oriented
+    them: an error that both ends of a side share with one instrument shows against another.
+    """
+    ways: dict[tuple[str, str], list[OrientedLine]] = {}
+    for line in orientation.lines:
+        ways.setdefault((line.result.station, line.result.target), []).append(line)
     checks = []
-    by_name = {(line.result.station, line.result.target): line for line in orientation.lines}
-    for (station, target), line in by_name.items():
-        back = by_name.get((target, station))
-        if back is None or station > target or line.grid is None or back.grid is None:
+    for (station, target), lines in ways.items():
+        if station > target:
             continue
-        difference = (line.grid - back.grid).shifted(math.pi)
-        checks.append(_compare("line.forward_back", difference, f"{station}-{target}"))
+        pairs = list(product(lines, ways.get((target, station), ())))
+        for line, back in pairs:
+            if line.grid is not None and back.grid is not None:
+                difference = (line.grid - back.grid).shifted(math.pi)
+                checks.append(_there_and_back(line, back, difference, alone=len(pairs) == 1))
     return checks
+
+
+def _there_and_back(
+    line: OrientedLine, back: OrientedLine, difference: Uncertain, *, alone: bool
+) -> Check:
+    own, other = line.result.instrument, back.result.instrument
+    names = own if own == other else f"{own} there, {other} back"
+    text = f"forward against back, the two ends of one line ({names})"
+    check = _compare("line.forward_back", difference, line.result.subject, text=text)
+    return check if alone else replace(check, where=f"{check.where} ({names})")

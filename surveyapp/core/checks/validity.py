@@ -16,6 +16,7 @@ from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.domain.results import Check
+from surveyapp.domain.subject import Subject
 
 
 def validity_checks(orientation: Orientation) -> tuple[Check, ...]:
@@ -50,7 +51,7 @@ def session_day(session: OrientationSession) -> dt.date | None:
 def _check(
     rule: str,
     card: InstrumentCard,
-    where: str,
+    session: str,
     value: float | None,
     limit: float,
     *,
@@ -66,8 +67,9 @@ def _check(
         confirmed=True,
         passed=passed,
         unit=unit,
-        where=where,
+        where=session,
         text=text,
+        subject=Subject.session(session),
     )
 
 

@@ -16,16 +16,18 @@ from surveyapp.core.network.sights import Sighted, sighted
 from surveyapp.core.tolerance import Measured
 from surveyapp.domain.adjustment import AdjustmentResult, Closure
 from surveyapp.domain.observations import Observation, ObservationKind
-from surveyapp.domain.results import Check
+from surveyapp.domain.subject import Subject
 from surveyapp.domain.traverse import Network, Status
 from surveyapp_models.angles import RHO_ARCSEC, wrap_pi
 
 K = ObservationKind
-SIGMAS = 3.0
-"""Repeated measurements of one quantity are expected within this many sigmas."""
+NETWORK = Subject.of("traverse", "")
+"""A network that has no name of its own: all traverses together, or a file."""
 
 
-def closure_measures(closures: Sequence[Closure], *, class_name: str = "") -> list[Measured]:
+def closure_measures(
+    closures: Sequence[Closure], *, class_name: str = "", subject: Subject = NETWORK
+) -> list[Measured]:
     """Angular and relative closures of loops and of routes between fixed points.
 
     Parameters
@@ -33,6 +35,8 @@ def closure_measures(closures: Sequence[Closure], *, class_name: str = "") -> li
     closures : sequence of Closure
     class_name : str
         The class of the traverse in the rule book's own words.
+    subject : Subject
+        The traverse.
 
     Returns
     -------
@@ -48,19 +52,37 @@ def closure_measures(closures: Sequence[Closure], *, class_name: str = "") -> li
             value = abs(item.angular) * RHO_ARCSEC
             text = f"{item.kind}, {item.angles} angles"
             found.append(
-                Measured("angular_closure_closed", value, where, text, variables, class_name)
+                Measured(
+                    "angular_closure_closed",
+                    value,
+                    where,
+                    text,
+                    variables,
+                    class_name,
+                    subject=subject,
+                )
             )
         if item.linear_m and item.length_m:
             text = f"{item.kind}, {item.linear_m:.4f} m in {item.length_m:.1f} m"
             ratio = item.length_m / item.linear_m
             variables = {"n": float(item.angles), "L": item.length_m / 1000.0}
             found.append(
-                Measured("relative_closure_closed", ratio, where, text, variables, class_name)
+                Measured(
+                    "relative_closure_closed",
+                    ratio,
+                    where,
+                    text,
+                    variables,
+                    class_name,
+                    subject=subject,
+                )
             )
     return found
 
 
-def repeated_angles(observations: Sequence[Observation], *, class_name: str = "") -> list[Measured]:
+def repeated_angles(
+    observations: Sequence[Observation], *, class_name: str = "", subject: Subject = NETWORK
+) -> list[Measured]:
     """Angles that stand in the book more than once: the last one against the first.
 
     The check before a traverse is extended: its last angle is measured again.
@@ -80,13 +102,16 @@ def repeated_angles(observations: Sequence[Observation], *, class_name: str = ""
             "measured again",
             {"n": 2.0},
             class_name,
+            subject=subject,
         )
         for key, obs in first.items()
         if last[key] is not obs
     ]
 
 
-def repeated_traverse(first: Network, second: Network, *, class_name: str = "") -> list[Measured]:
+def repeated_traverse(
+    first: Network, second: Network, *, class_name: str = "", subject: Subject = NETWORK
+) -> list[Measured]:
     """An open traverse measured twice: sums of angles and ends of the routes against each other.
 
     Parameters
@@ -117,6 +142,7 @@ def repeated_traverse(first: Network, second: Network, *, class_name: str = "") 
             f"{n} angles together",
             {"n": float(n)},
             class_name,
+            subject=subject,
         )
     ]
     gap = abs(_end(one, route) - _end(two, route))
@@ -126,7 +152,15 @@ def repeated_traverse(first: Network, second: Network, *, class_name: str = "") 
         text = f"{gap:.4f} m in {length:.1f} m"
         ratio = length / gap
         measured.append(
-            Measured("relative_closure_repeated", ratio, where, text, variables, class_name)
+            Measured(
+                "relative_closure_repeated",
+                ratio,
+                where,
+                text,
+                variables,
+                class_name,
+                subject=subject,
+            )
         )
     return measured
 
@@ -277,7 +311,9 @@ def _compared(
     return CarriedAzimuth("-".join(start), "-".join(side), difference, math.sqrt(variance), count)
 
 
-def gyro_measures(network: Network, *, class_name: str = "") -> list[Measured]:
+def gyro_measures(
+    network: Network, *, class_name: str = "", subject: Subject = NETWORK
+) -> list[Measured]:
     """``gyro_against_traverse`` [arcsec] with n angles for every gyro side that angles reach."""
     return [
         Measured(
@@ -288,12 +324,15 @@ def gyro_measures(network: Network, *, class_name: str = "") -> list[Measured]:
             f"{2.0 * item.sigma * RHO_ARCSEC:.1f} arcsec (2 sigma)",
             {"n": float(item.angles)},
             class_name,
+            subject=subject,
         )
         for item in carried_azimuths(network)
     ]
 
 
-def ellipse_measures(result: AdjustmentResult, *, class_name: str = "") -> list[Measured]:
+def ellipse_measures(
+    result: AdjustmentResult, *, class_name: str = "", subject: Subject = NETWORK
+) -> list[Measured]:
     """``control_ellipse`` [m] of all neighbours, L their distance [km]."""
     places = {point.name: point for point in result.points}
     found = []
@@ -304,95 +343,39 @@ def ellipse_measures(result: AdjustmentResult, *, class_name: str = "") -> list[
         length = math.hypot(b.e - a.e, b.n - a.n) / 1000.0
         where = f"{item.start}-{item.end}"
         found.append(
-            Measured("control_ellipse", item.ellipse.a_m, where, "", {"L": length}, class_name)
+            Measured(
+                "control_ellipse",
+                item.ellipse.a_m,
+                where,
+                "",
+                {"L": length},
+                class_name,
+                subject=subject,
+            )
         )
     return found
 
 
-def forward_back(network: Network) -> list[Check]:
-    """Lengths measured from both ends: forward against back, judged by their sigmas."""
-    both: dict[tuple[str, str], dict[str, Observation]] = defaultdict(dict)
-    for obs in network.observations:
-        if obs.kind in (K.DISTANCE, K.SLOPE_DISTANCE):
-            both[min(obs.at, obs.to), max(obs.at, obs.to)].setdefault(obs.at, obs)
-    checks = []
-    for pair, ends in both.items():
-        if len(ends) < 2:
-            continue
-        a, b = ends[pair[0]], ends[pair[1]]
-        if a.kind is not b.kind or (a.hi, a.ht) != (b.ht, b.hi):
-            continue
-        value, limit = abs(a.value - b.value), SIGMAS * math.hypot(a.sigma, b.sigma)
-        checks.append(
-            Check(
-                rule="traverse.forward_back",
-                clause="3 sigma of the difference",
-                value=value * 1000.0,
-                limit=limit * 1000.0,
-                confirmed=True,
-                passed=value <= limit,
-                unit="mm",
-                where="-".join(pair),
-                text="length forward against back",
-            )
-        )
-    return checks
-
-
-def side_measures(network: Network, *, class_name: str = "") -> list[Measured]:
+def side_measures(
+    network: Network, *, class_name: str = "", subject: Subject = NETWORK
+) -> list[Measured]:
     """The shortest and the longest side of a traverse, for the limits of its class [m]."""
     lengths = sighted(network.observations).lengths
     if not lengths:
         return []
     ordered = sorted(lengths.items(), key=lambda item: item[1].value)
     return [
-        Measured(quantity, sight.value, "-".join(pair), quantity.replace("_", " "), {}, class_name)
+        Measured(
+            quantity,
+            sight.value,
+            "-".join(pair),
+            quantity.replace("_", " "),
+            {},
+            class_name,
+            subject=subject,
+        )
         for quantity, (pair, sight) in (
             ("shortest_side", ordered[0]),
             ("longest_side", ordered[-1]),
         )
     ]
-
-
-def side_lengths(
-    network: Network, *, shortest_m: float | None, longest_m: float | None, confirmed: bool = False
-) -> list[Check]:
-    """Sides outside the lengths that a class allows.
-
-    Parameters
-    ----------
-    network : Network
-    shortest_m, longest_m : float or None
-        Limits [m]; None = no limit.
-    confirmed : bool
-        Whether the limits are confirmed in a source.
-
-    Returns
-    -------
-    list of Check
-        One for the shortest and one for the longest side.
-    """
-    lengths = sighted(network.observations).lengths
-    if not lengths:
-        return []
-    ordered = sorted(lengths.items(), key=lambda item: item[1].value)
-    limits = (("shortest_side", ordered[0], shortest_m), ("longest_side", ordered[-1], longest_m))
-    checks = []
-    for rule, (pair, sight), limit in limits:
-        passed = None
-        if limit is not None:
-            passed = sight.value >= limit if rule == "shortest_side" else sight.value <= limit
-        checks.append(
-            Check(
-                rule=f"traverse.{rule}",
-                clause="length of sides of the class",
-                value=sight.value,
-                limit=limit,
-                confirmed=confirmed,
-                passed=passed,
-                unit="m",
-                where="-".join(pair),
-                text=rule.replace("_", " "),
-            )
-        )
-    return checks

@@ -7,12 +7,13 @@ the orientation that applies it: both must mean the same by a temperature, a lin
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
+from surveyapp.core.geodesy import Position
 from surveyapp.core.orientation.sequence import session_timestamp
 from surveyapp.core.swing.session import ReducedSession, TargetReduction
 from surveyapp.domain.project import OrientationSession
@@ -83,6 +84,28 @@ def circumstances(
         north_reading=None if north is None else north.value,
         running_s=_running(session),
     )
+
+
+def facts_of(
+    reduced: Sequence[ReducedSession], instrument: str, positions: Mapping[str, Position]
+) -> dict[tuple[str, str], Circumstances]:
+    """Circumstances of every gyro azimuth of one instrument, by session and target."""
+    places = [
+        (item, target)
+        for item in reduced
+        if item.session.instrument == instrument
+        for target in item.targets
+    ]
+    facts = in_blocks(
+        [
+            circumstances(item, target, latitude=positions[item.session.station].latitude)
+            for item, target in places
+        ]
+    )
+    return {
+        (item.session.id, target.target): fact
+        for (item, target), fact in zip(places, facts, strict=True)
+    }
 
 
 def block_names(days: Sequence[float | None]) -> list[str]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from surveyapp.core.geodesy import (
     Azimuth,
@@ -20,12 +20,16 @@ from surveyapp.core.geodesy import (
 from surveyapp.core.orientation.instrument_constant import Chosen
 from surveyapp.core.statistics.repeated import Consistency, consistency, weights_of
 from surveyapp.core.uncertain import Source, Uncertain, aligned, combine
+from surveyapp.domain.mine_grid import StatedConvergence
 from surveyapp.domain.project import Centring, Station, grid_bearing, grid_distance_m
 from surveyapp.domain.results import AngleResult, BudgetLine, LineResult, Reference
 from surveyapp_models.angles import wrap_two_pi
 
 NOTHING = 1e-18
 """Share of a variance that is rounding of the arithmetic and no source of error."""
+
+
+ZERO = Uncertain(0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +47,8 @@ class LineGeometry:
         [rad]; None without a grid (or, for the chord, without the target's position).
     distance_m : float or None
     from_south : bool
+    convergence_error : Uncertain
+        Zero with the uncertainty of the convergence: printed, or a rotation of the mine's grid.
     """
 
     start: Station
@@ -53,6 +59,7 @@ class LineGeometry:
     arc_to_chord: float | None
     distance_m: float | None
     from_south: bool
+    convergence_error: Uncertain = ZERO
 
     def deflection(self, azimuth: float) -> DeflectionTerm | None:
         """Deflection term at an azimuth [rad], None without a latitude."""
@@ -94,16 +101,24 @@ def line_geometry(
     grid: Grid | None,
     positions: Mapping[str, Position],
     zenith: float | None,
+    stated: StatedConvergence | None = None,
 ) -> LineGeometry:
     """Collect what position and grid say of a line.
 
-    The zenith angle is the one read, else from the station heights, else 90 degrees.
+    The zenith angle is the one read, else from the station heights, else 90 degrees; the
+    convergence is that of the grid, else the one that the record states.
     """
     at, to = positions[start.name], positions[end.name]
     convergence = chord = None
+    error = ZERO
     if grid is not None and at.latitude is not None and at.longitude is not None:
         convergence = grid.convergence(latitude=at.latitude, longitude=at.longitude)
         chord = arc_to_chord(grid, at, to)
+        if grid.frame.sigma > 0.0:
+            error = error.with_part(Source("rotation of the mine grid", "grid"), grid.frame.sigma)
+    elif stated is not None:
+        convergence = stated.value
+        error = error.with_part(Source("printed convergence", start.name), stated.sigma)
     distance = grid_distance_m(
         Station(start.name, e=at.e, n=at.n), Station(end.name, e=to.e, n=to.n)
     )
@@ -120,6 +135,7 @@ def line_geometry(
         arc_to_chord=chord,
         distance_m=distance,
         from_south=grid is not None and grid.directions_from_south,
+        convergence_error=error,
     )
 
 
@@ -128,7 +144,7 @@ def known_astronomic(geometry: LineGeometry, grid_azimuth: float, sigma: float) 
     if geometry.convergence is None:
         return None
     geodetic = grid_azimuth + geometry.convergence + (geometry.arc_to_chord or 0.0)
-    value = Uncertain(geodetic) + geometry.deflection_parts(geodetic)
+    value = Uncertain(geodetic) + geometry.deflection_parts(geodetic) + geometry.convergence_error
     if sigma > 0.0:
         line = f"{geometry.start.name}-{geometry.end.name}"
         value = value.with_part(Source("known azimuth", line), sigma)
@@ -242,7 +258,7 @@ def _on_grid(
         .without_deflection(deflection.value)
         .to_grid(convergence=geometry.convergence, arc_to_chord=geometry.arc_to_chord or 0.0)
     )
-    return Uncertain(moved.value, (true - deflection).parts)
+    return replace(true - deflection - geometry.convergence_error, value=moved.value)
 
 
 def budget(item: Uncertain, calibration_sessions: frozenset[str]) -> tuple[BudgetLine, ...]:

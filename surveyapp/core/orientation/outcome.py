@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
-from surveyapp.core.checks.instrument_checks import instrument_checks
-from surveyapp.core.checks.session_checks import statistical_checks
 from surveyapp.core.orientation.instrument_constant import InstrumentConstant
 from surveyapp.core.orientation.lines import angle_result
 from surveyapp.core.orientation.sequence import session_moments
@@ -22,60 +21,62 @@ from surveyapp.domain.results import (
     TapeZeroResult,
     TargetResult,
 )
+from surveyapp.domain.subject import Subject
 
 
 def outcome(
     orientation: Orientation,
+    checks: Sequence[Check],
     *,
     software: str,
     only: str | None = None,
-    more_checks: tuple[Check, ...] = (),
 ) -> OrientationResult:
     """Results of a computed orientation.
 
     Parameters
     ----------
     orientation : Orientation
+    checks : sequence of Check
+        Those that are shown.
     software : str
         Name and version for the head of the result.
     only : str or None
         Show this session alone.
-    more_checks : tuple of Check
-        Those of a rule book.
     """
     shown = [item for item in orientation.sessions if only is None or item.session.id == only]
-    checks = [
-        *statistical_checks(orientation),
-        *instrument_checks(orientation),
-        *more_checks,
-    ]
-    if only is not None:
-        ids = {item.session.id for item in orientation.sessions} - {only}
-        checks = [c for c in checks if not any(_names(c.where, other) for other in ids)]
     warnings = [*orientation.warnings]
     for item in shown:
         warnings += item.warnings
-    warnings += _loud(checks)
+    predicted = frozenset(
+        c.instrument.id for c in orientation.constants if c.choice == "predicted" and c.average
+    )
+    warnings += _loud(checks, predicted)
     return OrientationResult(
         project=orientation.project.name,
         software=software,
         input_sha256=orientation.project.digest,
         sessions=tuple(session_result(item) for item in shown),
         constants=tuple(constant_result(orientation, item) for item in orientation.constants),
-        lines=tuple(line.result for line in orientation.lines),
+        lines=tuple(line.result for line in orientation.shown_lines),
         checks=tuple(checks),
         warnings=tuple(warnings),
     )
 
 
-def _names(where: str, session: str) -> bool:
-    return where == session or where.startswith(f"{session} ")
+_CHOOSE = (
+    "; nothing is averaged silently: the pooled sigma contains the disagreement; "
+    "choose with constant_choice = pooled, nearest, interpolated or line:A-B"
+)
+_INSTEAD = (
+    "; the constant is predicted for each line, averaged over what may be behind it, and the "
+    "interval contains that"
+)
 
 
-def _loud(checks: list[Check]) -> list[ResultWarning]:
+def _loud(checks: Sequence[Check], predicted: frozenset[str]) -> list[ResultWarning]:
     """A run that the model does not fit, a constant that moved: said again as a warning."""
     codes = {"fit": "lack_of_fit", "constant": "constant_unstable", "line": "rounds_disagree"}
-    found: dict[tuple[str, str], list[str]] = {}
+    found: dict[tuple[str, Subject], list[str]] = {}
     for check in checks:
         family = check.rule.split(".")[0]
         if check.rule.startswith("fit."):
@@ -83,14 +84,11 @@ def _loud(checks: list[Check]) -> list[ResultWarning]:
         if check.passed is False and family in codes:
             text = check.text
             if check.rule == "constant.lines":
-                text += (
-                    "; nothing is averaged silently: the pooled sigma contains the disagreement; "
-                    "choose with constant_choice = pooled, nearest, interpolated or line:A-B"
-                )
-            found.setdefault((codes[family], check.where), []).append(text)
+                text += _INSTEAD if check.subject.instrument in predicted else _CHOOSE
+            found.setdefault((codes[family], check.subject), []).append(text)
     return [
-        ResultWarning(code, f"{where}: " + "; ".join(texts))
-        for (code, where), texts in found.items()
+        ResultWarning(code, f"{subject.text}: " + "; ".join(texts), subject)
+        for (code, subject), texts in found.items()
     ]
 
 
@@ -160,6 +158,8 @@ def target_result(item: TargetReduction) -> TargetResult:
 def constant_result(orientation: Orientation, constant: InstrumentConstant) -> ConstantResult:
     """The result of one instrument's constant."""
     value = constant.pooled if constant.pooled is not None else constant.known
+    if constant.choice == "predicted" and constant.average is not None:
+        value = constant.average
     calibrations = constant.calibrations
     keys = session_moments(orientation.project, constant.instrument.id)
     lines = []
@@ -184,7 +184,7 @@ def constant_result(orientation: Orientation, constant: InstrumentConstant) -> C
         interval95=value.interval95 if value is not None and finite else None,
         count=len(calibrations),
         stable=constant.stable,
-        choice=constant.instrument.constant_choice if calibrations or value is None else "known",
+        choice=constant.choice if calibrations or value is None else "known",
         by_line=tuple(lines),
         determinations=tuple(
             Determination(

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from surveyapp.core.checks.blunders import azimuth_warnings
 from surveyapp.core.orientation.calibration_sessions import centring_of, rounds_of
 from surveyapp.core.orientation.instrument_constant import Chosen, InstrumentConstant, choose
 from surveyapp.core.orientation.lines import LineGeometry, OrientedLine, Round, orient_line
+from surveyapp.core.orientation.predicted_constant import leaves_out
+from surveyapp.core.orientation.predicted_lines import Key, PredictedLine, survey_groups
 from surveyapp.core.orientation.sequence import SessionOrder, session_moments
 from surveyapp.core.statistics.repeated import RunScatter
 from surveyapp.core.swing.session import ReducedSession
@@ -16,73 +19,91 @@ from surveyapp.domain.project import Project, ResultWarning, Station, grid_dista
 from surveyapp.errors import Problem, SurveyError
 
 
-def oriented_lines(
-    project: Project,
-    reduced: Sequence[ReducedSession],
-    constants: Sequence[InstrumentConstant],
-    geometry: Mapping[tuple[str, str], LineGeometry],
-    scatters: Mapping[str, RunScatter],
-    stations: Mapping[str, Station],
-    only: str | None,
-) -> tuple[tuple[OrientedLine, ...], list[ResultWarning]]:
-    """Orient every line of the survey sessions; A-B and B-A are two lines.
+@dataclass(frozen=True, slots=True)
+class SurveyedLines:
+    """The reduced sessions of a project with what their lines need.
 
     Parameters
     ----------
-    only : str or None
-        Use this session alone.
-
-    Raises
-    ------
-    SurveyError
-        If a session asks for a constant that does not exist.
+    project : Project
+    reduced : sequence of ReducedSession
+    constants : sequence of InstrumentConstant
+    geometry : mapping
+        By session and target.
+    scatters : mapping
+        By instrument.
+    stations : mapping
+        By name, with positions in the grid.
     """
-    calibration_ids = frozenset(s.id for s in project.sessions if s.purpose == "calibration")
-    by_instrument = {constant.instrument.id: constant for constant in constants}
-    orders = {identity: _order(project, identity) for identity in by_instrument}
-    groups: dict[tuple[str, str, str], list[tuple[ReducedSession, Uncertain]]] = {}
-    for item in reduced:
-        session = item.session
-        if session.purpose != "survey" or (only is not None and session.id != only):
-            continue
-        for target in item.targets:
-            if target.gyro_azimuth is not None:
-                key = (session.station, target.target, session.instrument)
-                groups.setdefault(key, []).append((item, target.gyro_azimuth))
-    lines: list[OrientedLine] = []
-    warnings: list[ResultWarning] = []
-    problems: list[Problem] = []
-    for (_, target_name, instrument), members in groups.items():
-        try:
-            rounds = [
-                _round(
-                    item,
-                    azimuth,
-                    (by_instrument[instrument], scatters[instrument]),
-                    orders[instrument],
-                    stations=stations,
-                )
-                for item, azimuth in members
-            ]
-        except SurveyError as error:
-            problems += error.problems
-            continue
-        first = members[0][0].session
-        lines.append(
-            orient_line(
-                geometry[first.id, target_name],
-                rounds,
-                instrument=instrument,
-                centring=centring_of(project, first),
-                calibration_sessions=calibration_ids,
-                agreement_of=[azimuth for _, azimuth in members],
+
+    project: Project
+    reduced: Sequence[ReducedSession]
+    constants: Sequence[InstrumentConstant]
+    geometry: Mapping[tuple[str, str], LineGeometry]
+    scatters: Mapping[str, RunScatter]
+    stations: Mapping[str, Station]
+
+    def oriented(
+        self, predicted: Mapping[Key, PredictedLine], only: str | None = None
+    ) -> tuple[tuple[OrientedLine, ...], list[ResultWarning]]:
+        """Orient every line of the survey sessions; A-B and B-A are two lines.
+
+        Parameters
+        ----------
+        predicted : mapping of line to PredictedLine
+            Of ``predicted_lines``, for the same sessions.
+        only : str or None
+            Use this session alone.
+
+        Raises
+        ------
+        SurveyError
+            If a session asks for a constant that does not exist.
+        """
+        known = {
+            constant.instrument.id: (
+                constant,
+                self.scatters[constant.instrument.id],
+                _order(self.project, constant.instrument.id),
             )
-        )
-        warnings += [warning for item in rounds for warning in item.chosen.warnings]
-        warnings += _line_warnings(lines[-1])
-    if problems:
-        raise SurveyError(problems)
-    return tuple(lines), warnings
+            for constant in self.constants
+        }
+        calibrated = frozenset(s.id for s in self.project.sessions if s.purpose == "calibration")
+        lines: list[OrientedLine] = []
+        warnings: list[ResultWarning] = []
+        problems: list[Problem] = []
+        for key, members in survey_groups(self.reduced, only).items():
+            _, target, instrument = key
+            try:
+                rounds = [
+                    _round(
+                        item,
+                        azimuth,
+                        known[instrument],
+                        predicted.get(key),
+                        stations=self.stations,
+                    )
+                    for item, azimuth in members
+                ]
+            except SurveyError as error:
+                problems += error.problems
+                continue
+            first = members[0][0].session
+            lines.append(
+                orient_line(
+                    self.geometry[first.id, target],
+                    rounds,
+                    instrument=instrument,
+                    centring=centring_of(self.project, first),
+                    calibration_sessions=calibrated,
+                    agreement_of=[azimuth for _, azimuth in members],
+                )
+            )
+            warnings += [warning for item in rounds for warning in item.chosen.warnings]
+            warnings += _line_warnings(lines[-1])
+        if problems:
+            raise SurveyError(problems)
+        return tuple(lines), warnings
 
 
 def _order(project: Project, instrument: str) -> SessionOrder:
@@ -95,25 +116,33 @@ def _order(project: Project, instrument: str) -> SessionOrder:
 def _round(
     item: ReducedSession,
     azimuth: Uncertain,
-    known: tuple[InstrumentConstant, RunScatter],
-    order: SessionOrder,
+    known: tuple[InstrumentConstant, RunScatter, SessionOrder],
+    predicted: PredictedLine | None,
     *,
     stations: Mapping[str, Station],
 ) -> Round:
     session = item.session
-    constant, scatter = known
+    constant, scatter, order = known
+    choice = session.constant_choice or constant.choice
+    if choice == "predicted" and predicted is not None:
+        chosen = Chosen(predicted.constant, "predicted")
+        own = predicted.scatter.applied(azimuth, session.id)
+        return Round(session.id, own, chosen, rounds_of(item))
 
     def distance_to(name: str) -> float | None:
         return grid_distance_m(stations[session.station], stations[name])
 
-    chosen: Chosen = choose(
+    chosen = choose(
         constant,
-        session.constant_choice or constant.instrument.constant_choice,
+        choice,
         moment=order.moment(session.id),
         block=order.block(session.id),
         distance_to=distance_to,
         where=f"session {session.id}",
     )
+    if predicted is not None and chosen.value is not None and choice != "known":
+        told = leaves_out(choice, chosen.value, predicted.constant, f"session {session.id}")
+        chosen = replace(chosen, warnings=(*chosen.warnings, told))
     return Round(session.id, scatter.applied(azimuth, session.id), chosen, rounds_of(item))
 
 
@@ -123,14 +152,14 @@ def _line_warnings(line: OrientedLine) -> list[ResultWarning]:
     warnings = []
     if result.true_azimuth is None:
         text = f"{name}: the instrument {result.instrument} has no constant: no true azimuth"
-        warnings.append(ResultWarning("no_constant", text))
+        warnings.append(ResultWarning("no_constant", text, result.subject))
     if result.convergence is None:
         text = f"{name}: no crs or no position: no convergence, no grid azimuth"
-        warnings.append(ResultWarning("no_grid", text))
+        warnings.append(ResultWarning("no_grid", text, result.subject))
     elif result.arc_to_chord is None:
         text = f"{name}: the target has no position: arc-to-chord taken as zero"
-        warnings.append(ResultWarning("arc_to_chord_unknown", text))
+        warnings.append(ResultWarning("arc_to_chord_unknown", text, result.subject))
     if result.distance_m is None:
         text = f"{name}: its length is not known: centring is not in its sigma"
-        warnings.append(ResultWarning("centring_unknown", text))
+        warnings.append(ResultWarning("centring_unknown", text, result.subject))
     return [*warnings, *azimuth_warnings(result)]

@@ -8,7 +8,7 @@ pre-orientation, which must enter no mean: among others such a session counts as
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Final
 
@@ -17,6 +17,7 @@ from surveyapp.core.swing.session import collect_sights, known_target, sight_tar
 from surveyapp.core.swing.tracking import MIN_POINTS
 from surveyapp.domain.project import OrientationSession, Project, ResultWarning, Station
 from surveyapp.domain.readings import ReadingKind
+from surveyapp.domain.subject import Subject
 from surveyapp.errors import SurveyError
 
 CODE: Final = "session_unfinished"
@@ -53,9 +54,7 @@ def _passages(session: OrientationSession) -> str:
     return "" if triples_of(after) else "no three transits of one division in a row"
 
 
-def without_unfinished(
-    project: Project, *, keep: Collection[str] = (), closed: Callable[[str], bool]
-) -> Project:
+def without_unfinished(project: Project, *, keep: Collection[str] = ()) -> Project:
     """Project without its unfinished sessions, a warning for each.
 
     Parameters
@@ -63,13 +62,12 @@ def without_unfinished(
     project : Project
     keep : collection of str
         Ids of sessions that are asked for by name: they stay, and their error is told.
-    closed : callable
-        Whether a session is closed and signed: then nothing more will come, and it stays.
 
     Returns
     -------
     Project
-        Possibly without any session; the same object where nothing is left out.
+        Possibly without any session; the same object where nothing is left out. A session that is
+        closed and signed stays: nothing more will come.
     """
     stations = {station.name: station for station in project.stations}
     missing = {
@@ -78,13 +76,17 @@ def without_unfinished(
         if session.id not in keep
         and (text := lacking(session))
         and _valid(session, stations)
-        and not closed(session.id)
+        and not project.filing.is_closed(session.id)
     }
     if not missing:
         return project
     kept = tuple(item for item in project.sessions if item.id not in missing)
     warnings = [
-        ResultWarning(CODE, f"session {name} is left out, it is not finished: {text}")
+        ResultWarning(
+            CODE,
+            f"session {name} is left out, it is not finished: {text}",
+            Subject.session(name),
+        )
         for name, text in missing.items()
     ]
     return replace(project, sessions=kept, warnings=(*project.warnings, *warnings))

@@ -12,14 +12,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from surveyapp.core.checks.adopted_checks import check_adopted
-from surveyapp.core.checks.blunders import place_warnings, refuse_one_place
+from surveyapp.core.checks.blunders import (
+    place_warnings,
+    refuse_one_place,
+    refuse_other_convergence,
+    stated_convergence,
+)
 from surveyapp.core.geodesy import (
     MAX_LATITUDE_DEG,
     WARN_LATITUDE_DEG,
     Grid,
     Position,
+    grid_of,
     latitude_problem,
-    open_grid,
     position_of,
 )
 from surveyapp.core.orientation.adopted import apply_adopted
@@ -34,8 +39,9 @@ from surveyapp.core.orientation.lines import (
     line_geometry,
 )
 from surveyapp.core.orientation.pooled_weights import with_pooled_weights
+from surveyapp.core.orientation.predicted_lines import predicted_lines
 from surveyapp.core.orientation.sequence import session_moments, surveys_before
-from surveyapp.core.orientation.survey_lines import oriented_lines
+from surveyapp.core.orientation.survey_lines import SurveyedLines
 from surveyapp.core.statistics.repeated import RunScatter, run_scatter
 from surveyapp.core.swing.goodness import Judge
 from surveyapp.core.swing.run_model import RunModel
@@ -57,12 +63,17 @@ from surveyapp.domain.project import (
     ResultWarning,
     Station,
 )
+from surveyapp.domain.subject import Subject
 from surveyapp.errors import Problem, SurveyError
 
 
 @dataclass(frozen=True, slots=True)
 class Orientation:
-    """A computed project, contributions still apart: results and checks are made from it."""
+    """A computed project, contributions still apart: results and checks are made from it.
+
+    ``lines`` are those of all survey sessions; ``shown_lines`` those of the one session that was
+    asked for, from it alone, and the same as ``lines`` where none was.
+    """
 
     project: Project
     grid: Grid | None
@@ -72,6 +83,7 @@ class Orientation:
     scatters: Mapping[str, RunScatter]
     constants: tuple[InstrumentConstant, ...]
     lines: tuple[OrientedLine, ...]
+    shown_lines: tuple[OrientedLine, ...]
     warnings: tuple[ResultWarning, ...]
 
 
@@ -93,7 +105,8 @@ def orient_project(
     estimator : str or None
         For all sessions; None for the default of each method.
     only : str or None
-        Orient lines with this survey session alone; the constants come from all calibrations.
+        Orient lines with this survey session alone as well; the constants come from all
+        calibrations.
     run_model : callable or None
         Estimates runs with adopted effects.
 
@@ -102,7 +115,7 @@ def orient_project(
     SurveyError
         With the problems of all sessions together.
     """
-    grid = open_grid(project.crs) if project.crs is not None else None
+    grid = grid_of(project)
     positions = {station.name: position_of(station, grid) for station in project.stations}
     stations = {
         station.name: _with_position(station, positions[station.name])
@@ -123,6 +136,7 @@ def orient_project(
     }
     geometry = _geometries(reduced, stations, grid, positions)
     refuse_one_place(geometry)
+    refuse_other_convergence(project, geometry)
     warnings += place_warnings(list(geometry.values()), grid)
     constants = []
     for instrument in project.instruments:
@@ -131,7 +145,14 @@ def orient_project(
         )
         warnings += more
         constants.append(determine(instrument, calibrations))
-    lines, more = oriented_lines(project, reduced, constants, geometry, scatters, stations, only)
+    known, predicted, more = predicted_lines(reduced, constants, positions, None, {})
+    warnings += more
+    surveyed = SurveyedLines(project, reduced, known, geometry, scatters, stations)
+    lines, more = surveyed.oriented(predicted)
+    shown = lines
+    if only is not None:
+        predicted = predicted_lines(reduced, constants, positions, only, {})[1]
+        shown, more = surveyed.oriented(predicted, only)
     warnings += more
     return Orientation(
         project,
@@ -140,8 +161,9 @@ def orient_project(
         measured,
         sigmas,
         scatters,
-        tuple(constants),
+        known,
         lines,
+        shown,
         tuple(warnings),
     )
 
@@ -225,14 +247,15 @@ def _reduce_one(
     )
     if not targets:
         text = f"session {session.id}: no sight of a target: gyro north only, no line"
-        warnings.append(ResultWarning("no_line", text))
+        warnings.append(ResultWarning("no_line", text, Subject.session(session.id)))
     for target in targets:
         if target.sights is not None and target.sights.collimation is None:
             text = (
                 f"session {session.id}: {target.target} was sighted in one face only: "
                 "the collimation error stays in the line"
             )
-            warnings.append(ResultWarning("one_face", text))
+            subject = Subject.session(session.id, target.target)
+            warnings.append(ResultWarning("one_face", text, subject))
     return ReducedSession(session, reduction, targets, (*reduction.warnings, *warnings))
 
 
@@ -245,7 +268,7 @@ def _latitude_warnings(
             f"session {session.id}: the latitude of {session.station} is not known: "
             "card values hold for their own latitude"
         )
-        return [ResultWarning("latitude_unknown", text)]
+        return [ResultWarning("latitude_unknown", text, Subject.session(session.id))]
     degrees = abs(math.degrees(latitude))
     limit = MAX_LATITUDE_DEG if allowed is None else math.degrees(allowed)
     if degrees > limit:
@@ -264,7 +287,7 @@ def _latitude_warnings(
             f"session {session.id}: latitude {math.degrees(latitude):.2f} degrees: the "
             f"meridian-seeking moment is {math.cos(latitude):.0%} of that at the equator"
         )
-        return [ResultWarning("latitude_high", text)]
+        return [ResultWarning("latitude_high", text, Subject.session(session.id))]
     return []
 
 
@@ -308,5 +331,6 @@ def _geometries(
                 grid=grid,
                 positions=positions,
                 zenith=zenith,
+                stated=stated_convergence(session, stations[session.station]),
             )
     return result

@@ -14,6 +14,7 @@ from surveyapp.core.simulate.project import (
     project_truth,
     simulate_reversal_project,
 )
+from surveyapp.core.simulate.rate import recipes as rate_recipes
 from surveyapp.core.simulate.specification import (
     RUN_EFFECTS,
     Effect,
@@ -26,6 +27,7 @@ from surveyapp.errors import Problem, SurveyError, nearest_names
 KINDS: Final[dict[str, tuple[EffectKind, ...]]] = {
     "reversal-run": RUN_EFFECTS,
     "campaign": CAMPAIGN_EFFECTS,
+    **{kind: rate_recipes.effects_of(kind, None) for kind in rate_recipes.PROGRAMMES},
 }
 """Kind to the effects that it knows."""
 
@@ -34,7 +36,7 @@ TEMPERATURE_SPAN_C: Final = 1.0
 
 
 def simulate_kind(
-    kind: str, *, effects: Sequence[str], seed: int
+    kind: str, *, effects: Sequence[str], seed: int, programme: str | None = None
 ) -> tuple[dict[str, str], dict[str, Any]]:
     """Simulate a whole project.
 
@@ -46,6 +48,8 @@ def simulate_kind(
         ``ID=VALUE[,option=value]`` each, in the units of the command line.
     seed : int
         The same seed gives the same project.
+    programme : str, optional
+        Of a rate sensor; default its first.
 
     Returns
     -------
@@ -62,16 +66,24 @@ def simulate_kind(
     if kind not in KINDS:
         hint = nearest_names(kind, KINDS)
         raise SurveyError(Problem("unknown kind of simulation", "simulate", kind, hint=hint))
+    known = KINDS[kind]
+    if kind in rate_recipes.PROGRAMMES:
+        known = rate_recipes.effects_of(kind, programme)
+    elif programme is not None:
+        raise SurveyError(Problem("this kind has no programmes", "--programme", programme))
     parsed: list[Effect] = []
     problems: list[Problem] = []
     for text in effects:
         try:
-            parsed.append(parse_effect(text, KINDS[kind]))
+            parsed.append(parse_effect(text, known))
         except SurveyError as error:
             problems += error.problems
     if problems:
         raise SurveyError(problems)
     rng = np.random.default_rng(seed)
+    if kind in rate_recipes.PROGRAMMES:
+        files, truth = rate_recipes.simulate_rate(kind, programme, effects=parsed, rng=rng)
+        return files, truth | {"seed": seed}
     if kind == "campaign":
         campaign = simulate_campaign(CampaignSpec(effects=tuple(parsed)), rng)
         return campaign_files(campaign), campaign_truth(campaign) | {"seed": seed}

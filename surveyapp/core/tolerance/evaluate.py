@@ -10,9 +10,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from surveyapp.core.tolerance.formula import FormulaError, evaluate, holds
-from surveyapp.core.tolerance.quantities import quantity
+from surveyapp.core.tolerance.quantities import PARAMETER, quantity
 from surveyapp.domain.results import Check
 from surveyapp.domain.rulebook import Limit, RuleBook
+from surveyapp.domain.subject import Subject
 
 _ROUNDING = 1e-9
 """Relative: a value that equals its limit but for the last bits of a float meets it."""
@@ -35,6 +36,8 @@ class Measured:
         n and L, as far as the limit's formula needs them.
     class_name : str
         The class that the project states for this subject; empty: none, every class applies.
+    subject : Subject
+        What was measured, as a value.
     """
 
     quantity: str
@@ -43,6 +46,7 @@ class Measured:
     text: str = ""
     variables: Mapping[str, float] = field(default_factory=dict)
     class_name: str = ""
+    subject: Subject = field(kw_only=True)
 
 
 def apply_limit(book: RuleBook, limit: Limit, item: Measured) -> Check | None:
@@ -75,6 +79,7 @@ def apply_limit(book: RuleBook, limit: Limit, item: Measured) -> Check | None:
         unit=limit.unit,
         where=item.where,
         text=text,
+        subject=item.subject,
     )
 
 
@@ -93,9 +98,16 @@ def rule_book_checks(book: RuleBook, measured: Sequence[Measured]) -> tuple[Chec
     checks = []
     for limit in book.limits:
         items = by_quantity.get(limit.quantity)
+        if not items and quantity(limit.quantity).subject == PARAMETER:
+            continue
         if not items:
             items = [
-                Measured(limit.quantity, None, text=f"missing: {quantity(limit.quantity).needs}")
+                Measured(
+                    limit.quantity,
+                    None,
+                    text=f"missing: {quantity(limit.quantity).needs}",
+                    subject=Subject.project(),
+                )
             ]
         checks += [check for item in items if (check := apply_limit(book, limit, item)) is not None]
     return tuple(checks)

@@ -20,6 +20,7 @@ from surveyapp.core.tolerance.evaluate import Measured
 from surveyapp.core.tolerance.quantities import quantity
 from surveyapp.core.uncertain import Uncertain, aligned, combine
 from surveyapp.domain.project import OrientationSession
+from surveyapp.domain.subject import Subject
 from surveyapp_models.angles import RHO_ARCSEC, wrap_pi
 
 
@@ -98,12 +99,12 @@ def _comparable(first: SideOrientation, second: SideOrientation) -> bool:
 
 def _pairs(
     orientation: Orientation,
-) -> Mapping[str, list[tuple[SideOrientation, SideOrientation]]]:
-    """Comparable pairs by the name of the side; an empty list where there is none."""
+) -> Mapping[Subject, list[tuple[SideOrientation, SideOrientation]]]:
+    """Comparable pairs of each side; an empty list where there is none."""
     result = {}
     for members in side_orientations(orientation).values():
-        name = f"{members[0].station}-{members[0].target}"
-        result[name] = [pair for pair in combinations(members, 2) if _comparable(*pair)]
+        side = Subject.side(members[0].station, members[0].target)
+        result[side] = [pair for pair in combinations(members, 2) if _comparable(*pair)]
     return result
 
 
@@ -126,7 +127,7 @@ def independent_difference(orientation: Orientation) -> list[Measured]:
             (abs(_turned(b, a).value - a.azimuth.value), f"{_label(a)} and {_label(b)}")
             for a, b in pairs
         )
-        found.append(Measured(name, value * RHO_ARCSEC, side, text))
+        found.append(Measured(name, value * RHO_ARCSEC, side.text, text, subject=side))
     return found
 
 
@@ -144,12 +145,13 @@ def independent_mean_sigma(orientation: Orientation) -> list[Measured]:
             found.append(_nothing(name, side))
         else:
             text = "from the error budgets, without the deflection of the vertical"
-            found.append(Measured(name, max(finite) * RHO_ARCSEC, side, text))
+            value = max(finite) * RHO_ARCSEC
+            found.append(Measured(name, value, side.text, text, subject=side))
     return found
 
 
-def _nothing(name: str, side: str) -> Measured:
-    return Measured(name, None, side, f"missing: {quantity(name).needs}")
+def _nothing(name: str, side: Subject) -> Measured:
+    return Measured(name, None, side.text, f"missing: {quantity(name).needs}", subject=side)
 
 
 def _label(item: SideOrientation) -> str:

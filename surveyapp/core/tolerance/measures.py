@@ -16,6 +16,7 @@ from surveyapp.core.tolerance.evaluate import Measured
 from surveyapp.core.tolerance.independent import independent_difference, independent_mean_sigma
 from surveyapp.core.tolerance.quantities import quantity
 from surveyapp.domain.readings import SWING_KINDS, Place, ReadingKind
+from surveyapp.domain.subject import Subject
 from surveyapp_models.angles import RHO_ARCSEC, circular_mean, wrap_pi
 
 Measure = Callable[[Orientation], list[Measured]]
@@ -26,8 +27,26 @@ def measure(orientation: Orientation) -> tuple[Measured, ...]:
     return tuple(item for function in MEASURES.values() for item in function(orientation))
 
 
-def _missing(identity: str, where: str, why: str = "") -> Measured:
-    return Measured(identity, None, where, f"missing: {why or quantity(identity).needs}")
+def _found(
+    identity: str,
+    value: float,
+    subject: Subject,
+    text: str = "",
+    *,
+    n: float | None = None,
+    where: str = "",
+) -> Measured:
+    variables = {} if n is None else {"n": n}
+    return Measured(identity, value, where or subject.text, text, variables, subject=subject)
+
+
+def _missing(identity: str, subject: Subject, why: str = "", *, where: str = "") -> Measured:
+    text = f"missing: {why or quantity(identity).needs}"
+    return Measured(identity, None, where or subject.text, text, subject=subject)
+
+
+def _session(item: ReducedSession) -> Subject:
+    return Subject.session(item.session.id)
 
 
 def _sights(
@@ -80,14 +99,14 @@ def rounds_difference(orientation: Orientation) -> list[Measured]:
             means.add(key)
     found = []
     for key, values in sides.items():
-        where = f"{key[0]}-{key[1]}"
+        line = Subject.line(*key)
         if len(values) > 1:
             text = f"{len(values)} rounds with {key[2]}"
             value = largest_difference(values) * RHO_ARCSEC
-            found.append(Measured(name, value, where, text, {"n": float(len(values))}))
+            found.append(_found(name, value, line, text, n=float(len(values))))
         else:
             why = "the book holds only the mean of the rounds" if key in means else ""
-            found.append(_missing(name, where, why))
+            found.append(_missing(name, line, why))
     return found
 
 
@@ -98,11 +117,12 @@ def calibration_means_difference(orientation: Orientation) -> list[Measured]:
     for constant in orientation.constants:
         for line, _ in constant.lines:
             own = [item for item in constant.calibrations if item.line == line]
+            subject = Subject.line(own[0].station, own[0].target, constant.instrument.id)
             if len(own) < 2:
-                found.append(_missing(name, line, "a second calibration of this side"))
+                found.append(_missing(name, subject, "a second calibration of this side"))
                 continue
             value = largest_difference([item.value.value for item in own]) * RHO_ARCSEC
-            found.append(Measured(name, value, line, f"{len(own)} calibrations"))
+            found.append(_found(name, value, subject, f"{len(own)} calibrations"))
     return found
 
 
@@ -115,14 +135,14 @@ def calibration_epochs_difference(orientation: Orientation) -> list[Measured]:
             phase: [c.value.value for c in constant.calibrations if c.phase == phase]
             for phase in ("before", "after")
         }
-        where = constant.instrument.id
+        subject = Subject.of("instrument", constant.instrument.id)
         if not all(groups.values()):
             if constant.calibrations:
-                found.append(_missing(name, where))
+                found.append(_missing(name, subject))
             continue
         means = [circular_mean(values) for values in groups.values()]
         text = f"{len(groups['before'])} before, {len(groups['after'])} after"
-        found.append(Measured(name, abs(wrap_pi(means[1] - means[0])) * RHO_ARCSEC, where, text))
+        found.append(_found(name, abs(wrap_pi(means[1] - means[0])) * RHO_ARCSEC, subject, text))
     return found
 
 
@@ -134,15 +154,17 @@ def tape_zero(orientation: Orientation) -> list[Measured]:
         zero = item.reduction.tape_zero
         if zero is None:
             if item.session.method != "automatic":
-                found.append(_missing(name, item.session.id))
+                found.append(_missing(name, _session(item)))
             continue
         for place, rest in (("before", zero.before), ("after", zero.after)):
             where = f"{item.session.id} {place}"
             if rest is None:
-                found.append(_missing(name, where, f"tape_zero rows {place} the observation"))
+                why = f"tape_zero rows {place} the observation"
+                found.append(_missing(name, _session(item), why, where=where))
             else:
                 text = f"{rest.value_div:+.3f} div from {rest.points} turning points"
-                found.append(Measured(name, abs(rest.value_div), where, text))
+                value = abs(rest.value_div)
+                found.append(_found(name, value, _session(item), text, where=where))
     return found
 
 
@@ -154,9 +176,9 @@ def tape_zero_change(orientation: Orientation) -> list[Measured]:
         zero = item.reduction.tape_zero
         if zero is not None and zero.before is not None and zero.after is not None:
             value = abs(zero.after.value_div - zero.before.value_div)
-            found.append(Measured(name, value, item.session.id))
+            found.append(_found(name, value, _session(item)))
         elif item.session.method != "automatic":
-            found.append(_missing(name, item.session.id))
+            found.append(_missing(name, _session(item)))
     return found
 
 
@@ -174,11 +196,11 @@ def _pre_orientation(
             if row.value is not None and book.place_of(row) is Place.BEFORE
         ]
         if not rows or north is None or rows[0].value is None:
-            found.append(_missing(name, item.session.id))
+            found.append(_missing(name, _session(item)))
             continue
         value = abs(wrap_pi(rows[0].value - north.value)) * RHO_ARCSEC
         text = f"clamped at seq {rows[0].seq}"
-        found.append(Measured(name, value, item.session.id, text))
+        found.append(_found(name, value, _session(item), text))
     return found
 
 
@@ -199,11 +221,11 @@ def sights_difference(orientation: Orientation) -> list[Measured]:
     for _, item, target in _sights(orientation):
         if target.sights is None:
             continue
-        where = f"{item.session.id} to {target.target}"
+        subject = Subject.session(item.session.id, target.target)
         if target.sights.drift is None:
-            found.append(_missing(name, where))
+            found.append(_missing(name, subject))
         else:
-            found.append(Measured(name, abs(target.sights.drift) * RHO_ARCSEC, where))
+            found.append(_found(name, abs(target.sights.drift) * RHO_ARCSEC, subject))
     return found
 
 
@@ -230,12 +252,14 @@ def rotor_rest(orientation: Orientation) -> list[Measured]:
             if times:
                 spans.append((min(times), max(times), item.session.id))
         if len(spans) < len(items):
-            found.append(_missing(name, station, "times on the rows of every round"))
+            why = "times on the rows of every round"
+            found.append(_missing(name, Subject.of("station", station), why))
             continue
         spans.sort()
         for earlier, later in pairwise(spans):
             text = f"after {earlier[2]}; the book does not show when the rotor stood"
-            found.append(Measured(name, max(later[0] - earlier[1], 0.0), later[2], text))
+            pause = max(later[0] - earlier[1], 0.0)
+            found.append(_found(name, pause, Subject.session(later[2]), text))
     return found
 
 
@@ -248,12 +272,13 @@ def circle_spacing(orientation: Orientation) -> list[Measured]:
     found = []
     for (station, _), items in _occupations(orientation).items():
         norths = [item.reduction.north.value for item in items if item.reduction.north is not None]
+        subject = Subject.of("station", station)
         if len(norths) < len(items):
-            found.append(_missing(name, station))
+            found.append(_missing(name, subject))
             continue
         value = min(0.5 * abs(wrap_pi(2.0 * (a - b))) for a, b in combinations(norths, 2))
         n = float(len(norths))
-        found.append(Measured(name, value * RHO_ARCSEC, station, f"{n:.0f} rounds", {"n": n}))
+        found.append(_found(name, value * RHO_ARCSEC, subject, f"{n:.0f} rounds", n=n))
     return found
 
 
@@ -263,14 +288,14 @@ def _programme(orientation: Orientation, name: str, phase: str) -> list[Measured
     }
     found = []
     for constant in orientation.constants:
-        where = constant.instrument.id
-        if where not in surveyed:
+        if constant.instrument.id not in surveyed:
             continue
+        subject = Subject.of("instrument", constant.instrument.id)
         if not constant.calibrations:
-            found.append(_missing(name, where, "calibration sessions"))
+            found.append(_missing(name, subject, "calibration sessions"))
             continue
         rounds = sum(item.rounds for item in constant.calibrations if item.phase == phase)
-        found.append(Measured(name, float(rounds), where))
+        found.append(_found(name, float(rounds), subject))
     return found
 
 
@@ -287,11 +312,7 @@ def rounds_after(orientation: Orientation) -> list[Measured]:
 def rounds_on_side(orientation: Orientation) -> list[Measured]:
     """Rounds on every side to be oriented."""
     return [
-        Measured(
-            "rounds_on_side",
-            float(line.result.rounds),
-            f"{line.result.station}-{line.result.target}",
-        )
+        _found("rounds_on_side", float(line.result.rounds), line.result.subject)
         for line in orientation.lines
     ]
 
@@ -300,19 +321,19 @@ def observers(orientation: Orientation) -> list[Measured]:
     """Number of observers of one instrument."""
     found = []
     for constant in orientation.constants:
-        where = constant.instrument.id
+        subject = Subject.of("instrument", constant.instrument.id)
         names = [
             item.session.observer.strip()
             for item in orientation.sessions
-            if item.session.instrument == where
+            if item.session.instrument == subject.id
         ]
         if not names:
             continue
         if not all(names):
-            found.append(_missing("observers", where))
+            found.append(_missing("observers", subject))
             continue
         distinct = sorted(set(names))
-        found.append(Measured("observers", float(len(distinct)), where, ", ".join(distinct)))
+        found.append(_found("observers", float(len(distinct)), subject, ", ".join(distinct)))
     return found
 
 
@@ -326,10 +347,10 @@ def level_excursion(orientation: Orientation) -> list[Measured]:
         division = dict(session.override).get("level_division_arcsec")
         usable = isinstance(division, int | float) and not isinstance(division, bool)
         if not rows or not usable or not isinstance(division, int | float) or division <= 0:
-            found.append(_missing(name, session.id))
+            found.append(_missing(name, _session(item)))
             continue
         largest = max(abs(row.value) for row in rows if row.value is not None)
-        found.append(Measured(name, largest * RHO_ARCSEC / float(division), session.id))
+        found.append(_found(name, largest * RHO_ARCSEC / float(division), _session(item)))
     return found
 
 

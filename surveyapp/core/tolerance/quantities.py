@@ -17,6 +17,7 @@ _UNIT_FACTORS: Final[Mapping[str, Mapping[str, float]]] = {
     "length": {"m": 1.0, "mm": 0.001},
     "count": {"rounds": 1.0, "observers": 1.0},
     "ratio": {"1 in": 1.0},
+    "factor": {"times sigma": 1.0},
 }
 """Size of each unit in the base unit of its dimension: arcsec, div, s, m, 1."""
 
@@ -36,7 +37,7 @@ class Quantity:
     needs : str
         What a project must hold for it, said where it is missing.
     subject : str
-        orientation | traverse | plumbing | breakthrough: who measures it.
+        orientation | traverse | plumbing | breakthrough: who measures it; parameter: nobody does.
     """
 
     id: str
@@ -56,6 +57,8 @@ class Quantity:
 
 
 _TRAVERSE, _PLUMBING, _BREAKTHROUGH = "traverse", "plumbing", "breakthrough"
+PARAMETER: Final = "parameter"
+"""Subject of what a rule book states and nobody measures: no check comes of it."""
 
 QUANTITIES: Final[tuple[Quantity, ...]] = (
     Quantity(
@@ -249,6 +252,13 @@ QUANTITIES: Final[tuple[Quantity, ...]] = (
         "length",
         "a prediction or a measured breakthrough",
         _BREAKTHROUGH,
+    ),
+    Quantity(
+        "penetration_factor",
+        "factor from the standard deviation to the predicted error at the meeting point",
+        "factor",
+        "nothing: the rule book states it",
+        PARAMETER,
     ),
 )
 

@@ -10,6 +10,7 @@ import numpy as np
 from surveyapp.core.orientation.campaign_columns import block_names
 from surveyapp.diagnosis.case import Case
 from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.subject import Subject
 from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
@@ -37,6 +38,8 @@ class Determination:
         Degrees Celsius, rad, rad, rad, seconds since spin-up.
     label : str
         For messages.
+    subject : Subject or None
+        The session and target that it comes from.
     """
 
     value: float
@@ -51,6 +54,7 @@ class Determination:
     north_reading: float | None = None
     running_s: float | None = None
     label: str = ""
+    subject: Subject | None = None
 
 
 def campaign(
@@ -121,6 +125,7 @@ def campaign(
         offset=offset,
         instrument=instrument,
         identity=f"campaign of {instrument}" if instrument else "campaign",
+        members=tuple(d.subject for d in determinations if d.subject is not None),
         labels=tuple(d.label or f"determination {i + 1}" for i, d in enumerate(determinations)),
         grid_labels=labels,
         warnings=tuple(warnings),

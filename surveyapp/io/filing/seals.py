@@ -14,7 +14,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from surveyapp.domain.results import Check
+from surveyapp.core.checks.filing_checks import filing_checks
+from surveyapp.domain.closing import Closing, Filing
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.cards import is_path
 from surveyapp.io.files import read_text, shown
@@ -24,8 +25,6 @@ from surveyapp.io.tables import parse_toml
 CLOSING: Final = "closing"
 REOPENING: Final = "reopening"
 _LEFT_OUT: Final = frozenset({"results"})
-_CLAUSE: Final = "closing of the project"
-_SHOWN: Final = 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,10 +225,8 @@ def changes(folder: Path, entry: LedgerEntry) -> list[str]:
     return found
 
 
-def seal_checks(folder: Path) -> tuple[Check, ...]:
-    """Checks of the ledger and of every closing in force.
-
-    None without a ledger, and none for a whole one in which nothing was ever closed.
+def read_filing(folder: Path) -> Filing:
+    """State of a project's ledger and closings, every sealed file compared with its seal.
 
     Raises
     ------
@@ -237,42 +234,37 @@ def seal_checks(folder: Path) -> tuple[Check, ...]:
         If the ledger cannot be read.
     """
     if not (folder / LEDGER_FILE).exists():
-        return ()
+        return Filing()
     ledger = read_ledger(folder)
-    damaged = bool(ledger.faults) or ledger.tail_altered
-    closed_once = any(entry.kind == CLOSING for entry in ledger.entries)
-    checks = [_ledger_check(ledger)] if damaged or closed_once else []
-    if ledger.tail and not ledger.tail_altered:
-        text = "the last line of the ledger was never finished and does not count"
-        checks.append(_check("ledger.tail", [text], confirmed=False, where=LEDGER_FILE))
-    for name, entry in closings_in_force(ledger).items():
-        where = name or "project"
-        found = changes(folder, entry)
-        good = f"as closed at {entry.at}"
-        checks.append(_check("closing.unchanged", found, where=where, good=good))
-    return tuple(checks)
-
-
-def _ledger_check(ledger: Ledger) -> Check:
-    found = list(ledger.faults)
+    faults = list(ledger.faults)
     if ledger.tail_altered:
-        found.append("the newline of the last line was changed")
-    good = f"{len(ledger.entries)} entries, the chain is whole"
-    return _check("ledger.chain", found, where=LEDGER_FILE, good=good)
+        faults.append("the newline of the last line was changed")
+    return Filing(
+        entries=len(ledger.entries),
+        faults=tuple(faults),
+        unfinished_tail=bool(ledger.tail) and not ledger.tail_altered,
+        closed_once=any(entry.kind == CLOSING for entry in ledger.entries),
+        closings=tuple(
+            Closing(
+                session=name,
+                at=entry.at,
+                by=str(entry.data.get("by", "")),
+                seal=str(entry.data.get("seal", "")),
+                changed=tuple(changes(folder, entry)),
+            )
+            for name, entry in closings_in_force(ledger).items()
+        ),
+    )
 
 
-def _check(
-    rule: str, found: Sequence[str], *, where: str, good: str = "", confirmed: bool = True
-) -> Check:
-    more = f" and {len(found) - _SHOWN} more" if len(found) > _SHOWN else ""
-    return Check(
-        rule=rule,
-        clause=_CLAUSE,
-        value=float(len(found)),
-        limit=0.0,
-        confirmed=confirmed,
-        passed=not found,
-        unit="changes",
-        where=where,
-        text="; ".join(found[:_SHOWN]) + more if found else good,
+def changed_after_closing(folder: Path) -> tuple[Problem, ...]:
+    """What was changed in a closed project, as problems: for one that can no longer be read."""
+    try:
+        filing = read_filing(folder)
+    except (SurveyError, OSError, ValueError):
+        return ()
+    return tuple(
+        Problem("the closed project was changed", check.where, check.text, "as it was closed")
+        for check in filing_checks(filing)
+        if check.passed is False and check.confirmed
     )

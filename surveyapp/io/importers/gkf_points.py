@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
-from surveyapp.domain.observations import Observation, ObservationKind
+from surveyapp.core.network.touched import touched
+from surveyapp.domain.observations import Observation
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import NetworkPoint, Status
 from surveyapp.errors import SurveyError
@@ -37,23 +37,6 @@ def network_point(document: GkfDocument, entry: PointEntry) -> NetworkPoint | No
                 item.what, entry.line, f"{item.where}: {item.found}", item.expected, item.hint
             )
         return None
-
-
-def touched(observations: Sequence[Observation]) -> dict[str, set[str]]:
-    """Components (p = plane, h = height) of each point that any observation touches."""
-    height = {
-        ObservationKind.HEIGHT_DIFFERENCE,
-        ObservationKind.COORDINATE_H,
-        ObservationKind.VECTOR_H,
-    }
-    both = {ObservationKind.SLOPE_DISTANCE, ObservationKind.ZENITH}
-    touched: dict[str, set[str]] = {}
-    for obs in observations:
-        parts = {"h"} if obs.kind in height else {"p", "h"} if obs.kind in both else {"p"}
-        for name in (obs.at, obs.back, obs.to):
-            if name:
-                touched.setdefault(name, set()).update(parts)
-    return touched
 
 
 def without_idle(

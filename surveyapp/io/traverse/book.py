@@ -1,345 +1,127 @@
-"""Traverses of a project as a network: book, header, centring, stations and oriented lines.
+"""The traverses of a project: ``[[traverse]]`` tables with the rows of their books.
 
-Gives every observation the sigma of its header and its centring, and every gyro row the value of
-its sessions. It does not adjust anything.
-
-A sigma in a row is the surveyor's statement about that observation and is taken as it stands;
-centring is added to the header's sigmas only.
+An unknown point or an impossible value is told when the folder is read. Whether every row has a
+standard deviation is asked when a network is made of it: a prediction has its own.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Collection, Mapping, Sequence
+from collections import Counter
+from collections.abc import Collection, Sequence
 from dataclasses import replace
-from pathlib import Path
-from typing import Final
 
-import numpy as np
-
-from surveyapp.core.network.centring import angle_centring, direction_centring
-from surveyapp.domain.observations import CorrelatedBlock, Observation, ObservationKind
-from surveyapp.domain.project import Project, ResultWarning, Station
-from surveyapp.domain.traverse import GyroConstant, Network, NetworkPoint, OrientedLine, Status
+from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.traverse_book import Traverse, TraverseRow
 from surveyapp.errors import Problem, SurveyError, nearest_names
-from surveyapp.io.files import read_text
-from surveyapp.io.importers.gkf_points import touched
-from surveyapp.io.traverse.header import TraverseHeader, traverse_headers
-from surveyapp.io.traverse.rows import TraverseRow, parse_traverse
+from surveyapp.io.files import decode
+from surveyapp.io.project_files import PROJECT_FILE, ProjectFiles, inside
+from surveyapp.io.tables import Findings, Table
+from surveyapp.io.traverse.rows import parse_traverse
+from surveyapp_models.angles import ARCSEC, AngleUnit
 
-K = ObservationKind
-MM: Final = 1e-3
-_HORIZONTAL = frozenset({K.ANGLE, K.DIRECTION, K.AZIMUTH, K.GYRO})
-_LENGTHS = frozenset({K.DISTANCE, K.SLOPE_DISTANCE})
+MM = 1e-3
 
 
-def traverse_rows(project: Project, header: TraverseHeader) -> list[TraverseRow]:
-    """Rows of a traverse's book, every station checked.
-
-    Raises
-    ------
-    SurveyError
-        All problems of the book.
-    """
-    text = read_text(Path(project.path) / header.book, where=header.book)
-    rows, problems = parse_traverse(text, angle_unit=project.angle_unit, where=header.book)
-    known = {station.name for station in project.stations}
-    told: set[str] = set()
-    for row in rows:
-        for name in (row.at, row.back, row.to):
-            if name and name not in known and name not in told:
-                told.add(name)
-                problems.append(
-                    Problem(
-                        "a point that is no station",
-                        f"{header.book}, line {row.line}",
-                        name,
-                        "a name of a [[station]]",
-                        nearest_names(name, known),
-                    )
-                )
-    if problems:
-        raise SurveyError(problems)
-    return rows
-
-
-def _lengths(rows: Sequence[TraverseRow], stations: Mapping[str, Station]) -> dict[str, float]:
-    """Horizontal side lengths by ``a|b``, from distances and, failing those, coordinates."""
-    zeniths = {(row.at, row.to): row.value for row in rows if row.kind is K.ZENITH}
-    found: dict[str, float] = {}
-    for row in rows:
-        if row.kind not in _LENGTHS or row.value is None or row.value <= 0.0:
-            continue
-        steep = zeniths.get((row.at, row.to)) if row.kind is K.SLOPE_DISTANCE else None
-        length = row.value * (1.0 if steep is None else math.sin(steep))
-        found[f"{row.at}|{row.to}"] = found[f"{row.to}|{row.at}"] = length
-    for row in rows:
-        for name in (row.to, row.back):
-            a, b = stations.get(row.at), stations.get(name)
-            if a is None or b is None or f"{row.at}|{name}" in found:
-                continue
-            if a.e is None or a.n is None or b.e is None or b.n is None:
-                continue
-            if (length := math.hypot(b.e - a.e, b.n - a.n)) > 0.0:
-                found[f"{row.at}|{name}"] = length
-    return found
-
-
-def _sigma(row: TraverseRow, header: TraverseHeader, lengths: Mapping[str, float]) -> float | None:
-    """Standard deviation of a row [rad] or [m], None where nothing states one."""
-    if row.sigma is not None:
-        return row.sigma
-    both = {"instrument_m": header.instrument_m, "target_m": header.target_m}
-    if row.kind in _LENGTHS:
-        if header.sigma_mm is None or header.sigma_ppm is None:
-            return None
-        own = math.hypot(header.sigma_mm * MM, header.sigma_ppm * 1e-6 * (row.value or 0.0))
-        return math.sqrt(own**2 + header.instrument_m**2 + header.target_m**2)
-    if row.kind in (K.HEIGHT_DIFFERENCE, K.GYRO) or header.sigma_angle is None:
-        return None
-    fore = lengths.get(f"{row.at}|{row.to}")
-    if row.kind is K.ANGLE:
-        back = lengths.get(f"{row.at}|{row.back}")
-        extra = (
-            0.0
-            if back is None or fore is None
-            else angle_centring(back, fore, row.value or 0.0, **both)
-        )
-        return math.sqrt(header.sigma_angle**2 + extra)
-    own = header.sigma_angle / math.sqrt(2.0)  # an angle is the difference of two directions
-    if row.kind is K.ZENITH:
-        return header.sigma_angle
-    extra = 0.0 if fore is None else direction_centring(fore, **both)
-    return math.sqrt(own**2 + extra)
-
-
-def _observation(
-    row: TraverseRow, header: TraverseHeader, sigma: float, problems: list[Problem]
-) -> Observation | None:
-    try:
-        return Observation(
-            kind=row.kind,
-            at=row.at,
-            to=row.to,
-            value=row.value if row.value is not None else math.nan,
-            sigma=sigma,
-            back=row.back,
-            set=f"{header.name}:{row.set}" if row.set else header.name,
-            hi=row.hi,
-            ht=row.ht,
-            note=row.note,
-            line=row.line,
-        )
-    except SurveyError as refused:
-        problems += [
-            Problem(p.what, f"{header.book}, {p.where}", p.found, p.expected, p.hint)
-            for p in refused.problems
-        ]
-        return None
-
-
-def _oriented(
-    row: TraverseRow, header: TraverseHeader, lines: Sequence[OrientedLine]
-) -> list[tuple[int, Observation]]:
-    """Observations of a gyro row: one for every instrument that oriented the line."""
-    return [
-        (
-            place,
-            Observation(
-                kind=K.GYRO,
-                at=row.at,
-                to=row.to,
-                value=line.gyro_azimuth,
-                sigma=line.sigma,
-                constant=line.constant,
-                convergence=line.convergence,
-                note=row.note,
-                line=row.line,
-            ),
-        )
-        for place, line in enumerate(lines)
-        if line.station == row.at and line.target == row.to
-    ]
-
-
-def _collect(
-    project: Project,
-    header: TraverseHeader,
-    lines: Sequence[OrientedLine],
-    waiting: Collection[tuple[str, str]],
-) -> tuple[list[Observation], list[tuple[int, int]], list[Problem]]:
-    """Observations, (place of line, place of observation) of the gyro sides, problems.
-
-    A gyro side whose session is still being observed is passed over.
-    """
-    rows = traverse_rows(project, header)
-    lengths = _lengths(rows, {station.name: station for station in project.stations})
-    observations: list[Observation] = []
-    gyro: list[tuple[int, int]] = []
-    problems: list[Problem] = []
-    for row in rows:
-        where = f"{header.book}, line {row.line}"
-        if row.kind is K.GYRO:
-            found = _oriented(row, header, lines)
-            if not found and (row.at, row.to) in waiting:
-                continue
-            if not found:
-                hint = "Its station and target must be those of survey sessions with a sight."
-                problems.append(
-                    Problem(
-                        "a gyro side that no session has oriented",
-                        where,
-                        f"{row.at}-{row.to}",
-                        ", ".join(f"{x.station}-{x.target}" for x in lines) or "an oriented line",
-                        hint,
-                    )
-                )
-            for place, obs in found:
-                gyro.append((place, len(observations)))
-                observations.append(obs)
-            continue
-        sigma = _sigma(row, header, lengths)
-        if sigma is None:
-            expected = "a sigma in the row, or sigma_angle_arcsec / sigma_distance in [[traverse]]"
-            problems.append(
-                Problem("an observation without a standard deviation", where, "nothing", expected)
-            )
-            continue
-        built = _observation(row, header, sigma, problems)
-        if built is not None:
-            observations.append(built)
-    return observations, gyro, problems
-
-
-def _gyro_blocks(
-    gyro: Sequence[tuple[int, int]], lines: Sequence[OrientedLine]
-) -> tuple[CorrelatedBlock, ...]:
-    """One covariance matrix of the gyro sides, where lines are correlated at all."""
-    if not any(lines[place].covariance for place, _ in gyro):
-        return ()
-    matrix = np.diag([lines[place].sigma ** 2 for place, _ in gyro])
-    for i, (place, _) in enumerate(gyro):
-        for other, value in lines[place].covariance:
-            for j, (partner, _) in enumerate(gyro):
-                if partner == other and j != i:
-                    matrix[i, j] = matrix[j, i] = value
-    members = tuple(member for _, member in gyro)
-    return (CorrelatedBlock(members, tuple(tuple(row) for row in matrix.tolist())),)
-
-
-def _points(
-    project: Project, observations: Sequence[Observation]
-) -> tuple[list[NetworkPoint], list[ResultWarning]]:
-    parts = touched(observations)
-    points: list[NetworkPoint] = []
-    for station in project.stations:
-        if station.name not in parts:
-            continue
-        fixed_plane = station.fixed and station.has_grid_position
-        plane = Status.FIXED if fixed_plane else Status.FREE
-        level = Status.FIXED if station.fixed and station.h is not None else Status.FREE
-        points.append(
-            NetworkPoint(
-                station.name,
-                station.e,
-                station.n,
-                station.h,
-                plane if "p" in parts[station.name] else Status.UNUSED,
-                plane if "p" in parts[station.name] else Status.UNUSED,
-                level if "h" in parts[station.name] else Status.UNUSED,
-            )
-        )
-    with_height = [i for i, point in enumerate(points) if point.status_h is not Status.UNUSED]
-    if not with_height or any(points[i].status_h is Status.FIXED for i in with_height):
-        return points, []
-    first = next((i for i in with_height if points[i].h is not None), with_height[0])
-    height = points[first].h or 0.0
-    points[first] = replace(points[first], h=height, status_h=Status.FIXED)
-    text = f"no height is fixed: heights count from {points[first].name} = {height:g} m"
-    return points, [ResultWarning("heights_relative", text)]
-
-
-def _header_warnings(header: TraverseHeader) -> list[ResultWarning]:
-    warnings = []
-    for flag, what in (
-        (header.atmosphere_applied, "atmosphere"),
-        (header.constant_applied, "constant"),
-    ):
-        if flag is False:
-            text = (
-                f"traverse {header.name}: the {what} correction was not applied by the instrument "
-                "and is not applied here: enter corrected distances"
-            )
-            warnings.append(ResultWarning(f"{what}_not_applied", text))
-    return warnings
-
-
-def network_of(
-    project: Project,
-    traverse_name: str | None,
-    lines: Sequence[OrientedLine] = (),
-    constants: Sequence[GyroConstant] = (),
-    waiting: Collection[tuple[str, str]] = (),
-) -> Network:
-    """Network of one traverse of a project, or of all of them together.
+def read_traverses(
+    tables: Sequence[Table], files: ProjectFiles, stations: Sequence[str], unit: AngleUnit
+) -> tuple[Traverse, ...]:
+    """Every [[traverse]] with its book; problems are noted in the findings.
 
     Parameters
     ----------
-    project : Project
-    traverse_name : str or None
-        None: all traverses.
-    lines : sequence of OrientedLine
-        What the sessions have oriented; gyro rows take their value from here.
-    constants : sequence of GyroConstant
-        Constants that the lines share; one that is not given is an unknown of the network.
-    waiting : collection of (station, target)
-        Sides whose session is still being observed: their gyro rows are left out.
-
-    Returns
-    -------
-    Network
-
-    Raises
-    ------
-    SurveyError
-        No such traverse, and all problems of its header and book.
+    tables : sequence of Table
+    files : ProjectFiles
+    stations : sequence of str
+        What rows may name.
+    unit : AngleUnit
+        Of angles whose row names none.
     """
-    headers = traverse_headers(project)
-    chosen = [h for h in headers if traverse_name is None or h.name == traverse_name]
-    if not chosen:
-        raise SurveyError(
-            Problem(
-                "there is no traverse of this name" if traverse_name else "there is no traverse",
-                "project.toml",
-                traverse_name or "",
-                "the name of a [[traverse]]",
-                nearest_names(traverse_name or "", [header.name for header in headers]),
-            )
-        )
-    observations: list[Observation] = []
-    gyro: list[tuple[int, int]] = []
-    problems: list[Problem] = []
-    warnings: list[ResultWarning] = []
-    for header in chosen:
-        try:
-            found, sides, faults = _collect(project, header, lines, waiting)
-        except SurveyError as refused:
-            problems += refused.problems
-            continue
-        gyro += [(place, member + len(observations)) for place, member in sides]
-        observations += found
-        problems += faults
-        warnings += _header_warnings(header)
-    if problems:
-        raise SurveyError(problems)
-    points, height_warnings = _points(project, observations)
-    shared = {item.name: item for item in constants}
-    names = dict.fromkeys(obs.constant for obs in observations if obs.kind is K.GYRO)
-    return Network(
-        points=tuple(points),
-        observations=tuple(observations),
-        blocks=_gyro_blocks(gyro, lines),
-        constants=tuple(shared.get(name, GyroConstant(name)) for name in names),
-        name=f"{project.name}: {', '.join(header.name for header in chosen)}",
-        warnings=(*warnings, *height_warnings),
+    own = replace(files, findings=Findings()) if files.observing else files
+    found = tuple(
+        _read_traverse(table, number, own, (stations, unit))
+        for number, table in enumerate(tables, start=1)
     )
+    for name in sorted(n for n, count in Counter(t.name for t in found).items() if count > 1):
+        own.findings.problems.append(
+            Problem("two traverses have one name", PROJECT_FILE, name, "unique names")
+        )
+    if own is files:
+        return found
+    files.findings.warnings += own.findings.warnings
+    files.findings.warnings += [
+        ResultWarning("traverse_unusable", str(problem)) for problem in own.findings.problems
+    ]
+    return () if own.findings.problems else found
+
+
+def _read_traverse(
+    table: Table,
+    number: int,
+    files: ProjectFiles,
+    known: tuple[Sequence[str], AngleUnit],
+) -> Traverse:
+    table = Table(table.data, f"{PROJECT_FILE}, [[traverse]] number {number}", files.findings)
+    traverse = _header(table, number)
+    stations, unit = known
+    if not traverse.book or not inside(traverse.book, table):
+        return traverse
+    data = files.read(traverse.book, table.where)
+    if data is None:
+        return traverse
+    try:
+        text = decode(data, where=traverse.book)
+    except SurveyError as error:
+        files.findings.absorb(error)
+        return traverse
+    rows, problems = parse_traverse(text, angle_unit=unit, where=traverse.book)
+    problems += _unknown_points(rows, traverse, stations)
+    traverse = replace(traverse, rows=tuple(rows))
+    files.findings.problems += problems
+    if not rows and not problems:
+        text = f"{traverse.book}: the book of {table.where} has no observation yet"
+        files.findings.warnings.append(ResultWarning("empty_book", text, traverse.subject))
+    return traverse
+
+
+def _header(table: Table, number: int) -> Traverse:
+    name = table.text("name", required=True) or f"number {number}"
+    table.where = f"{PROJECT_FILE}, [[traverse]] {name}"
+    book = table.text("book", required=True) or ""
+    angle = table.number("sigma_angle_arcsec", positive=True)
+    distance = table.table("sigma_distance")
+    centring = table.table("centring_mm")
+    traverse = Traverse(
+        name,
+        book,
+        table.text("class") or "",
+        None if angle is None else angle * ARCSEC,
+        None if distance is None else distance.number("mm", low=0.0) or 0.0,
+        None if distance is None else distance.number("ppm", low=0.0) or 0.0,
+        0.0 if centring is None else (centring.number("instrument", low=0.0) or 0.0) * MM,
+        0.0 if centring is None else (centring.number("target", low=0.0) or 0.0) * MM,
+        table.boolean("atmosphere_applied") if "atmosphere_applied" in table else None,
+        table.boolean("constant_applied") if "constant_applied" in table else None,
+    )
+    for part in (distance, centring):
+        if part is not None:
+            part.warn_unknown()
+    table.get("note")
+    table.warn_unknown("effect")
+    return traverse
+
+
+def _unknown_points(
+    rows: Sequence[TraverseRow], traverse: Traverse, known: Collection[str]
+) -> list[Problem]:
+    told: dict[str, Problem] = {}
+    for row in rows:
+        for name in (row.at, row.back, row.to):
+            if name and name not in known and name not in told:
+                told[name] = Problem(
+                    "a point that is no station",
+                    f"{traverse.book}, line {row.line}",
+                    name,
+                    "a name of a [[station]]",
+                    nearest_names(name, known),
+                )
+    return list(told.values())

@@ -1,16 +1,17 @@
 """Rows of a traverse book: text to numbers in radians and metres, with every problem by line.
 
-Knows columns, kinds and units; what sigma a row gets where it states none is ``traversebook``.
+Knows columns, kinds and units; what sigma a row gets where it states none is decided where the
+network is made (``core.network.traverse_network``).
 """
 
 from __future__ import annotations
 
 import csv
 import math
-from dataclasses import dataclass
 from typing import Final
 
 from surveyapp.domain.observations import ObservationKind
+from surveyapp.domain.traverse_book import TraverseRow
 from surveyapp.errors import Problem, nearest_names
 from surveyapp.io.files import shown
 from surveyapp_models.angles import ARCSEC, AngleError, AngleUnit, parse_angle
@@ -54,38 +55,6 @@ ANGLES: Final = frozenset(
 _ANGLE_UNITS: Final = {"dms": AngleUnit.DMS, "gon": AngleUnit.GON, "deg": AngleUnit.DEG}
 MGON: Final = math.pi / 200_000.0
 MM: Final = 1e-3
-
-
-@dataclass(frozen=True, slots=True)
-class TraverseRow:
-    """One row of a traverse book.
-
-    Parameters
-    ----------
-    kind : ObservationKind
-    at, back, to : str
-    value : float or None
-        [rad] or [m]; None for gyro rows, whose value comes from the sessions.
-    sigma : float or None
-        As stated in the row [rad] or [m].
-    set : str
-    hi, ht : float
-        [m].
-    note : str
-    line : int
-    """
-
-    kind: ObservationKind
-    at: str
-    back: str
-    to: str
-    value: float | None
-    sigma: float | None
-    set: str
-    hi: float
-    ht: float
-    note: str
-    line: int
 
 
 class _Row:

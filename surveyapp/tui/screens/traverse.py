@@ -110,9 +110,9 @@ class TraverseScreen(Screen[None]):
     def compute(self, name: str) -> None:
         """Adjust in a thread; the result comes as a message."""
         try:
-            project = api.open_project(self.folder)
-            result = api.adjust(project, traverse=name)
-            self.post_message(self.Adjusted(result, api.check(project)))
+            found = api.compute(self.folder)
+            result = api.adjust(found, traverse=name)
+            self.post_message(self.Adjusted(result, found.result.checks))
         except SurveyError as error:
             self.post_message(self.Failed(error))
 

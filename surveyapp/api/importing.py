@@ -1,0 +1,88 @@
+"""Field files into projects for scripts, re-exported by ``surveyapp.api``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from surveyapp.api.project import Folder, open_project
+from surveyapp.domain.fieldfile import ImportResult
+from surveyapp.errors import Problem, SurveyError
+
+
+def import_file(
+    form: str,
+    file: Folder,
+    folder: Folder,
+    *,
+    traverse: str | None = None,
+    instrument: str | None = None,
+    station_code: str | None = None,
+    columns: Mapping[str, str] | None = None,
+    units: Mapping[str, str] | None = None,
+    fixed: Sequence[str] = (),
+    sigma_angle_arcsec: float | None = None,
+    sigma_distance: tuple[float, float] | None = None,
+    skip_damaged: bool = False,
+    preview: bool = False,
+    progress: Callable[[float], None] | None = None,
+) -> ImportResult:
+    """Read a field file of another program into a project: all of it or nothing.
+
+    Parameters
+    ----------
+    form : str
+        ``gsi`` | ``sdr`` | ``jobxml`` | ``csv`` | ``gyro-csv``.
+    file, folder : path
+        The file, and the project folder.
+    traverse : str or None
+        Name of the traverse and its book; the name of the file without it.
+    instrument : str or None
+        ``gyro-csv``: id of the gyro.
+    station_code : str or None
+        ``gsi``: code of the blocks that open a station.
+    columns, units : mapping or None
+        ``csv`` and ``gyro-csv``: column and unit of each quantity; ``foot`` = ``us``.
+    fixed : sequence of str
+        New stations that are fixed at the coordinates of the file.
+    sigma_angle_arcsec : float or None
+        Standard deviation of an angle; estimated from the faces, or assumed and told, without it.
+    sigma_distance : tuple of float or None
+        Millimetres and ppm.
+    skip_damaged : bool
+        Leave damaged lines out and list them.
+    preview : bool
+        Say what would be written, write nothing.
+    progress : callable or None
+        Told from time to time which part has been read.
+
+    Returns
+    -------
+    ImportResult
+
+    Raises
+    ------
+    SurveyError
+        Every damaged line; a book of that name; whatever else is wrong. Nothing is written then.
+    """
+    from surveyapp.io.importers.fieldfiles.gathering import ReadOptions
+    from surveyapp.io.importing.gyro import plan_gyro
+    from surveyapp.io.importing.traverse import ImportOptions, plan_traverse
+    from surveyapp.io.importing.writing import write_additions
+
+    project = open_project(folder)
+    read = ReadOptions(skip_damaged, station_code, columns or {}, units or {}, progress)
+    options = ImportOptions(traverse, tuple(fixed), sigma_angle_arcsec, sigma_distance, read)
+    if form == "gyro-csv":
+        if instrument is None:
+            raise SurveyError(
+                Problem("the gyro is not named", "--instrument", "", "the id of an instrument")
+            )
+        planned = plan_gyro(project, Path(file), options, instrument)
+    else:
+        planned = plan_traverse(project, form, Path(file), options)
+    if preview:
+        return planned.result
+    write_additions(Path(folder), planned.additions)
+    return replace(planned.result, written=True)

@@ -1,0 +1,157 @@
+"""Rate sensors for scripts, re-exported by ``surveyapp.api``: plans, north, spectrum, motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING
+
+from surveyapp.api.project import Folder
+from surveyapp.api.sensors import LogOptions, open_sensor_log
+from surveyapp.domain.line_spectrum import LineSpectrum
+from surveyapp.domain.north import NorthResult
+from surveyapp.errors import Problem, SurveyError
+
+if TYPE_CHECKING:
+    from surveyapp.core.sensors.rate.fog_station_plan import FogStationPlan
+    from surveyapp.io.sensor_logs.blocks import Progress
+
+
+def plan_fog_station(
+    *,
+    elevation_deg: float | None = None,
+    rate_deg_s: float | None = None,
+    samples: int | None = None,
+    relative_rate_sigma: float | None = None,
+) -> FogStationPlan:
+    """What one and two passes would reach, with the planning curves of source 001.
+
+    Parameters
+    ----------
+    elevation_deg, rate_deg_s : float, optional
+        Default 10 degrees, 30 deg/s.
+    samples : int, optional
+        Each way; default 300.
+    relative_rate_sigma : float, optional
+        Default 1e-4.
+
+    Raises
+    ------
+    SurveyError
+    """
+    from surveyapp.core.sensors.rate import fog_station_plan as plan
+
+    problems = []
+    for option, value, low, high in (
+        ("--elevation-deg", elevation_deg, -89.0, 89.0),
+        ("--rate", rate_deg_s, 1e-6, 1e5),
+        ("--samples", samples, 1, 1e9),
+        ("--table-rate-relative-sigma", relative_rate_sigma, 0.0, 1.0),
+    ):
+        if value is not None and not low <= value <= high:
+            problems.append(Problem("out of range", option, f"{value:g}", f"{low:g} to {high:g}"))
+    if problems:
+        raise SurveyError(problems)
+    return plan.plan_fog_station(
+        elevation_deg=plan.ELEVATION_DEG if elevation_deg is None else elevation_deg,
+        rate_deg_s=plan.RATE_DEG_S if rate_deg_s is None else rate_deg_s,
+        samples=plan.SAMPLES if samples is None else samples,
+        relative_rate_sigma=(
+            plan.RELATIVE_RATE_SIGMA if relative_rate_sigma is None else relative_rate_sigma
+        ),
+    )
+
+
+def north(
+    source: Folder,
+    *,
+    method: str | None = None,
+    sensor: str | None = None,
+    log: LogOptions | None = None,
+    allow_outside: bool = False,
+    options: Mapping[str, object] | None = None,
+    progress: Progress | None = None,
+) -> NorthResult:
+    """Find north from the log of a rate sensor.
+
+    Parameters
+    ----------
+    source : path
+        A CSV file, or a project folder together with ``sensor``.
+    method : str, optional
+        fog-station, indexing or rotation; may stand in the log's entry.
+    sensor : str, optional
+        Id of a ``[[sensor_log]]``.
+    log : LogOptions, optional
+    allow_outside : bool
+    options : mapping, optional
+        Of the method, under the names of the command line: ``latitude``, ``constant_deg`` ...
+    progress : callable, optional
+
+    Raises
+    ------
+    SurveyError
+        For input that cannot be used.
+    """
+    from surveyapp.workflows.north import NorthRequest, find_north
+
+    opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
+    stated = opened.entry.options.get("method") if opened.entry is not None else None
+    return find_north(
+        NorthRequest(
+            method=method or str(stated or ""),
+            file=opened.file,
+            entry=opened.entry,
+            options=options or {},
+            folder=opened.folder,
+            today=datetime.now(UTC).astimezone().date(),
+            progress=progress,
+        )
+    )
+
+
+def spectrum(
+    source: Folder,
+    column: str,
+    *,
+    sensor: str | None = None,
+    log: LogOptions | None = None,
+    against: Folder | None = None,
+    field_uT: float | None = None,
+    sensitivity_deg_h_t: float | None = None,
+    shielding: float | None = None,
+    allow_outside: bool = False,
+    progress: Progress | None = None,
+) -> LineSpectrum:
+    """Interference lines of a column.
+
+    Parameters
+    ----------
+    source : path
+    column : str
+        Canonical name, or the name in the file.
+    sensor : str, optional
+    log : LogOptions, optional
+    against : path, optional
+        Record of a second state, read in the same way.
+    field_uT, sensitivity_deg_h_t, shielding : float, optional
+        Magnetic budget: bias = sensitivity x field / shielding [uT, deg/h per T].
+    allow_outside : bool
+    progress : callable, optional
+
+    Raises
+    ------
+    SurveyError
+        For input that cannot be used.
+    """
+    from surveyapp.workflows.spectrum import MagneticOptions, find_spectrum
+
+    opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
+    other = None if against is None else open_sensor_log(against, log=log).file
+    return find_spectrum(
+        opened.file,
+        column,
+        magnetic=MagneticOptions(field_uT, sensitivity_deg_h_t, shielding),
+        against=other,
+        progress=progress,
+    )

@@ -1,0 +1,73 @@
+"""``surveyapp north FILE --method METHOD``: north by a rate sensor, or a plan of it."""
+
+from __future__ import annotations
+
+import argparse
+
+from surveyapp.cli.output import heading, paragraph, print_json, table
+from surveyapp.cli.sensor_options import add_log_arguments, log_options, progress_bar, shown
+from surveyapp.errors import Problem, SurveyError
+
+NUMBERS = (
+    ("--latitude", "DEG", "of the place"),
+    ("--constant-deg", "DEG", "vertical-circle reading at which the gyro's axis is level"),
+    ("--constant-sigma-arcsec", "S", "of that constant"),
+    ("--approximate-north-deg", "DEG", "circle reading of north within some degrees"),
+    ("--rate-sigma-deg-h", "S", "standard deviation of one row"),
+)
+TEXTS = (
+    ("--reading-from-elevation", "RULE", "increases | decreases, as in calibrate fog-station"),
+    ("--declination", "D[,SIGMA]", "degrees, east positive; of a MAGNETIC heading only"),
+)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    parser.add_argument("source", metavar="FILE", nargs="?", help="log, or project folder")
+    parser.add_argument("--method", metavar="NAME", help="fog-station")
+    add_log_arguments(parser)
+    group = parser.add_argument_group("the method")
+    for option, metavar, text in NUMBERS:
+        group.add_argument(option, type=float, metavar=metavar, help=text)
+    for option, metavar, text in TEXTS:
+        names = [option, "--declination-deg"] if option == "--declination" else [option]
+        group.add_argument(*names, metavar=metavar, help=text)
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Find north and print it; 1 where something is not determined or ambiguous."""
+    from surveyapp import api
+
+    if options.source is None:
+        raise SurveyError(Problem("an argument is missing", "surveyapp north", "", "FILE or DIR"))
+    names = [option.strip("-").replace("-", "_") for option, _, _ in (*NUMBERS, *TEXTS)]
+    own = {name: getattr(options, name) for name in names}
+    result = api.north(
+        options.source,
+        method=options.method,
+        sensor=options.sensor,
+        log=log_options(options),
+        allow_outside=options.allow_outside,
+        options={name: value for name, value in own.items() if value is not None},
+        progress=progress_bar(),
+    )
+    if options.json:
+        print_json(result.to_dict())
+        return 0 if result.met else 1
+    print(heading(f"{result.source}: north by {result.method}, {result.n} rows"))
+    direction = result.direction
+    what = "circle reading of north" if result.key == "gyro_north" else "heading"
+    print(f"  {what}: {shown(direction.deg)} degrees, {direction.reference}")
+    print(
+        f"  sigma {shown(direction.sigma_arcsec)} arcsec, "
+        f"95 % interval +- {shown(direction.interval95_arcsec)} arcsec"
+    )
+    print()
+    rows = [[p.name, shown(p.value), shown(p.sigma), p.unit] for p in result.parameters]
+    print(table(["parameter", "value", "sigma", "unit"], rows))
+    if result.undetermined:
+        print(paragraph(f"not determined: {', '.join(result.undetermined)}"))
+    for warning in result.warnings:
+        print(paragraph(f"{warning.code}: {warning.text}"))
+    return 0 if result.met else 1

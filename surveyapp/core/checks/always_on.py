@@ -1,0 +1,12 @@
+"""Checks that need no rule book: the data against themselves, card, coordinates and grid."""
+
+from __future__ import annotations
+
+from surveyapp.core.checks.grid_checks import grid_checks
+from surveyapp.core.orientation.whole_project import Orientation
+from surveyapp.domain.results import Check
+
+
+def always_on_checks(orientation: Orientation) -> list[Check]:
+    """All of them, for every project."""
+    return [*grid_checks(orientation)]

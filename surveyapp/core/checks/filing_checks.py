@@ -1,0 +1,69 @@
+"""Whether the ledger is whole and what was closed is as it was: judged from what was read."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+from surveyapp.domain.closing import Closing, Filing
+from surveyapp.domain.results import Check
+from surveyapp.domain.subject import Subject
+
+LEDGER: Final = "ledger.jsonl"
+_CLAUSE: Final = "closing of the project"
+_SHOWN: Final = 5
+"""More changes are counted and not listed."""
+
+
+def filing_checks(filing: Filing) -> tuple[Check, ...]:
+    """Checks of the ledger and of every closing in force.
+
+    None without a ledger, and none for a whole one in which nothing was ever closed.
+    """
+    ledger = Subject.of("ledger", LEDGER)
+    checks = []
+    if filing.faults or filing.closed_once:
+        good = f"{filing.entries} entries, the chain is whole"
+        checks.append(_check("ledger.chain", filing.faults, ledger, good=good))
+    if filing.unfinished_tail:
+        text = "the last line of the ledger was never finished and does not count"
+        checks.append(_check("ledger.tail", [text], ledger, confirmed=False))
+    checks += [
+        _check(
+            "closing.unchanged",
+            closing.changed,
+            _subject(closing),
+            where=closing.session or "project",
+            good=f"as closed at {closing.at}",
+        )
+        for closing in filing.closings
+    ]
+    return tuple(checks)
+
+
+def _subject(closing: Closing) -> Subject:
+    return Subject.session(closing.session) if closing.session else Subject.project()
+
+
+def _check(
+    rule: str,
+    found: Sequence[str],
+    subject: Subject,
+    *,
+    where: str = "",
+    good: str = "",
+    confirmed: bool = True,
+) -> Check:
+    more = f" and {len(found) - _SHOWN} more" if len(found) > _SHOWN else ""
+    return Check(
+        rule=rule,
+        clause=_CLAUSE,
+        value=float(len(found)),
+        limit=0.0,
+        confirmed=confirmed,
+        passed=not found,
+        unit="changes",
+        where=where or subject.text,
+        text="; ".join(found[:_SHOWN]) + more if found else good,
+        subject=subject,
+    )

@@ -1,0 +1,1 @@
+"""Pointings of a field file to sets, means of the faces and sigmas."""

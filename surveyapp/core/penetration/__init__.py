@@ -1,0 +1,1 @@
+"""How far two headings will miss each other: covariance, sections, simulation, placement."""

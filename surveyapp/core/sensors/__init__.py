@@ -1,0 +1,1 @@
+"""Estimation from sensor logs: compass, tilt sensor, Allan deviation, filters."""

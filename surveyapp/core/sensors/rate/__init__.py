@@ -1,0 +1,1 @@
+"""Fibre-optic and micro-mechanical rate sensors: calibration, north finding, state of motion."""

@@ -1,0 +1,160 @@
+"""``north --method fog-station``: one row a position, to north with its sigma."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from surveyapp.core.sensors.rate.fog_north import FogNorth, Position, solve_north
+from surveyapp.core.sensors.rate.parameters import DEG_H
+from surveyapp.domain.calibration import SensorParameter
+from surveyapp.domain.north import NorthDirection, NorthResult
+from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.errors import Problem, SurveyError
+from surveyapp_models.angles import ARCSEC, wrap_pi
+
+NEEDED = ("gyr_x_rad_s", "horizontal_circle_deg", "face")
+OPTIONAL = ("vertical_circle_deg", "temperature_c")
+OFF_LEVEL = 60.0 * ARCSEC
+"""Distance of a reading from the constant above which the rule of the circle matters [rad]."""
+POLAR = math.radians(75.0)
+"""Latitude above which a gyro finds no north that serves (source 000-18) [rad]."""
+
+
+@dataclass(frozen=True, slots=True)
+class FogNorthOptions:
+    """What is stated beside the rows.
+
+    Parameters
+    ----------
+    latitude, approximate_north : float
+        [rad]
+    constant, constant_sigma : float or None
+        [rad]
+    rate_sigma : float or None
+        Standard deviation of one row [rad/s].
+    rule : str or None
+        increases | decreases; None = not stated.
+    """
+
+    latitude: float
+    approximate_north: float
+    constant: float | None = None
+    constant_sigma: float | None = None
+    rate_sigma: float | None = None
+    rule: str | None = None
+
+
+def find_north(log: SensorLog, options: FogNorthOptions) -> NorthResult:
+    """North of the horizontal circle from the rows of a log.
+
+    Raises
+    ------
+    SurveyError
+    """
+    positions = _positions(log)
+    solved = solve_north(
+        positions,
+        latitude=options.latitude,
+        approximate_north=options.approximate_north,
+        constant=options.constant,
+        constant_sigma=options.constant_sigma or 0.0,
+        rate_sigma=options.rate_sigma,
+        reading_increases=options.rule != "decreases",
+    )
+    direction = NorthDirection(
+        None if solved.north is None else math.degrees(solved.north),
+        _in(solved.sigma, ARCSEC),
+        _in(solved.interval95, ARCSEC),
+    )
+    parameters = tuple(
+        SensorParameter(name, _in(value, unit), _in(sigma, unit), text)
+        for name, value, sigma, unit, text in (
+            ("bias", solved.bias, solved.sigmas[0], DEG_H, "deg/h"),
+            ("elevation", solved.elevation, solved.sigmas[2], ARCSEC, "arcsec"),
+            ("collimation", solved.collimation, solved.sigmas[1], ARCSEC, "arcsec"),
+        )
+    )
+    missing = tuple("gyro_north" if n == "north" else n for n in solved.undetermined)
+    return NorthResult(
+        method="fog-station",
+        source=log.id,
+        key="gyro_north",
+        direction=direction,
+        parameters=parameters,
+        undetermined=missing,
+        warnings=(*log.warnings, *_warnings(positions, solved, options)),
+        met=not missing,
+        n=log.size,
+        sha256=log.sha256,
+        extra={
+            "geometry": {"undetermined": list(missing)},
+            "residual_rms_deg_h": solved.residual_rms / DEG_H,
+            "dof": solved.dof,
+            "latitude_deg": math.degrees(options.latitude),
+        },
+    )
+
+
+def _in(value: float | None, unit: float) -> float | None:
+    return None if value is None else value / unit
+
+
+def _positions(log: SensorLog) -> list[Position]:
+    problems = []
+    rows = []
+    readings = log.columns.get("vertical_circle_deg", np.full(log.size, np.nan))
+    for k in range(log.size):
+        face = log.texts["face"][k].strip().upper()
+        if face not in ("L", "R"):
+            hint = "L = direct, R = plunged"
+            where = f"{log.path}, row {k + 1}"
+            problems.append(Problem("this is no face", where, face, "L or R", hint))
+            continue
+        vertical = float(readings[k])
+        rows.append(
+            Position(
+                float(log.columns["gyr_x_rad_s"][k]),
+                math.radians(float(log.columns["horizontal_circle_deg"][k])),
+                math.radians(vertical) if math.isfinite(vertical) else None,
+                face == "R",
+            )
+        )
+    if problems:
+        raise SurveyError(problems)
+    return rows
+
+
+def _warnings(
+    positions: list[Position], solved: FogNorth, options: FogNorthOptions
+) -> list[ResultWarning]:
+    warnings = []
+    if options.rate_sigma is None and solved.sigma is None:
+        text = "no --rate-sigma-deg-h and no row to spare: no sigma can be given"
+        warnings.append(ResultWarning("no_rate_sigma", text))
+    if options.constant is not None and options.rule is None:
+        off = [
+            abs(wrap_pi(p.vertical - options.constant - (math.pi if p.plunged else 0.0)))
+            for p in positions
+            if p.vertical is not None
+        ]
+        if off and max(off) > OFF_LEVEL:
+            text = (
+                f'a vertical reading lies {max(off) / ARCSEC:.0f}" off the constant and '
+                "--reading-from-elevation is not stated: increases was taken"
+            )
+            warnings.append(ResultWarning("rule_not_stated", text))
+    if solved.undetermined:
+        text = f"not determined by these positions: {', '.join(solved.undetermined)}"
+        if "collimation" in solved.undetermined:
+            text += "; positions east AND west tell bias and collimation apart"
+        if "north" in solved.undetermined:
+            text += "; two positions (plunging only) need --constant-deg"
+        warnings.append(ResultWarning("undetermined", text))
+    if abs(options.latitude) > POLAR:
+        text = "beyond 75 degrees of latitude the level earth rate is too small for mine surveying"
+        warnings.append(ResultWarning("high_latitude", text))
+    return warnings

@@ -1,0 +1,379 @@
+"""``calibrate rate --programme temperature``: a unit on a table in a chamber, node by node.
+
+At each temperature three positions, turned both ways. The gyros are determined completely (the
+vertical earth rate needs the latitude); one position per direction leaves the accelerometers three
+equations an axis for four unknowns, so their misalignments must come from a room-temperature log.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from surveyapp.core.sensors.rate.accelerometers import (
+    AccelerometerTriad,
+    Resting,
+    solve_accelerometers,
+)
+from surveyapp.core.sensors.rate.compensation import (
+    Compensation,
+    ModelName,
+    chosen_model,
+    compare_models,
+    fitted,
+    held_out_residuals,
+    weights_at,
+)
+from surveyapp.core.sensors.rate.parameters import (
+    accelerometer_parameters,
+    condition_of,
+    gyro_parameters,
+)
+from surveyapp.core.sensors.rate.position_log import (
+    ACCELEROMETERS,
+    label_problems,
+    means_of,
+    place_problems,
+    placed_stretches,
+    resting_of,
+    sense_of,
+)
+from surveyapp.core.sensors.rate.six_position import (
+    GyroTriad,
+    PositionMeans,
+    solve_six_positions,
+)
+from surveyapp.core.sensors.rate.table_log import motion_of, sense_warnings
+from surveyapp.domain.calibration import (
+    Calibration,
+    CalibrationModel,
+    Geometry,
+    HeldOut,
+    Misfit,
+    SensorParameter,
+)
+from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2, SensorLog
+from surveyapp.errors import Problem, SurveyError
+from surveyapp_models.arrays import Floats
+from surveyapp_models.constants import EARTH_RATE
+
+CHAMBER = "reference_temperature_c"
+NODE_GAP_C = 1.5
+"""Chamber temperatures closer than this are one node."""
+REFERENCE_C = 20.0
+"""Temperature at which the parameters of the card stand, where the nodes hold it."""
+
+
+@dataclass(frozen=True, slots=True)
+class TemperatureOptions:
+    """What is stated beside the log.
+
+    Parameters
+    ----------
+    latitude : float
+        [rad]
+    predict_at : tuple of float
+        Chamber temperatures [C].
+    room : tuple of Resting or None
+        Rests of a room-temperature log in six positions.
+    gravity : float
+        [m/s2]
+    flip_sigma : float
+        [rad]
+    relative_rate_sigma : float
+    """
+
+    latitude: float
+    predict_at: tuple[float, ...] = ()
+    room: tuple[Resting, ...] | None = None
+    gravity: float = STANDARD_GRAVITY_M_S2
+    flip_sigma: float = 0.0
+    relative_rate_sigma: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """Parameters at one chamber temperature [C]."""
+
+    temperature_c: float
+    parameters: tuple[SensorParameter, ...]
+    gyro: GyroTriad
+
+
+def node_numbers(temperatures: Floats) -> tuple[Floats, list[int]]:
+    """Nodes of the chamber, sorted, and the number of the node of each row (from 0)."""
+    order = np.sort(np.unique(np.round(temperatures, 3)))
+    cuts = np.flatnonzero(np.diff(order) > NODE_GAP_C)
+    groups = np.split(order, cuts + 1)
+    centres = np.array([float(np.mean(g)) for g in groups])
+    number = np.argmin(np.abs(temperatures[:, None] - centres[None, :]), axis=1)
+    levels = [float(np.mean(temperatures[number == k])) for k in range(centres.size)]
+    return np.array(levels), number.tolist()
+
+
+def calibrate_temperature(log: SensorLog, options: TemperatureOptions) -> Calibration:
+    """Parameters at each node, how to go between them, and how well that serves.
+
+    Raises
+    ------
+    SurveyError
+        With everything that cannot be used.
+    """
+    problems = place_problems(log)
+    motion = motion_of(log)
+    if isinstance(motion, Problem):
+        raise SurveyError([*problems, motion])
+    levels, numbers = node_numbers(log.columns[CHAMBER])
+    problems += _outside(levels, options.predict_at, log.path)
+    if problems:
+        raise SurveyError(problems)
+    placed, problems = placed_stretches(log, motion, numbers, ("position", CHAMBER))
+    _, resting = resting_of(log, motion, placed)
+    means, warnings, wrong = sense_of(means_of(log, placed), where=log.path)
+    problems += [*wrong, *label_problems(resting, where=log.path)]
+    if problems:
+        raise SurveyError(problems)
+    room = None
+    if options.room is not None:
+        room = solve_accelerometers(options.room, gravity=options.gravity)
+        problems += _room_problems(room)
+        if problems:
+            raise SurveyError(problems)
+    nodes = _nodes(levels, means, resting, room, options)
+    return _calibration(log, nodes, options, [*sense_warnings(motion), *warnings])
+
+
+def _outside(levels: Floats, wanted: Sequence[float], where: str) -> list[Problem]:
+    low, high = float(levels.min()), float(levels.max())
+    return [
+        Problem(
+            "the temperature lies outside the nodes",
+            f"{where}, --predict-at",
+            f"{t:g} C",
+            f"{low:g} to {high:g} C",
+            "nothing is extrapolated: calibrate over the range in which the unit is used",
+        )
+        for t in wanted
+        if not low <= t <= high
+    ]
+
+
+def _room_problems(room: AccelerometerTriad) -> list[Problem]:
+    if room.rank == 12:
+        return []
+    return [
+        Problem(
+            "the room-temperature log does not determine the accelerometers",
+            "--room",
+            f"rank {room.rank} of 12",
+            "six positions, each axis up and down",
+        )
+    ]
+
+
+def _nodes(
+    levels: Floats,
+    means: Sequence[PositionMeans],
+    resting: Sequence[tuple[int, Resting]],
+    room: AccelerometerTriad | None,
+    options: TemperatureOptions,
+) -> list[Node]:
+    nodes = []
+    for k, level in enumerate(levels.tolist()):
+        gyro = _gyro([m for m in means if m.group == k], options)
+        parameters = gyro_parameters(gyro)
+        rests = [r for group, r in resting if group == k]
+        if rests:
+            tilt = None if room is None else room.misalignment
+            triad = solve_accelerometers(rests, gravity=options.gravity, misalignment=tilt)
+            parameters += accelerometer_parameters(triad)
+        nodes.append(Node(level, parameters, gyro))
+    return nodes
+
+
+def _gyro(means: Sequence[PositionMeans], options: TemperatureOptions) -> GyroTriad:
+    """Matrix as in six positions; the bias from every position with the matrix as measured there.
+
+    How the unit is seated enters the measured column and the vertical earth rate alike, so every
+    position serves for every bias.
+    """
+    vertical = EARTH_RATE * math.sin(options.latitude)
+    triad = solve_six_positions(
+        means,
+        flip_sigma=options.flip_sigma,
+        relative_rate_sigma=options.relative_rate_sigma,
+        vertical_rate=vertical,
+    )
+    if not means:
+        return triad
+    free = np.array([m.rest - m.up * m.column() * vertical for m in means])
+    sigma = np.sqrt(np.sum([m.sigma_rest**2 for m in means], axis=0)) / len(means)
+    return GyroTriad(triad.matrix, free.mean(axis=0), triad.sigma_matrix, sigma)
+
+
+def _series(nodes: Sequence[Node], name: str) -> tuple[Floats, Floats] | None:
+    """Values and sigmas of a parameter over the nodes; None where a node lacks it."""
+    cells = [next((p for p in n.parameters if p.name == name), None) for n in nodes]
+    values = [None if c is None else c.value for c in cells]
+    if any(v is None for v in values):
+        return None
+    sigmas = [0.0 if c is None or c.sigma is None else c.sigma for c in cells]
+    return np.array(values, dtype=np.float64), np.array(sigmas)
+
+
+def _predicted(nodes: Sequence[Node], model: ModelName, at: float) -> list[SensorParameter]:
+    """Every parameter at a temperature, its sigma with the model's own error at left-out nodes."""
+    temperatures = np.array([n.temperature_c for n in nodes])
+    found = []
+    for parameter in nodes[0].parameters:
+        series = _series(nodes, parameter.name)
+        if series is None:
+            found.append(SensorParameter(parameter.name, None, None, parameter.unit))
+            continue
+        values, sigmas = series
+        function = fitted(model, temperatures, values)
+        weights = weights_at(model, temperatures, at)
+        if function is None:
+            function = fitted("piecewise_linear", temperatures, values)
+            weights = weights_at("piecewise_linear", temperatures, at)
+        value = float(function(np.array([at]))[0]) if function is not None else math.nan
+        spread = float(np.sqrt(np.mean(sigmas**2)))
+        noise = float(np.sqrt(np.sum((weights * sigmas) ** 2))) if weights is not None else spread
+        sigma = math.hypot(noise, _model_error(model, temperatures, values, sigmas))
+        found.append(SensorParameter(parameter.name, value, sigma, parameter.unit))
+    return found
+
+
+def _model_error(model: ModelName, temperatures: Floats, values: Floats, sigmas: Floats) -> float:
+    """What is left at left-out nodes beyond the noise of the nodes themselves."""
+    rest = held_out_residuals(model, temperatures, values)
+    if rest is None:
+        return 0.0
+    return math.sqrt(max(float(np.mean(rest**2)) - 2.0 * float(np.mean(sigmas**2)), 0.0))
+
+
+def _calibration(
+    log: SensorLog,
+    nodes: list[Node],
+    options: TemperatureOptions,
+    warnings: list[ResultWarning],
+) -> Calibration:
+    temperatures = np.array([n.temperature_c for n in nodes])
+    names = [f"bias_{a}" for a in "xyz"]
+    series = [_series(nodes, name) for name in names]
+    known = [s[0] for s in series if s is not None]
+    comparison: tuple[Compensation, ...] = ()
+    if known:
+        comparison = compare_models(temperatures, np.column_stack(known))
+    model = chosen_model(comparison)
+    low, high = float(temperatures.min()), float(temperatures.max())
+    at = min(max(REFERENCE_C, low), high)
+    parameters = tuple(_predicted(nodes, model, at))
+    missing = _missing(nodes, log)
+    rms = {c.model: c.held_out_rms for c in comparison}
+    return Calibration(
+        kind="temperature",
+        source=log.id,
+        parameters=parameters,
+        before=Misfit(rms.get("none"), "deg/h", "biases at left-out nodes, no compensation"),
+        after=Misfit(rms.get(model), "deg/h", f"biases at left-out nodes, {model}"),
+        geometry=Geometry(
+            "good" if not missing else "restricted", condition_of(nodes[0].gyro.matrix), missing
+        ),
+        held_out=HeldOut(
+            "one inner node after the other", rms.get("none"), rms.get(model), "deg/h"
+        ),
+        models=tuple(
+            CalibrationModel(c.model, None, c.held_out_rms, c.model == model) for c in comparison
+        ),
+        warnings=(*log.warnings, *warnings, *_warnings(log, comparison, options)),
+        met=not missing,
+        n=log.size,
+        sha256=log.sha256,
+        temperature_c=(low, high),
+        constants={"reference_temperature_c": at},
+        extra=_extra(log, nodes, options, comparison, model),
+    )
+
+
+def _extra(
+    log: SensorLog,
+    nodes: Sequence[Node],
+    options: TemperatureOptions,
+    comparison: Sequence[Compensation],
+    model: ModelName,
+) -> dict[str, Any]:
+    """The keys that only this programme has."""
+    return {
+        "nodes": [
+            {"temperature_c": n.temperature_c, "parameters": [p.to_dict() for p in n.parameters]}
+            for n in nodes
+        ],
+        "predicted": [
+            {
+                "temperature_c": t,
+                "parameters": [p.to_dict() for p in _predicted(nodes, model, t)],
+            }
+            for t in options.predict_at
+        ],
+        "chosen": model,
+        "compensation": [
+            {"model": c.model, "held_out_rms": c.held_out_rms, "admissible": c.admissible}
+            for c in comparison
+        ],
+        "accelerometer_rank": _ranks(log, options),
+    }
+
+
+def _ranks(log: SensorLog, options: TemperatureOptions) -> dict[str, int] | None:
+    """Rank of the accelerometer equations of a node: of twelve, of six with the room log."""
+    if not log.has(*ACCELEROMETERS):
+        return None
+    axes = {word[0] for word in log.texts["position"] if word}
+    signs = {word for word in log.texts["position"] if word}
+    full = all({f"{a}+", f"{a}-"} <= signs for a in "xyz")
+    alone = 12 if full else 3 * (len(axes) + (1 if len(signs) > len(axes) else 0))
+    if options.room is None:
+        return {"rank": alone, "of": 12}
+    return {"rank": 6, "of": 6}
+
+
+def _missing(nodes: Sequence[Node], log: SensorLog) -> tuple[str, ...]:
+    names = dict.fromkeys(p.name for n in nodes for p in n.parameters if p.value is None)
+    if not log.has(*ACCELEROMETERS):
+        names |= dict.fromkeys(
+            f"accelerometer_misalignment_{a}{b}" for a in "xyz" for b in "xyz" if a != b
+        )
+    return tuple(names)
+
+
+def _warnings(
+    log: SensorLog, comparison: Sequence[Compensation], options: TemperatureOptions
+) -> list[ResultWarning]:
+    warnings = []
+    grey = next((c for c in comparison if c.model == "grey"), None)
+    if grey is not None:
+        text = (
+            f"the grey model is {'' if grey.admissible else 'not '}admissible; that says nothing "
+            "of its usefulness: only the error at left-out nodes does"
+        )
+        warnings.append(ResultWarning("grey_model", text))
+    if options.room is None:
+        text = (
+            "one position per direction: the accelerometer equations have rank 9 of 12; "
+            "misalignments are not determined, and bias and scale factor assume that there are "
+            "none. --room FILE brings them from six positions at room temperature"
+        )
+        warnings.append(ResultWarning("accelerometer_rank", text))
+    if log.has(*ACCELEROMETERS):
+        text = (
+            f"accelerometer scale factors refer to {options.gravity:.5f} m/s2; "
+            "--gravity-m-s2 states the local one"
+        )
+        warnings.append(ResultWarning("gravity", text))
+    return warnings

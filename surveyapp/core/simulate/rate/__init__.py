@@ -1,0 +1,1 @@
+"""Simulated logs of rate sensors, made from attitudes and the rotation of the earth."""

@@ -1,0 +1,263 @@
+"""Simulated logs of rate sensors by the kind that the command line names, as small projects."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, Final
+
+import numpy as np
+
+from surveyapp.core.simulate.rate.log import SimulatedLog
+from surveyapp.core.simulate.rate.table_programmes import (
+    DEG_H,
+    FogStationRun,
+    ImuOnTable,
+    TableRun,
+    fog_station_log,
+    six_position_log,
+    temperature_log,
+)
+from surveyapp.core.simulate.specification import Effect, EffectKind
+from surveyapp.errors import Problem, SurveyError
+from surveyapp_models.angles import ARCSEC
+from surveyapp_models.arrays import Floats
+from surveyapp_models.rate.fog_station import FogOnTelescope
+from surveyapp_models.rate.triad import Triad
+from surveyapp_models.rate.turntable import Table
+
+LATITUDE: Final = math.radians(45.77)
+"""Of source 003."""
+NODES_C: Final = (-10.0, 5.0, 20.0, 30.0, 40.0)
+"""Chamber temperatures of source 000-25."""
+
+TABLE_EFFECTS: Final = (
+    EffectKind("flip_error", "arcsec", ARCSEC, "sigma of the seating about each body axis"),
+    EffectKind("rate_error", "1", 1.0, "relative sigma of the table's rate, each way anew"),
+    EffectKind("scale_asymmetry", "1", 1.0, "excess of the scale factor for positive rates"),
+    EffectKind(
+        "g_sensitivity", "deg/h/g", DEG_H, "bias of gyro x per g along y, half of it z to x"
+    ),
+    EffectKind("bias_ramp", "deg/h/h", DEG_H / 3600.0, "drift of every bias"),
+    EffectKind("temperature", "deg/h/K", DEG_H, "bias per kelvin; the record warms by 5 K"),
+    EffectKind("interference_line", "deg/h", DEG_H, "amplitude of a line", (("hz", 2.48),)),
+    EffectKind("magnetic_sensitivity", "deg/h/uT", DEG_H, "bias per field along the axis"),
+    EffectKind("gross_error", "deg/h", DEG_H, "one position's output of gyro x is off"),
+)
+"""Effects of a unit on a table."""
+
+FOG_EFFECTS: Final = (
+    EffectKind("rate_error", "1", 1.0, "relative sigma of the table's rate, each way anew"),
+    EffectKind("scale_factor", "ppm", 1e-6, "error of the gyro's scale factor"),
+    EffectKind("gross_error", "deg/h", DEG_H, "one set's output is off while turning clockwise"),
+)
+"""Effects of a gyro on a total station."""
+
+
+def _sizes(effects: Sequence[Effect]) -> dict[str, float]:
+    return {e.id: e.size for e in effects}
+
+
+def _option(effects: Sequence[Effect], identity: str, name: str, default: float) -> float:
+    for effect in effects:
+        if effect.id == identity:
+            return float(dict(effect.options).get(name) or default)
+    return default
+
+
+def example_unit(sizes: Mapping[str, float], run: TableRun) -> ImuOnTable:
+    """A fibre-optic unit with errors of a usual size, and the effects that are asked for."""
+    g = np.zeros((3, 3))
+    g[0, 1], g[2, 0] = sizes.get("g_sensitivity", 0.0), 0.5 * sizes.get("g_sensitivity", 0.0)
+    gyro = Triad(
+        scale=np.array([300e-6, -200e-6, 500e-6]),
+        misalignment=np.array([[0.0, 200.0, -100.0], [50.0, 0.0, 80.0], [-30.0, 60.0, 0.0]])
+        * ARCSEC,
+        bias=np.array([5.0, -3.0, 2.0]) * DEG_H,
+        g_sensitivity=g,
+        asymmetry=np.full(3, sizes.get("scale_asymmetry", 0.0)),
+        noise=2.0 * DEG_H,
+    )
+    accelerometer = Triad(
+        scale=np.array([1e-3, -5e-4, 2e-3]),
+        misalignment=np.array([[0.0, 100.0, -200.0], [300.0, 0.0, 80.0], [-30.0, 60.0, 0.0]])
+        * ARCSEC,
+        bias=np.array([0.05, -0.03, 0.02]),
+        noise=0.01,
+    )
+    return ImuOnTable(
+        gyro,
+        accelerometer,
+        Table(LATITUDE, azimuth=2.39, tilt_along=math.radians(0.3)),
+        replace(run, rate_error=sizes.get("rate_error", 0.0)),
+        flip_sigma=sizes.get("flip_error", 0.0),
+        warm_up_s=120.0,
+        drift=sizes.get("bias_ramp", 0.0),
+    )
+
+
+def _six_positions(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
+    sizes = _sizes(effects)
+    log = six_position_log(example_unit(sizes, TableRun(turns=4.0, interval_s=0.1)), rng)
+    return _disturbed(log, effects, rng)
+
+
+def _disturbed(
+    log: SimulatedLog, effects: Sequence[Effect], rng: np.random.Generator
+) -> SimulatedLog:
+    """Effects that are added to what the gyros put out."""
+    sizes = _sizes(effects)
+    columns = dict(log.columns)
+    time = columns["time_s"]
+    names = [f"gyr_{a}_rad_s" for a in "xyz"]
+    warmth = 5.0 * (1.0 - np.exp(-time / (0.4 * float(time[-1]))))
+    columns["temperature_c"] = 20.0 + warmth + rng.normal(0.0, 0.02, time.size)
+    for name in names:
+        columns[name] = columns[name] + sizes.get("temperature", 0.0) * warmth
+    if "interference_line" in sizes:
+        hz = _option(effects, "interference_line", "hz", 2.48)
+        wave = sizes["interference_line"] * np.sin(2.0 * np.pi * hz * time)
+        columns[names[0]] = columns[names[0]] + wave
+    if "magnetic_sensitivity" in sizes:
+        columns |= _field(columns, sizes["magnetic_sensitivity"], names, rng)
+    if "gross_error" in sizes:
+        words = np.array(log.texts["position"])
+        struck = words == sorted(set(words.tolist()))[int(rng.integers(6))]
+        columns[names[0]] = columns[names[0]] + sizes["gross_error"] * struck
+    return SimulatedLog(columns, log.texts, dict(log.truth) | {"effects": sizes})
+
+
+def _field(
+    columns: Mapping[str, Floats],
+    sensitivity: float,
+    names: Sequence[str],
+    rng: np.random.Generator,
+) -> dict[str, Floats]:
+    """A fluxgate beside the gyros in a field that is switched, and what the gyros make of it."""
+    time = columns["time_s"]
+    found: dict[str, Floats] = {}
+    for k, (axis, name) in enumerate(zip("xyz", names, strict=True)):
+        period = float(time[-1]) / (3.0 + 2.0 * k)
+        field_ut = 50.0 * np.sign(np.sin(2.0 * np.pi * time / period + 0.3 * k))
+        found[f"mag_{axis}_uT"] = field_ut + rng.normal(0.0, 0.5, time.size)
+        found[name] = columns[name] + sensitivity * field_ut
+    return found
+
+
+def _temperature(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
+    unit = example_unit(_sizes(effects), TableRun(turns=2.0, interval_s=0.1, pause_s=2.0))
+    unit = replace(unit, warm_up_s=10.0, static_s=10.0, table=Table(LATITUDE, azimuth=0.7))
+
+    def at(node: float) -> tuple[Triad, Triad]:
+        t = (node - 20.0) / 30.0
+        bias = unit.gyro.bias + np.array([3.0, -2.0, 1.0]) * DEG_H * (t + 0.4 * t**2 - 0.2 * t**3)
+        force = unit.accelerometer.bias + np.array([0.01, 0.02, -0.01]) * t
+        return replace(unit.gyro, bias=bias), replace(unit.accelerometer, bias=force)
+
+    return temperature_log(unit, rng, nodes_c=NODES_C, at=at)
+
+
+def _fog_station(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
+    sizes = _sizes(effects)
+    fog = FogOnTelescope(
+        constant=math.radians(171.0 + 7.0 / 60.0 + 49.0 / 3600.0),
+        scale=sizes.get("scale_factor", 0.0),
+        bias=1.0 * DEG_H,
+        noise=0.05 * DEG_H * math.sqrt(1000.0),
+    )
+    run = TableRun(
+        rate=math.radians(120.0),
+        turns=4.0,
+        interval_s=0.01,
+        pause_s=1.0,
+        ramp_s=0.5,
+        rate_error=sizes.get("rate_error", 0.0),
+    )
+    reading = fog.constant - 23761.0 * ARCSEC
+    spec = FogStationRun(fog, Table(math.radians(34.0)), run, reading, sets=8, passes=2)
+    log = fog_station_log(spec, rng)
+    if "gross_error" in sizes:
+        columns = dict(log.columns)
+        struck = (columns["set"] == 3.0) & (columns["table_rate_deg_s"] > 0.0)
+        columns["gyr_x_rad_s"] = columns["gyr_x_rad_s"] + sizes["gross_error"] * struck
+        log = SimulatedLog(columns, log.texts, log.truth)
+    return SimulatedLog(log.columns, log.texts, dict(log.truth) | {"effects": sizes})
+
+
+Recipe = Callable[[Sequence[Effect], np.random.Generator], SimulatedLog]
+
+PROGRAMMES: Final[Mapping[str, Mapping[str, tuple[Recipe, tuple[EffectKind, ...]]]]] = {
+    "rate": {
+        "six-position": (_six_positions, TABLE_EFFECTS),
+        "temperature": (_temperature, TABLE_EFFECTS[:2]),
+    },
+    "fog-station": {"": (_fog_station, FOG_EFFECTS)},
+}
+"""Kind of log to its programmes, the first one the default, and the effects that each knows."""
+
+_ENTRY_KEYS: Final[Mapping[str, str]] = {
+    "fog-station": 'reading_from_elevation = "increases"\n',
+}
+
+
+def effects_of(kind: str, programme: str | None) -> tuple[EffectKind, ...]:
+    """The effects that a programme knows.
+
+    Raises
+    ------
+    SurveyError
+        If there is no such programme.
+    """
+    return _chosen(kind, programme)[1][1]
+
+
+def _chosen(kind: str, programme: str | None) -> tuple[str, tuple[Recipe, tuple[EffectKind, ...]]]:
+    known = PROGRAMMES[kind]
+    name = next(iter(known)) if programme is None else programme
+    if name not in known:
+        expected = " or ".join(known) or "no programme"
+        raise SurveyError(Problem("there is no such programme", "--programme", name, expected))
+    return name, known[name]
+
+
+def simulate_rate(
+    kind: str, programme: str | None, *, effects: Sequence[Effect], rng: np.random.Generator
+) -> tuple[dict[str, str], dict[str, Any]]:
+    """A project with one sensor log, and the truth.
+
+    Parameters
+    ----------
+    kind : str
+        A key of ``PROGRAMMES``.
+    programme : str or None
+        None = the first.
+    effects : sequence of Effect
+    rng : Generator
+
+    Returns
+    -------
+    files : dict
+        Relative path to text.
+    truth : dict
+    """
+    name, (recipe, _) = _chosen(kind, programme)
+    log = recipe(effects, rng)
+    identity = name or kind
+    lines = [
+        "format = 1",
+        f'name = "Simulated {identity}, not observed"',
+        "",
+        "[[sensor_log]]",
+        f'id = "{identity}"',
+        f'kind = "{"rate" if kind != "fog-station" else kind}"',
+        f'file = "sensors/{identity}.csv"',
+    ]
+    if name and kind == "rate":
+        lines.append(f'programme = "{name}"')
+    latitude = log.truth.get("latitude_deg", math.degrees(LATITUDE))
+    if kind != "fog-station":
+        lines.append(f"latitude_deg = {latitude}")
+    project = "\n".join(lines) + "\n" + _ENTRY_KEYS.get(kind, "")
+    files = {"project.toml": project, f"sensors/{identity}.csv": log.csv()}
+    return files, {"kind": kind, "programme": name, "simulated": True, **log.truth}

@@ -1,0 +1,231 @@
+"""The result of calibrating a sensor: parameters, how well they fit, and what is not determined.
+
+One form for every kind of sensor, schema ``surveyapp.calibrate/1``. A parameter that the record
+does not determine has no value, and its name stands in the geometry.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Final, Literal
+
+from surveyapp.domain.project import ResultWarning
+
+CALIBRATE_SCHEMA: Final = "surveyapp.calibrate/1"
+
+GeometryVerdict = Literal["good", "restricted", "refused"]
+
+
+@dataclass(frozen=True, slots=True)
+class SensorParameter:
+    """One parameter of a sensor.
+
+    Parameters
+    ----------
+    name : str
+    value : float or None
+        None = not determined.
+    sigma : float or None
+        Standard deviation; None where it is not determined or nothing was estimated.
+    unit : str
+    """
+
+    name: str
+    value: float | None
+    sigma: float | None
+    unit: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON."""
+        return {"name": self.name, "value": self.value, "sigma": self.sigma, "unit": self.unit}
+
+
+@dataclass(frozen=True, slots=True)
+class Misfit:
+    """Root mean square of residuals; ``of`` says of what, where the unit does not."""
+
+    rms: float | None
+    unit: str
+    of: str = ""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON."""
+        return {"rms": self.rms, "unit": self.unit, "of": self.of}
+
+
+@dataclass(frozen=True, slots=True)
+class HeldOut:
+    """Residuals of rows that had no part in the fit.
+
+    Parameters
+    ----------
+    scheme : str
+        How the rows were left out.
+    before, after : float or None
+        Root mean square without and with the chosen model.
+    unit : str
+    """
+
+    scheme: str
+    before: float | None
+    after: float | None
+    unit: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON."""
+        return {
+            "scheme": self.scheme,
+            "before": self.before,
+            "after": self.after,
+            "unit": self.unit,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Geometry:
+    """What the record can determine at all.
+
+    Parameters
+    ----------
+    verdict : str
+        good | restricted | refused.
+    condition : float or None
+        Of the scaled normal equations; shown, never a gate.
+    undetermined : tuple of str
+        Names of parameters without a value.
+    heading_sigma_deg : float or None
+        Of a compass.
+    coverage : float or None
+        Share of the directions that the record holds, 0 to 1.
+    """
+
+    verdict: GeometryVerdict
+    condition: float | None = None
+    undetermined: tuple[str, ...] = ()
+    heading_sigma_deg: float | None = None
+    coverage: float | None = None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON."""
+        return {
+            "verdict": self.verdict,
+            "condition": self.condition,
+            "heading_sigma_deg": self.heading_sigma_deg,
+            "coverage": self.coverage,
+            "undetermined": list(self.undetermined),
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class CalibrationModel:
+    """One of the models that were compared."""
+
+    id: str
+    rms: float | None
+    held_out_rms: float | None
+    chosen: bool
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON."""
+        return {
+            "id": self.id,
+            "rms": self.rms,
+            "held_out_rms": self.held_out_rms,
+            "chosen": self.chosen,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """A calibrated sensor.
+
+    Parameters
+    ----------
+    kind : str
+        compass | swing | tilt | dividing-head | six-position ...
+    source : str
+        Log or file.
+    parameters : tuple of SensorParameter
+    before, after : Misfit
+        Without and with what was estimated.
+    geometry : Geometry
+    held_out : HeldOut or None
+    models : tuple of CalibrationModel
+    warnings : tuple of ResultWarning
+    met : bool
+        False ends with exit 1: refused, undetermined or inconsistent, as the subject says.
+    n : int
+        Rows used.
+    sha256 : str
+        Of the log.
+    extra : mapping
+        Further keys of the JSON that only this subject has; ready for JSON.
+    covariance : tuple of tuple of float, or None
+        Of the parameters that have a sigma, in their order.
+    temperature_c : tuple of float, or None
+        Lowest and highest temperature of the record.
+    constants : mapping of str to float
+        Further numbers that a card needs beside the parameters.
+    notes : mapping of str to str
+        What a reader of the card must know.
+    """
+
+    kind: str
+    source: str
+    parameters: tuple[SensorParameter, ...]
+    before: Misfit
+    after: Misfit
+    geometry: Geometry
+    held_out: HeldOut | None = None
+    models: tuple[CalibrationModel, ...] = ()
+    warnings: tuple[ResultWarning, ...] = ()
+    met: bool = True
+    n: int = 0
+    sha256: str = ""
+    extra: Mapping[str, Any] = field(default_factory=dict)
+    covariance: tuple[tuple[float, ...], ...] | None = None
+    temperature_c: tuple[float, float] | None = None
+    constants: Mapping[str, float] = field(default_factory=dict)
+    notes: Mapping[str, str] = field(default_factory=dict)
+
+    def value(self, name: str) -> float | None:
+        """Value of a parameter, None if it is not determined.
+
+        Raises
+        ------
+        KeyError
+            If there is no parameter of this name.
+        """
+        return self.parameter(name).value
+
+    def parameter(self, name: str) -> SensorParameter:
+        """One parameter by its name.
+
+        Raises
+        ------
+        KeyError
+            If there is no parameter of this name.
+        """
+        for item in self.parameters:
+            if item.name == name:
+                return item
+        raise KeyError(name)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON, schema ``surveyapp.calibrate/1``."""
+        return {
+            "schema": CALIBRATE_SCHEMA,
+            "kind": self.kind,
+            "source": self.source,
+            "sha256": self.sha256,
+            "n": self.n,
+            "parameters": [item.to_dict() for item in self.parameters],
+            "before": self.before.to_dict(),
+            "after": self.after.to_dict(),
+            "held_out": None if self.held_out is None else self.held_out.to_dict(),
+            "geometry": self.geometry.to_dict(),
+            "models": [item.to_dict() for item in self.models],
+            "warnings": [item.to_dict() for item in self.warnings],
+            **self.extra,
+        }

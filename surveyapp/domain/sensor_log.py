@@ -1,0 +1,146 @@
+"""A sensor log: columns of numbers under their canonical names, and what was seen while reading.
+
+A log is what a compass, a tilt sensor, a gyro or an accelerometer recorded. Names, units and the
+meaning of every column stand in one table here; ``io.sensor_logs`` reads files into it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surveyapp.domain.project import ResultWarning
+
+Array = NDArray[np.float64]
+
+STANDARD_GRAVITY_M_S2: Final = 9.80665
+"""Standard acceleration of free fall, 3rd CGPM 1901: what one g is in a log."""
+
+NUMBER_COLUMNS: Final[dict[str, str]] = {
+    "time_s": "s",
+    **{f"acc_{axis}_m_s2": "m/s2" for axis in "xyz"},
+    **{f"gyr_{axis}_rad_s": "rad/s" for axis in "xyz"},
+    **{f"mag_{axis}_uT": "uT" for axis in "xyz"},
+    "temperature_c": "C",
+    "reference_temperature_c": "C",
+    **{f"ref_q{axis}": "1" for axis in "wxyz"},
+    **{f"ref_p{axis}_m": "m" for axis in "xyz"},
+    "heading_deg": "deg",
+    "tilt_along_arcsec": "arcsec",
+    "tilt_across_arcsec": "arcsec",
+    "ref_along_arcsec": "arcsec",
+    "ref_across_arcsec": "arcsec",
+    "set": "1",
+    "angle_deg": "deg",
+    "flip": "1",
+    "output": "LSB",
+    "frequency_hz": "Hz",
+    "impedance_ohm": "ohm",
+    "table_angle_deg": "deg",
+    "table_rate_deg_s": "deg/s",
+    "pass": "1",
+    "round": "1",
+    "index_angle_deg": "deg",
+    "vertical_circle_deg": "deg",
+    "horizontal_circle_deg": "deg",
+    "odometer_m": "m",
+    "power_cycle": "1",
+}
+"""Canonical columns of numbers and the unit in which they are held."""
+
+TEXT_COLUMNS: Final = ("test", "position", "face", "phase")
+"""Canonical columns that hold a word in each row."""
+
+SENSOR_COLUMNS: Final = tuple(
+    name
+    for name in NUMBER_COLUMNS
+    if name.startswith(("acc_", "gyr_", "mag_", "tilt_")) or name == "output"
+)
+"""What a sensor itself put out, as against references, settings and times."""
+
+TRIPLES: Final[dict[str, tuple[str, str, str]]] = {
+    "acc": ("acc_x_m_s2", "acc_y_m_s2", "acc_z_m_s2"),
+    "gyr": ("gyr_x_rad_s", "gyr_y_rad_s", "gyr_z_rad_s"),
+    "mag": ("mag_x_uT", "mag_y_uT", "mag_z_uT"),
+    "ref_p": ("ref_px_m", "ref_py_m", "ref_pz_m"),
+}
+"""The three columns of a vector."""
+
+QUATERNION: Final = ("ref_qw", "ref_qx", "ref_qy", "ref_qz")
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """Time without samples: ``start_s`` is the last sample before it, ``end_s`` the next one."""
+
+    start_s: float
+    end_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class SensorLog:
+    """One log as read.
+
+    Parameters
+    ----------
+    id : str
+        Name for messages: of the ``[[sensor_log]]`` table or of the file.
+    columns : mapping of str to ndarray, shape (n,)
+        Canonical name to values in the unit of ``units``; NaN where a cell that is not needed is
+        empty. Columns that are no canonical ones stand under the name that they have in the file.
+    units : mapping of str to str
+    texts : mapping of str to tuple of str
+        Columns of words.
+    size : int
+        Rows.
+    rate_hz : float or None
+        Stated, else from the median interval of ``time_s``; None where neither is there.
+    gaps : tuple of Gap
+        Intervals of more than 2.5 median ones.
+    clipped : mapping of str to int
+        Columns that stay at their largest or smallest value, and in how many rows.
+    scaled : mapping of str to float
+        Columns given in counts, and the stated factor.
+    sha256 : str
+        Of the file.
+    path : str
+        For messages.
+    warnings : tuple of ResultWarning
+    """
+
+    id: str
+    columns: Mapping[str, Array]
+    units: Mapping[str, str]
+    size: int
+    texts: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    rate_hz: float | None = None
+    gaps: tuple[Gap, ...] = ()
+    clipped: Mapping[str, int] = field(default_factory=dict)
+    scaled: Mapping[str, float] = field(default_factory=dict)
+    sha256: str = ""
+    path: str = ""
+    warnings: tuple[ResultWarning, ...] = ()
+
+    def __post_init__(self) -> None:
+        for name, values in self.columns.items():
+            if values.shape != (self.size,):
+                raise ValueError(f"column {name} has shape {values.shape}, not ({self.size},)")
+
+    def has(self, *names: str) -> bool:
+        """Whether every one of these columns is there."""
+        return all(name in self.columns or name in self.texts for name in names)
+
+    def vector(self, name: str) -> Array | None:
+        """The vector ``acc``, ``gyr``, ``mag`` or ``ref_p``, shape (n, 3); None if incomplete."""
+        names = TRIPLES[name]
+        return np.column_stack([self.columns[c] for c in names]) if self.has(*names) else None
+
+    def quaternion(self) -> Array | None:
+        """Reference attitude, w first, body to a level frame, shape (n, 4); None if incomplete."""
+        if not self.has(*QUATERNION):
+            return None
+        return np.column_stack([self.columns[c] for c in QUATERNION])

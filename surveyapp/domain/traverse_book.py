@@ -1,0 +1,81 @@
+"""A traverse as a project states it: its table, and the rows of its book in radians and metres.
+
+What a gyro row is worth comes from the sessions; nothing here knows an azimuth.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from surveyapp.domain.observations import ObservationKind
+from surveyapp.domain.subject import Subject
+
+
+@dataclass(frozen=True, slots=True)
+class TraverseRow:
+    """One row of a traverse book.
+
+    Parameters
+    ----------
+    kind : ObservationKind
+    at, back, to : str
+    value : float or None
+        [rad] or [m]; None for gyro rows, whose value comes from the sessions.
+    sigma : float or None
+        As stated in the row [rad] or [m].
+    set : str
+    hi, ht : float
+        [m].
+    note : str
+    line : int
+    """
+
+    kind: ObservationKind
+    at: str
+    back: str
+    to: str
+    value: float | None
+    sigma: float | None
+    set: str
+    hi: float
+    ht: float
+    note: str
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Traverse:
+    """A ``[[traverse]]`` table with its book.
+
+    Parameters
+    ----------
+    name, book, traverse_class : str
+        ``book``: its path as written; ``traverse_class``: the rule book's own word.
+    sigma_angle : float or None
+        One angle [rad].
+    sigma_mm, sigma_ppm : float or None
+        Of a distance.
+    instrument_m, target_m : float
+        Centring, each component [m].
+    atmosphere_applied, constant_applied : bool or None
+        Whether the instrument has corrected the distances; None where nobody says.
+    rows : tuple of TraverseRow
+        Of its book, every station known.
+    """
+
+    name: str
+    book: str
+    traverse_class: str = ""
+    sigma_angle: float | None = None
+    sigma_mm: float | None = None
+    sigma_ppm: float | None = None
+    instrument_m: float = 0.0
+    target_m: float = 0.0
+    atmosphere_applied: bool | None = None
+    constant_applied: bool | None = None
+    rows: tuple[TraverseRow, ...] = ()
+
+    @property
+    def subject(self) -> Subject:
+        """The traverse as a value."""
+        return Subject.of("traverse", self.name)

@@ -1,0 +1,130 @@
+"""The grid of project.toml: the mine's own grid, and convergences that a record prints."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from typing import Final
+
+from surveyapp.domain.mine_grid import MineGrid, StatedConvergence
+from surveyapp.domain.project import OrientationSession, Station
+from surveyapp.errors import Problem
+from surveyapp.io.tables import Findings, Table
+from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, AngleUnit, wrap_pi
+
+_LIMIT_M: Final = 1e8
+_LAST_DIGIT: Final = {AngleUnit.GON: 3240.0, AngleUnit.DEG: 3600.0}
+"""Arc-seconds of one unit where an angle is a plain number."""
+SAME: Final = 0.005 * ARCSEC
+"""Two statements of one convergence that differ by less are one."""
+
+
+def read_mine_grid(top: Table, unit: AngleUnit, crs: str | None) -> MineGrid | None:
+    """``grid = { base, rotation, origin, scale, rotation_sigma_arcsec }``, None where absent."""
+    table = top.table("grid")
+    if table is None:
+        return None
+    base = table.text("base", multiline=True)
+    if crs is not None and base is not None and crs != base:
+        found = f"crs = {crs[:80]}, base = {base[:80]}"
+        table.problem("the grid is named twice and differently", found, "crs or grid.base")
+    rotation = table.angle("rotation", unit)
+    if rotation is None and "rotation" not in table:
+        table.problem("rotation is missing", "", 'rotation = "12-00-00"')
+    scale = table.number("scale", low=0.5, high=2.0)
+    sigma = table.number("rotation_sigma_arcsec", low=0.0, high=36000.0)
+    origin = _origin(table, based=base is not None or crs is not None)
+    table.warn_unknown()
+    return MineGrid(
+        rotation=wrap_pi(rotation or 0.0),
+        base=base if base is not None else crs,
+        scale=1.0 if scale is None else scale,
+        rotation_sigma=(sigma or 0.0) * ARCSEC,
+        e=origin.get("e", 0.0),
+        n=origin.get("n", 0.0),
+        base_e=origin.get("base_e"),
+        base_n=origin.get("base_n"),
+        latitude=None if "lat" not in origin else math.radians(origin["lat"]),
+        longitude=None if "lon" not in origin else math.radians(origin["lon"]),
+    )
+
+
+def _origin(grid: Table, *, based: bool) -> dict[str, float]:
+    """What is given of the origin; it must tell where the mine's grid lies."""
+    table = grid.table("origin")
+    wanted = "e, n, base_e, base_n" if based else "e, n, lat, lon"
+    if table is None:
+        if "origin" not in grid:
+            grid.problem("rotation stands without origin", "", f"origin = {{ {wanted} }}")
+        return {}
+    found: dict[str, float] = {}
+    pairs = ((("e", "n"), _LIMIT_M), (("base_e", "base_n"), _LIMIT_M), (("lat", "lon"), 180.0))
+    for keys, limit in pairs:
+        for key in keys:
+            value = table.number(key, low=-limit, high=90.0 if key == "lat" else limit)
+            if value is not None:
+                found[key] = value
+        if (keys[0] in table) != (keys[1] in table):
+            table.problem(f"{keys[0]} and {keys[1]} belong together", "", "both or none")
+    if abs(found.get("lat", 0.0)) > 90.0:
+        table.problem("lat is out of range", found["lat"], "-90 to 90")
+    if "base_e" in table and "lat" in table:
+        table.problem("the origin is given twice", "base_e/base_n and lat/lon", "one of them")
+    if "base_e" in table and not based:
+        table.problem("base_e and base_n stand without base", "", 'base = "EPSG:..."')
+    elif not {"base_e", "lat"} & set(table.data):
+        table.problem("the origin does not tell where it lies", "", f"origin = {{ {wanted} }}")
+    table.warn_unknown()
+    return found
+
+
+def read_convergence(table: Table, unit: AngleUnit) -> StatedConvergence | None:
+    """``convergence`` with ``convergence_sigma_arcsec`` of a station or session.
+
+    Without a sigma it is known to its last printed digit.
+    """
+    value = table.angle("convergence", unit)
+    sigma = table.number("convergence_sigma_arcsec", low=0.0, high=36000.0)
+    if value is None:
+        if sigma is not None and "convergence" not in table:
+            table.problem("convergence_sigma_arcsec stands without convergence")
+        return None
+    if sigma is None:
+        sigma = last_digit_arcsec(str(table.data["convergence"]), unit) / math.sqrt(12.0)
+    return StatedConvergence(wrap_pi(value), sigma * ARCSEC)
+
+
+def last_digit_arcsec(text: str, unit: AngleUnit) -> float:
+    """Size of the last digit of an angle [arc-seconds]."""
+    decimals = re.search(r"\.(\d*)\D*$", text)
+    digits = len(decimals[1]) if decimals is not None else 0
+    return float(_LAST_DIGIT.get(unit, 1.0) * 10.0**-digits)
+
+
+def refuse_two_convergences(
+    stations: Sequence[Station], sessions: Sequence[OrientationSession], findings: Findings
+) -> None:
+    """A station has one convergence, whoever states it."""
+    for station in stations:
+        stated = [
+            (f"session {session.id}", session.convergence)
+            for session in sessions
+            if session.station == station.name and session.convergence is not None
+        ]
+        if station.convergence is not None:
+            stated.insert(0, (f"station {station.name}", station.convergence))
+        if len(stated) < 2:
+            continue
+        first, value = stated[0]
+        for where, other in stated[1:]:
+            apart = wrap_pi(other.value - value.value)
+            if abs(apart) > SAME:
+                findings.problems.append(
+                    Problem(
+                        f"the convergence at {station.name} is stated twice and differently",
+                        f"project.toml, {first} and {where}",
+                        f'{apart * RHO_ARCSEC:+.2f}" apart',
+                        "one convergence for each station",
+                    )
+                )

@@ -1,0 +1,1 @@
+"""Field files of other programs, one module for each format; ``catalogue`` lists them."""

@@ -1,0 +1,340 @@
+"""Leica GSI-8 and GSI-16: blocks to pointings, with both ways of naming a station.
+
+Convention 1: a block 11 with 84 85 86 or 88 and no reading is a station. Convention 2: a code block
+41 of the office's own code names it in 42 and the instrument height in 43; the code is told by the
+surveyor, never guessed. Words 32, 33 and 81-83 beside 31 are the instrument's results: no second
+observation. What stands behind a damaged station block is left out with it.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import Counter
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final
+
+from surveyapp.domain.fieldfile import Face, FieldFile, KnownPoint, Pointing
+from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.importers.fieldfiles.gathering import (
+    Gathering,
+    ReadOptions,
+    file_lines,
+    gathering,
+    read_field_file,
+)
+from surveyapp.io.importers.fieldfiles.gsi_words import (
+    Layout,
+    Word,
+    WordError,
+    block_width,
+    blocks,
+    cut_layouts,
+    layout,
+    words,
+)
+
+_READINGS: Final = ("21", "22", "31", "32")
+_STATION: Final = frozenset({"84", "85", "86", "88"})
+_USED: Final = frozenset(
+    {"11", "16", "19", "21", "22", "31", "32", "41", "42", "43", "51", "58", "59", "71"}
+    | {str(i) for i in range(71, 80)}
+    | {str(i) for i in range(81, 89)}
+)
+_MEASURED = re.compile(r"\s(?:21|22|31|32)\.")
+_TWO_PI: Final = 2.0 * math.pi
+_TWO_TENTHS_M: Final = 2e-4
+
+
+@dataclass(slots=True)
+class _State:
+    """Where the reading stands: the current station and what may have been lost."""
+
+    gathered: Gathering
+    station: str | None = None
+    hi: float | None = None
+    setup: int = 0
+    lost: str = ""
+    number: int | None = None
+    doubtful: int = 0
+    previous: str = ""
+    gaps: int = 0
+    widths: set[int] = field(default_factory=set)
+    conventions: set[str] = field(default_factory=set)
+    codes: Counter[str] = field(default_factory=Counter)
+    homeless: list[int] = field(default_factory=list)
+    cut: frozenset[Layout] = frozenset()
+
+
+def read_gsi(path: Path, options: ReadOptions) -> FieldFile:
+    """Read a GSI file.
+
+    Parameters
+    ----------
+    path : Path
+    options : ReadOptions
+        ``station_code`` for convention 2.
+
+    Returns
+    -------
+    FieldFile
+
+    Raises
+    ------
+    SurveyError
+        Every damaged line; no station in either convention (codes are listed).
+    """
+    lines, encoding = file_lines(read_field_file(path), path.name)
+    state = _State(gathering(path, options))
+    cleaned = [line.strip("\x1a\x00\t").lstrip() for line in lines]
+    state.cut = cut_layouts(Counter(layout(b) for line in cleaned if line for b in blocks(line)))
+    for number, line in state.gathered.numbered(cleaned):
+        if line.strip():
+            for block in blocks(line):
+                _block(state, number, block)
+    if encoding == "latin-1" and not all(line.isascii() for line in lines):
+        state.gathered.warn("code_page", "names that are no ASCII were read as Latin-1")
+    _check_stations(state)
+    if state.gaps:
+        text = f"the running block numbers leap {state.gaps} times: were blocks deleted?"
+        state.gathered.warn("block_numbers", text)
+    widths = "/".join(str(width) for width in sorted(state.widths))
+    names = " and ".join(sorted(state.conventions))
+    return state.gathered.finish(form=("gsi", f"GSI-{widths}, {names}"), applied=(True, True))
+
+
+def _block(state: _State, line: int, block: str) -> None:
+    gathered = state.gathered
+    try:
+        found = words(block)
+        if found[0].word_index not in ("11", "41"):
+            raise WordError(f"the block does not begin with a word 11 or 41: {found[0].word_index}")
+        if state.cut and layout(block) in state.cut:
+            raise WordError(f"the line is cut short behind {len(found)} words")
+    except WordError as error:
+        gathered.damaged(line, str(error), block, "words of 8 or 16 characters, parted by blanks")
+        if block.lstrip("*").startswith("41") or re.search(r"\s8[4568]\.", block):
+            _lose(state, line)
+        elif not _MEASURED.search(block):
+            state.doubtful = line
+        return
+    if block.rstrip() == state.previous:
+        gathered.skip(line, "duplicate", "the same block as the one before, number included")
+        return
+    state.previous = block.rstrip()
+    _numbered(state, found[0])
+    state.widths.add(block_width(block))
+    try:
+        _meaning(state, line, found)
+    except WordError as error:
+        gathered.damaged(line, str(error), block)
+        if not any(word.word_index in _READINGS for word in found):
+            _lose(state, line)
+
+
+def _numbered(state: _State, first: Word) -> None:
+    """Follow the running number; behind a block beyond reading it tells whether one is missing."""
+    number = int(first.info) if first.info.isdigit() else None
+    follows = (
+        number is not None and state.number is not None and number == (state.number + 1) % 10000
+    )
+    if state.doubtful and not follows:
+        _lose(state, state.doubtful)
+    elif number is not None and state.number is not None and not follows:
+        state.gaps += not (state.number == 9999 and number in (0, 1))
+    state.doubtful = 0
+    state.number = number if number is not None else state.number
+
+
+def _lose(state: _State, line: int) -> None:
+    """A station block that cannot be read: what follows has no station."""
+    state.lost = f"the station block of line {line} cannot be read"
+    state.station = None
+
+
+def _meaning(state: _State, line: int, found: list[Word]) -> None:
+    by_index = {word.word_index: word for word in reversed(found)}
+    for index in by_index:
+        if index not in _USED:
+            state.gathered.ignored[f"word {index}"] += 1
+    if found[0].word_index == "41":
+        _code(state, by_index)
+    elif any(index in by_index and not by_index[index].empty for index in _READINGS):
+        _pointing(state, line, by_index)
+    elif _STATION & by_index.keys():
+        _station(state, line, by_index)
+    elif {"81", "82", "83"} & by_index.keys():
+        state.gathered.point(_coordinates(state, line, by_index, "81"))
+    else:
+        state.gathered.ignored["block without a reading"] += 1
+
+
+def _length(state: _State, word: Word | None) -> float | None:
+    if word is None or word.empty:
+        return None
+    value, feet = word.length(state.gathered.foot.metres)
+    state.gathered.feet = state.gathered.feet or feet
+    return value
+
+
+def _coordinates(state: _State, line: int, found: dict[str, Word], first: str) -> KnownPoint:
+    e, n, h = (_length(state, found.get(str(int(first) + i))) for i in range(3))
+    if (e is None) != (n is None):
+        e = n = None
+    return KnownPoint(found["11"].name, e, n, h, line)
+
+
+def _occupy(state: _State, name: str, hi: float | None) -> None:
+    same_height = (hi is None or state.hi is None or abs(hi - state.hi) < _TWO_TENTHS_M) and (
+        hi is None
+    ) == (state.hi is None)
+    if state.lost or name != state.station or not same_height:
+        state.setup += 1
+    state.station, state.hi, state.lost = name, hi, ""
+
+
+def _station(state: _State, line: int, found: dict[str, Word]) -> None:
+    name, hi = found["11"].name, _length(state, found.get("88"))
+    point = _coordinates(state, line, found, "84")
+    _occupy(state, name, hi)
+    state.conventions.add("station blocks")
+    if not (point.e == point.n == 0.0 and not point.h):  # as delivered: nobody entered them
+        state.gathered.point(point)
+
+
+def _code(state: _State, found: dict[str, Word]) -> None:
+    code = found["41"].name
+    if code != state.gathered.options.station_code:
+        state.codes[code] += 1
+        state.gathered.ignored[f"code {code}"] += 1
+        return
+    if "42" not in found or found["42"].empty:
+        raise WordError(f"code {code} names no station in word 42")
+    hi = None
+    if "43" in found and not found["43"].empty:
+        hi = _code_height(found["43"])
+    _occupy(state, found["42"].name, hi)
+    state.conventions.add(f"code {code}")
+
+
+def _code_height(word: Word) -> float:
+    """Instrument height of word 43 [m]; without a decimal point it is in mm."""
+    text = word.data.strip()
+    if "." in text:
+        try:
+            value = float(text)
+        except ValueError:
+            raise WordError(f"word 43 holds no height: {text}") from None
+        return -value if word.sign == "-" else value
+    return word.integer() * 1e-3
+
+
+def _reading(word: Word | None) -> float | None:
+    if word is None or word.empty:
+        return None
+    value = word.angle()
+    if not 0.0 <= value <= _TWO_PI + 1e-12:
+        raise WordError(f"word {word.word_index} is beyond the circle: {word.sign}{word.data}")
+    return 0.0 if value >= _TWO_PI else value
+
+
+def _distance(state: _State, word: Word | None) -> float | None:
+    value = _length(state, word)
+    if value is not None and value < 0.0:
+        raise WordError(f"a distance is negative: {value:g} m")
+    return value or None
+
+
+def _corrections(found: dict[str, Word]) -> tuple[float | None, float | None]:
+    """Ppm and prism constant [m] of words 51, 58, 59."""
+    ppm: float | None = None
+    prism: float | None = None
+    if "51" in found and not found["51"].empty:
+        first, second = found["51"].pair()
+        ppm, prism = float(first), second * 1e-3
+    if "58" in found and not found["58"].empty:
+        prism = found["58"].integer() * 1e-4
+    if "59" in found and not found["59"].empty:
+        ppm = found["59"].integer() * 1e-4
+    return ppm, prism
+
+
+def _note(found: dict[str, Word]) -> str:
+    texts = [found[key].name for key in sorted(found) if key[:1] == "7" and not found[key].empty]
+    return " ".join(text for text in texts if text != "0")
+
+
+def _time(word: Word | None) -> str:
+    digits = "" if word is None else word.data[-8:]
+    if len(digits) != 8 or not digits.isdigit() or digits == "00000000":
+        return ""
+    return f"{digits[:2]}-{digits[2:4]}T{digits[4:6]}:{digits[6:]}"
+
+
+def _pointing(state: _State, line: int, found: dict[str, Word]) -> None:
+    hz, v = _reading(found.get("21")), _reading(found.get("22"))
+    v = v or None
+    sd = _distance(state, found.get("31"))
+    hd = _distance(state, found.get("32")) if sd is None else None
+    hi = _length(state, found.get("88"))
+    ht = _length(state, found.get("87"))
+    ppm, prism = _corrections(found)
+    if "16" in found and not found["16"].empty and found["16"].name != state.station:
+        _occupy(state, found["16"].name, None)
+        state.conventions.add("word 16")
+    if state.station is None:
+        if state.lost:
+            state.gathered.dependent(line, state.lost)
+        else:
+            state.homeless.append(line)
+        return
+    to = found["11"].name
+    if to == state.station:
+        raise WordError(f"point {to} is sighted from itself")
+    face: Face = "" if v is None else "R" if v > math.pi else "L"
+    pointing = Pointing(
+        line=line,
+        at=state.station,
+        to=to,
+        setup=str(state.setup),
+        face=face,
+        hz=hz,
+        v=v,
+        sd=sd,
+        hd=hd,
+        hi=state.hi if hi is None else hi,
+        ht=ht,
+        ppm=ppm,
+        prism_m=prism,
+        time=_time(found.get("19")),
+        note=_note(found),
+    )
+    state.gathered.add(pointing)
+
+
+def _check_stations(state: _State) -> None:
+    """Refuse a file that names no station; codes that could be the station's are listed."""
+    gathered, code = state.gathered, state.gathered.options.station_code
+    codes = ", ".join(f"{name} ({count} times)" for name, count in state.codes.most_common())
+    if code is not None and f"code {code}" not in state.conventions and not state.lost:
+        raise SurveyError(
+            Problem(
+                "the file has no code block of this code",
+                "--station-code",
+                code,
+                f"one of the codes of the file: {codes or 'there is none'}",
+            )
+        )
+    if not state.conventions and state.homeless:
+        raise SurveyError(
+            Problem(
+                "no station is named in the file",
+                gathered.name,
+                f"code blocks: {codes}" if codes else "neither station nor code blocks",
+                "blocks 11 with 84 85 86 or 88, or code blocks 41 with --station-code N",
+                "Which code of your office opens a station?" if codes else "",
+            )
+        )
+    for line in state.homeless:
+        gathered.damaged(line, "a reading stands before any station", f"line {line}", "a station")

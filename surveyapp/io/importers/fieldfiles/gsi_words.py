@@ -1,0 +1,211 @@
+"""Words of a Leica GSI block: index, information, sign and 8 or 16 characters, by their place.
+
+Knows how a word is cut and what unit its digits have; what a block means is ``gsi``.
+
+Sources: Leica TPS1100 reference manual, GSI format; totalopenstation, input format Leica GSI.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from typing import Final, NamedTuple
+
+from surveyapp.io.importers.fieldfiles.units import DEGREE, GON, MIL
+
+RARE: Final = 9
+"""A layout that stands in less than a tenth of the blocks is rare."""
+HEAD: Final = 7
+"""Index, information and sign."""
+WIDTHS: Final = (8, 16)
+_OPENING = re.compile(r"(?<!\S)\*?(?:11|41)[\d.?]{4}[+-]")
+_HEAD = re.compile(r"\d\d[\d.?]{4}[+-]")
+_PLACES: Final = {"0": 1e-3, "6": 1e-4, "8": 1e-5}
+_FEET: Final = {"1": 1e-3, "7": 1e-4}
+_CIRCLE: Final = {"2": (GON, 1e-5), "3": (DEGREE, 1e-5), "5": (MIL, 1e-4)}
+_WHOLE: Final = {
+    width: re.compile(rf"(\d\d[\d.?]{{4}})([+-])(.{{{width}}})( +|$)") for width in WIDTHS
+}
+"""Whole words one behind the other; what they leave over shows a damage."""
+_NOTHING = re.compile(r"0*-+")
+
+
+class WordError(ValueError):
+    """A word that cannot be read: what is wrong with it."""
+
+
+class Word(NamedTuple):
+    """One word of a block.
+
+    Parameters
+    ----------
+    word_index : str
+        Two or three digits.
+    info : str
+        Positions 3 to 6, dots included.
+    sign : str
+    data : str
+        8 or 16 characters.
+    """
+
+    word_index: str
+    info: str
+    sign: str
+    data: str
+
+    @property
+    def empty(self) -> bool:
+        """Whether dashes say that there is no value."""
+        return "-" in self.data and _NOTHING.fullmatch(self.data.strip()) is not None
+
+    @property
+    def name(self) -> str:
+        """The data as a name: without the zeros that pad it; of zeros only, ``0``."""
+        text = self.data.strip()
+        return text.lstrip("0").strip() or ("0" if text else "")
+
+    def integer(self) -> int:
+        """The digits with their sign."""
+        if not (self.data.isascii() and self.data.isdigit()):
+            raise WordError(f"word {self.word_index} holds no number: {self.data.strip()}")
+        value = int(self.data)
+        return -value if self.sign == "-" else value
+
+    def angle(self) -> float:
+        """A circle reading [rad]."""
+        unit, digits = self.info[-1], self.integer()
+        if unit == "4":
+            seconds10, rest = digits % 1000, digits // 1000
+            minutes, degrees = rest % 100, rest // 100
+            if minutes > 59 or seconds10 > 600 or digits < 0:
+                raise WordError(f"word {self.word_index} is no DDDMMSSs: {self.data}")
+            return (degrees + minutes / 60.0 + seconds10 / 36000.0) * DEGREE
+        if unit not in _CIRCLE:
+            raise WordError(f"word {self.word_index} has no unit of angles: {unit}")
+        factor, place = _CIRCLE[unit]
+        return digits * place * factor
+
+    def length(self, foot: float) -> tuple[float, bool]:
+        """A length [m] and whether it was written in feet."""
+        unit = self.info[-1]
+        if unit in _PLACES:
+            return round(self.integer() * _PLACES[unit], 6), False
+        if unit in _FEET:
+            return self.integer() * _FEET[unit] * foot, True
+        raise WordError(f"word {self.word_index} has no unit of lengths: {unit}")
+
+    def pair(self) -> tuple[int, int]:
+        """Two signed numbers in one word (51: ppm and prism), split at the second sign."""
+        match = re.fullmatch(r"(\d+)([+-])(\d+)", self.data.strip())
+        if match is None:
+            raise WordError(
+                f"word {self.word_index} holds no two signed numbers: {self.data.strip()}"
+            )
+        first = int(match[1]) * (-1 if self.sign == "-" else 1)
+        return first, int(match[3]) * (-1 if match[2] == "-" else 1)
+
+
+def blocks(line: str) -> Iterator[str]:
+    """Blocks of a line: each word 11 or 41 opens one."""
+    if line.count("11") + line.count("41") > 1:
+        places = [match.start() for match in _OPENING.finditer(line)]
+        if len(places) > 1:
+            if line[: places[0]].strip():
+                yield line[: places[0]]
+            for start, end in zip(places, [*places[1:], len(line)], strict=True):
+                yield line[start:end]
+            return
+    yield line
+
+
+def block_width(block: str) -> int:
+    """Characters of each datum: 16 behind a star, else as the first word shows."""
+    if block.startswith("*"):
+        return 16
+    first = block.split(" ", 1)[0]
+    return 16 if len(first) == HEAD + 16 else 8
+
+
+def words(block: str) -> list[Word]:
+    """Words of a block, cut by their place.
+
+    Raises
+    ------
+    WordError
+        If the block is cut short, or a word is none.
+    """
+    width = block_width(block)
+    text = block.removeprefix("*").rstrip()
+    whole = _WHOLE[width].findall(text)
+    if sum([len(gap) for _, _, _, gap in whole]) + len(whole) * (HEAD + width) == len(text):
+        return [Word(*_index(head), sign, data) for head, sign, data, _ in whole]
+    return _words_one_by_one(block, text, width)
+
+
+def _words_one_by_one(block: str, text: str, width: int) -> list[Word]:
+    """Words of a block that is not whole at first sight: trimmed blanks, or damage to be named."""
+    found: list[Word] = []
+    place = 0
+    while place < len(text):
+        piece = text[place : place + HEAD + width]
+        if len(piece) < HEAD + width and not _blank_tail(piece, block, place, width):
+            raise WordError(f"the line is cut short behind {len(found)} words: {piece}")
+        piece = piece.ljust(HEAD + width)
+        if _HEAD.fullmatch(piece[:HEAD]) is None:
+            raise WordError(f"this is no word: {piece.strip()}")
+        index, info = _index(piece[:6])
+        found.append(Word(index, info, piece[6], piece[HEAD:]))
+        place += HEAD + width
+        if place < len(text) and text[place] != " ":
+            raise WordError(f"word {index} is too long: {text[place - HEAD - width :][:30]}")
+        while place < len(text) and text[place] == " ":
+            place += 1
+    return found
+
+
+Layout = tuple[str, str]
+"""First and second digits of the indices of a block's words, in a row each."""
+
+
+def layout(block: str) -> Layout:
+    """Indices of a block's words by their places; nothing is checked."""
+    text = block.removeprefix("*").rstrip()
+    stride = HEAD + block_width(block) + 1
+    return text[::stride], text[1::stride]
+
+
+def cut_layouts(counts: Mapping[Layout, int]) -> frozenset[Layout]:
+    """Layouts that are the beginning of another that the file holds far more often.
+
+    An instrument writes every block of a kind with the same words, and a distance that was not
+    measured as 0: a rare block with fewer words was cut between two of them.
+    """
+    return frozenset(
+        short
+        for short, count in counts.items()
+        if any(
+            whole[0].startswith(short[0])
+            and whole[1].startswith(short[1])
+            and len(whole[0]) > len(short[0])
+            and number > count * (1 if _names_station(short) else RARE)
+            for whole, number in counts.items()
+        )
+    )
+
+
+def _names_station(indices: Layout) -> bool:
+    return "84" in {a + b for a, b in zip(*indices, strict=False)}
+
+
+def _blank_tail(piece: str, block: str, place: int, width: int) -> bool:
+    """Whether only blanks of a text were trimmed: the untrimmed block reaches the word's end."""
+    start = place + (1 if block.startswith("*") else 0)
+    return len(piece) > HEAD and len(block) >= start + HEAD + width
+
+
+@lru_cache(maxsize=1 << 14)
+def _index(head: str) -> tuple[str, str]:
+    """Index and information: two digits, three where the third position is a digit as well."""
+    size = 2 if head[:2] in ("11", "41") or not head[2].isdigit() else 3
+    return head[:size], head[size:].rjust(4, ".")

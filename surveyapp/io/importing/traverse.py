@@ -1,0 +1,275 @@
+"""A field file as a traverse of a project: book, readings as read and tables, all of it planned."""
+
+from __future__ import annotations
+
+import unicodedata
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Final
+
+from surveyapp.core.fieldfile.precision import (
+    FacePrecision,
+    distance_precision,
+    face_precision,
+)
+from surveyapp.core.fieldfile.reduction import reduce_file
+from surveyapp.core.network.collector import paused_collection
+from surveyapp.domain.fieldfile import FieldFile, ImportResult, KnownPoint, ReducedSet
+from surveyapp.domain.project import Project, ResultWarning
+from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.io.files import shown
+from surveyapp.io.importers.fieldfiles.catalogue import IMPORTERS
+from surveyapp.io.importers.fieldfiles.gathering import ReadOptions, read_field_file
+from surveyapp.io.importing.stations import check_names, match_stations
+from surveyapp.io.importing.texts import book_text, raw_text
+from surveyapp.io.importing.writing import Additions, sha256, stored_name, taken_files
+from surveyapp_models.angles import RHO_ARCSEC
+
+ASSUMED_ANGLE_ARCSEC: Final = 5.0
+ASSUMED_MM: Final = 2.0
+ASSUMED_PPM: Final = 2.0
+ASSUMED_CENTRING_MM: Final = 1.0
+"""Common class of total stations underground; told as an assumption wherever they are written."""
+_UNSAFE: Final = '/\\:*?"<>|'
+
+
+@dataclass(frozen=True, slots=True)
+class ImportOptions:
+    """What a surveyor tells about an import.
+
+    Parameters
+    ----------
+    traverse : str or None
+        Name of the traverse; None: the name of the file.
+    fixed : tuple of str
+        New stations that are fixed.
+    sigma_angle_arcsec : float or None
+        Standard deviation of an angle; None: from the faces, else assumed.
+    sigma_distance : tuple of float or None
+        Millimetres and ppm.
+    read : ReadOptions
+    """
+
+    traverse: str | None = None
+    fixed: tuple[str, ...] = ()
+    sigma_angle_arcsec: float | None = None
+    sigma_distance: tuple[float, float] | None = None
+    read: ReadOptions = field(default_factory=ReadOptions)
+
+
+@dataclass(frozen=True, slots=True)
+class Planned:
+    """What an import would write, and what it says about it."""
+
+    result: ImportResult
+    additions: Additions
+
+
+def traverse_name(options: ImportOptions, file: Path) -> str:
+    """Name of the traverse, fit for a file name.
+
+    Raises
+    ------
+    SurveyError
+        If a name that was told cannot be one of a file.
+    """
+    told = options.traverse
+    if told is None:
+        name = "".join("-" if c in _UNSAFE or not c.isprintable() else c for c in file.stem)
+        return name.strip(" .")[:100] or "import"
+    if (
+        not told.strip(" .")
+        or told != told.strip()
+        or told.startswith((".", "-"))
+        or len(told) > 100
+        or any(c in _UNSAFE or not c.isprintable() for c in told)
+    ):
+        expected = f"printable characters without {_UNSAFE}, no dot in front"
+        raise SurveyError(Problem("this is no name", "--traverse", shown(told), expected))
+    return told
+
+
+def _composed(file: FieldFile) -> FieldFile:
+    """Names in composed form (NFC): what looks the same is the same."""
+    if all(p.at.isascii() and p.to.isascii() for p in file.pointings):
+        return file
+
+    def nfc(text: str) -> str:
+        return unicodedata.normalize("NFC", text)
+
+    pointings = tuple(replace(p, at=nfc(p.at), to=nfc(p.to)) for p in file.pointings)
+    return replace(
+        file,
+        pointings=pointings,
+        points=tuple(replace(point, name=nfc(point.name)) for point in file.points),
+    )
+
+
+def read_traverse_file(form: str, file: Path, options: ReadOptions) -> FieldFile:
+    """Read a field file of a known format.
+
+    Raises
+    ------
+    SurveyError
+        For an unknown format and whatever is wrong with the file.
+    """
+    found = next((item for item in IMPORTERS if item.id == form), None)
+    if found is None:
+        known = [*(item.id for item in IMPORTERS), "gyro-csv"]
+        raise SurveyError(
+            Problem(
+                "there is no such format", "import", shown(form), "", nearest_names(form, known)
+            )
+        )
+    return _composed(found.read(file, options))
+
+
+def _sigmas(
+    options: ImportOptions, sets: Sequence[ReducedSet]
+) -> tuple[dict[str, object], list[ResultWarning]]:
+    """Sigmas of the header: told, from the file itself, or assumed and told as such."""
+    angle, first = _angle_sigma(options.sigma_angle_arcsec, face_precision(sets))
+    distance, second = _distance_sigma(options.sigma_distance, distance_precision(sets))
+    centring = f"centring {ASSUMED_CENTRING_MM:g} mm of instrument and target is assumed"
+    table: dict[str, object] = {
+        "sigma_angle_arcsec": float(angle),
+        "sigma_distance": {"mm": float(distance[0]), "ppm": float(distance[1])},
+        "centring_mm": {"instrument": ASSUMED_CENTRING_MM, "target": ASSUMED_CENTRING_MM},
+    }
+    return table, [*first, *second, ResultWarning("sigma_assumed", centring)]
+
+
+def _angle_sigma(
+    told: float | None, faces: FacePrecision | None
+) -> tuple[float, list[ResultWarning]]:
+    warnings = []
+    angle = told
+    if angle is None and faces is not None:
+        angle = max(round(faces.angle * RHO_ARCSEC, 1), 0.1)
+        text = f'sigma of an angle {angle:g}" from the faces ({faces.dof} degrees of freedom)'
+        warnings.append(ResultWarning("sigma_from_faces", text))
+    elif angle is None:
+        angle = ASSUMED_ANGLE_ARCSEC
+        text = f'sigma of an angle {angle:g}" is assumed: too few pairs of faces to estimate it'
+        warnings.append(ResultWarning("sigma_assumed", text + " (--sigma-angle tells it)"))
+    return angle, warnings
+
+
+def _distance_sigma(
+    told: tuple[float, float] | None, scatter: tuple[float, int] | None
+) -> tuple[tuple[float, float], list[ResultWarning]]:
+    if told is not None:
+        return told, []
+    if scatter is None:
+        distance = (ASSUMED_MM, ASSUMED_PPM)
+        text = f"sigma of a distance {distance[0]:g} mm + {distance[1]:g} ppm is assumed"
+        return distance, [ResultWarning("sigma_assumed", text + " (--sigma-distance tells it)")]
+    distance = (max(round(scatter[0] * 1000.0, 1), 0.1), 0.0)
+    text = (
+        f"sigma of a distance {distance[0]:g} mm from its sets ({scatter[1]} degrees of freedom): "
+        "zero and scale of the instrument are not in it"
+    )
+    return distance, [ResultWarning("sigma_from_sets", text)]
+
+
+def _all_points(read: FieldFile) -> dict[str, None]:
+    return dict.fromkeys(name for p in read.pointings for name in (p.at, p.to))
+
+
+def _header(
+    name: str, book: str, read: FieldFile, sigmas: dict[str, object]
+) -> tuple[str, dict[str, object]]:
+    applied = {
+        "atmosphere_applied": read.atmosphere_applied,
+        "constant_applied": read.constant_applied,
+    }
+    said = {key: value for key, value in applied.items() if value is not None}
+    return "traverse", {"name": name, "book": book, **sigmas, **said}
+
+
+def _check_free(project: Project, name: str) -> None:
+    if name in [item.name for item in project.traverses]:
+        raise SurveyError(
+            Problem(
+                "the project has a traverse of this name",
+                "--traverse",
+                shown(name),
+                "a name that is free",
+            )
+        )
+
+
+def _result(
+    read: FieldFile,
+    sets: Sequence[ReducedSet],
+    places: tuple[str, str, str, str],
+    counted: tuple[int, str],
+) -> ImportResult:
+    stored, name, book, raw = places
+    rows, digest = counted
+    return ImportResult(
+        format=read.format,
+        variant=read.variant,
+        file=stored,
+        sha256=digest,
+        stations=(),
+        traverse=name,
+        book=book,
+        raw=raw,
+        rows=rows,
+        readings=len(read.pointings),
+        sets=tuple(sets),
+        sessions=(),
+        skipped=read.skipped,
+        warnings=(),
+        written=False,
+    )
+
+
+def plan_traverse(project: Project, form: str, file: Path, options: ImportOptions) -> Planned:
+    """Everything that an import would write into a project.
+
+    Parameters
+    ----------
+    project : Project
+    form : str
+        ``gsi`` | ``sdr`` | ``jobxml`` | ``csv``.
+    file : Path
+    options : ImportOptions
+
+    Raises
+    ------
+    SurveyError
+        Whatever is wrong with file, options or names; a book or traverse of that name.
+    """
+    with paused_collection():
+        return _planned(project, form, file, options)
+
+
+def _planned(project: Project, form: str, file: Path, options: ImportOptions) -> Planned:
+    folder = Path(project.path)
+    name = traverse_name(options, file)
+    read = read_traverse_file(form, file, options.read)
+    _check_free(project, name)
+    points: dict[str, KnownPoint] = {point.name: point for point in read.points}
+    names = list(_all_points(read))
+    check_names(names, file.name)
+    sets, told = reduce_file(read)
+    stations, tables, station_warnings = match_stations(project, names, points, options.fixed)
+    sigmas, sigma_warnings = _sigmas(options, sets)
+    data = read_field_file(file)
+    book, raw = f"observations/{name}.csv", f"imports/{name}.raw.csv"
+    text, rows = book_text(sets)
+    stored = stored_name(folder, file, data, name)
+    files = {stored: data, raw: raw_text(read).encode(), book: text.encode()}
+    problems = taken_files(folder, files)
+    if problems:
+        raise SurveyError(problems)
+    result = replace(
+        _result(read, sets, (stored, name, book, raw), (rows, sha256(data))),
+        stations=tuple(stations),
+        warnings=(*read.warnings, *told, *station_warnings, *sigma_warnings),
+    )
+    new_tables = [("station", table) for table in tables]
+    return Planned(result, Additions(files, [*new_tables, _header(name, book, read, sigmas)]))

@@ -1,0 +1,1 @@
+"""Sensor logs: files of numbers from compasses, tilt sensors, gyros and accelerometers."""

@@ -1,0 +1,254 @@
+"""The rows of a log, read by blocks: never more than one block of text in memory.
+
+A block is parsed by numpy where every cell is a number; where one is not, it is read line by line,
+so that each wrong cell is named. Columns of a large log live in a file without a name that the
+system pages in and out.
+"""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from surveyapp.domain.sensor_log import Array
+from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.files import shown, shown_path
+from surveyapp.io.sensor_logs.layout import Layout
+
+BLOCK_BYTES: Final = 8 * 1024 * 1024
+MAPPED_VALUES: Final = 8_000_000
+"""Above this number of values the columns are mapped to disk (64 MB)."""
+
+MAX_TOLD: Final = 20
+"""Wrong cells that are named one by one; the rest is counted."""
+
+Progress = Callable[[float], None]
+"""Called with the share of the work that is done, 0 to 1."""
+
+
+@dataclass(slots=True)
+class Wrong:
+    """Cells that could not be read, in the order of the file."""
+
+    where: str
+    problems: list[Problem] = field(default_factory=list)
+    count: int = 0
+
+    def add(self, line: int, what: str, found: str, expected: str, hint: str = "") -> None:
+        """Note one."""
+        self.count += 1
+        if self.count <= MAX_TOLD:
+            place = f"{self.where}, line {line}"
+            self.problems.append(Problem(what, place, shown(found), expected, hint))
+
+    def all(self) -> list[Problem]:
+        """The problems, with a last one that counts those not named."""
+        more = self.count - len(self.problems)
+        if not more:
+            return list(self.problems)
+        return [*self.problems, Problem(f"{more} further cells are wrong", self.where)]
+
+
+@dataclass(slots=True)
+class Rows:
+    """What was read.
+
+    Parameters
+    ----------
+    numbers : ndarray, shape (k, n)
+        One row per wanted column of numbers.
+    texts : list of list of str
+    lines : first line of data, for messages
+    """
+
+    numbers: Array
+    texts: list[list[str]]
+    first_row: int
+
+
+def text_blocks(path: Path, *, where: str, digest: bool = True) -> Iterator[tuple[bytes, object]]:
+    """Whole lines of a file, block by block, with the running sha256."""
+    total = hashlib.sha256() if digest else None
+    rest = b""
+    try:
+        with path.open("rb") as stream:
+            while data := stream.read(BLOCK_BYTES):
+                if total is not None:
+                    total.update(data)
+                if b"\x00" in data:
+                    raise SurveyError(
+                        Problem("this is a binary file", where, "a NUL byte", "a log as CSV text")
+                    )
+                cut = data.rfind(b"\n") + 1
+                if cut == 0:
+                    rest += data
+                    if len(rest) > 4 * BLOCK_BYTES:
+                        raise SurveyError(Problem("the file has no lines", where))
+                    continue
+                yield rest + data[:cut], total
+                rest = data[cut:]
+    except OSError as error:
+        reason = error.strerror or str(error)
+        what = f"the file cannot be read ({reason})"
+        raise SurveyError(Problem(what, where, shown_path(path))) from None
+    yield rest, total
+
+
+def count_lines(path: Path, *, where: str) -> tuple[int, str]:
+    """Number of lines that hold anything at most, and the sha256 of the file."""
+    lines = 0
+    total: object = None
+    for block, running in text_blocks(path, where=where):
+        lines += block.count(b"\n") + (1 if block and not block.endswith(b"\n") else 0)
+        total = running
+    return lines, total.hexdigest() if total is not None else ""  # type: ignore[attr-defined]
+
+
+def read_rows(
+    path: Path,
+    layout: Layout,
+    wanted: tuple[Sequence[int], Sequence[int]],
+    *,
+    lines: int,
+    wrong: Wrong,
+    progress: Progress | None = None,
+) -> Rows:
+    """Read the wanted columns of a file.
+
+    Parameters
+    ----------
+    path : Path
+    layout : Layout
+    wanted : two sequences of int
+        Places of the columns of numbers and of those of words.
+    lines : int
+        Lines of the file, at most as many rows.
+    wrong : Wrong
+        Takes what cannot be read.
+    progress : callable, optional
+
+    Returns
+    -------
+    Rows
+    """
+    numbers, texts = list(wanted[0]), list(wanted[1])
+    room = max(lines - layout.first_row + 1, 0)
+    store = _store(len(numbers), room)
+    words: list[list[str]] = [[] for _ in texts]
+    filled, line = 0, 1
+    size = max(path.stat().st_size, 1)
+    done = 0
+    for block, _ in text_blocks(path, where=wrong.where, digest=False):
+        done += len(block)
+        text = _decoded(block, line, wrong.where)
+        rows = text.split("\n")
+        if rows and not rows[-1]:
+            rows.pop()
+        first = line
+        line += len(rows)
+        skip = max(layout.first_row - first, 0)
+        rows = rows[skip:]
+        if not rows:
+            continue
+        values, found = _parse(rows, layout, (numbers, texts), (first + skip, wrong))
+        store[:, filled : filled + values.shape[1]] = values
+        filled += values.shape[1]
+        for column, more in zip(words, found, strict=True):
+            column.extend(more)
+        if progress is not None:
+            progress(min(done / size, 1.0))
+    return Rows(store[:, :filled], words, layout.first_row)
+
+
+def _store(columns: int, rows: int) -> Array:
+    if columns * rows <= MAPPED_VALUES:
+        return np.empty((columns, rows))
+    with tempfile.TemporaryFile() as handle:  # the mapping keeps what it needs of it
+        return np.memmap(handle, dtype=np.float64, mode="w+", shape=(columns, rows))
+
+
+def _decoded(block: bytes, line: int, where: str) -> str:
+    try:
+        return block.decode("utf-8-sig" if line == 1 else "utf-8").replace("\r\n", "\n")
+    except UnicodeDecodeError as error:
+        at = line + block.count(b"\n", 0, error.start)
+        found = f"byte 0x{block[error.start]:02x}"
+        raise SurveyError(
+            Problem("this is no UTF-8 text", f"{where}, line {at}", found, "text in UTF-8")
+        ) from None
+
+
+def _parse(
+    rows: list[str],
+    layout: Layout,
+    wanted: tuple[list[int], list[int]],
+    place: tuple[int, Wrong],
+) -> tuple[Array, list[list[str]]]:
+    """Values of one block, by numpy where it can."""
+    numbers, texts = wanted
+    commas = len(layout.names) - 1
+    if not texts and all(row.count(layout.separator) == commas for row in rows):
+        try:
+            values = np.loadtxt(
+                rows, delimiter=layout.separator, usecols=numbers, comments=None, ndmin=2
+            )
+        except ValueError:
+            pass
+        else:
+            if values.shape[0] == len(rows):
+                return values.T, []
+    return _parse_lines(rows, layout, wanted, place)
+
+
+def _parse_lines(
+    rows: list[str],
+    layout: Layout,
+    wanted: tuple[list[int], list[int]],
+    place: tuple[int, Wrong],
+) -> tuple[Array, list[list[str]]]:
+    numbers, texts = wanted
+    first, wrong = place
+    values = np.full((len(numbers), len(rows)), np.nan)
+    words: list[list[str]] = [[] for _ in texts]
+    filled = 0
+    width = len(layout.names)
+    reader = csv.reader(rows, delimiter=layout.separator)
+    for offset, cells in enumerate(reader):
+        if not cells or not any(cell.strip() for cell in cells):
+            continue
+        line = first + offset
+        if len(cells) != width:
+            hint = _width_hint(cells, width, layout.separator)
+            wrong.add(line, "a row of another width", f"{len(cells)} cells", str(width), hint)
+            continue
+        for row, index in enumerate(numbers):
+            values[row, filled] = _number(cells[index], (line, layout.names[index]), wrong)
+        for column, index in zip(words, texts, strict=True):
+            column.append(cells[index].strip())
+        filled += 1
+    return values[:, :filled], words
+
+
+def _width_hint(cells: Sequence[str], width: int, separator: str) -> str:
+    if separator == "," and len(cells) > width:
+        return "were decimal commas written? Numbers take a decimal point"
+    return "was the file cut off while it was written?" if len(cells) < width else ""
+
+
+def _number(cell: str, place: tuple[int, str], wrong: Wrong) -> float:
+    text = cell.strip()
+    if not text:
+        return float("nan")
+    try:
+        return float(text)
+    except ValueError:
+        hint = "numbers take a decimal point" if "," in text else ""
+        wrong.add(place[0], f"{place[1]} is no number", cell, "a number", hint)
+        return 0.0

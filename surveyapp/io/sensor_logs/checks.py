@@ -1,0 +1,246 @@
+"""What is wrong or odd in the columns of a log, all of it together.
+
+A needed column must be there, must be finite and must vary; times must increase; counts need a
+unit. Values that no sensor can have in the stated unit are counts or another unit: refused with
+what they look like, never guessed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.sensor_log import SENSOR_COLUMNS, TRIPLES, Array, Gap
+from surveyapp.errors import Problem
+
+GAP_FACTOR: Final = 2.5
+"""An interval of more than so many median ones is a gap."""
+
+CLIPPED_ROWS: Final = 5
+CLIPPED_RATIO: Final = 3.0
+"""At the end of its range a sensor stays: that often, and that much more than at the next value."""
+
+_PIECE: Final = 1 << 20
+
+
+@dataclass(frozen=True, slots=True)
+class Plausible:
+    """Bounds of the median size of a vector, and in which unit each range would be."""
+
+    low: float
+    high: float
+    unit: str
+    looks_like: tuple[tuple[str, float, float], ...]
+
+
+PLAUSIBLE: Final[dict[str, Plausible]] = {
+    "mag": Plausible(1.0, 1000.0, "uT", (("nT", 1e3, 1e6), ("G", 0.05, 1.0), ("mG", 50.0, 2000.0))),
+    "acc": Plausible(2.0, 50.0, "m/s2", (("g", 0.5, 2.0), ("mg", 500.0, 2000.0))),
+}
+"""Sizes that a magnetic field on the ground and a specific force can have in a record."""
+
+
+def pieces(values: Array) -> list[Array]:
+    """A column piece by piece, so that nothing of its length is made beside it."""
+    return [values[i : i + _PIECE] for i in range(0, values.size, _PIECE)]
+
+
+def not_finite(name: str, values: Array, *, where: str, first_row: int) -> list[Problem]:
+    """NaN, infinite or empty cells of a needed column."""
+    count, first = 0, None
+    for number, piece in enumerate(pieces(values)):
+        bad = np.flatnonzero(~np.isfinite(piece))
+        count += bad.size
+        if first is None and bad.size:
+            first = number * _PIECE + int(bad[0])
+    if first is None:
+        return []
+    return [
+        Problem(
+            f"{name} is not a number in {count} {'row' if count == 1 else 'rows'}",
+            f"{where}, line {first_row + first}",
+            str(values[first]) if not np.isnan(values[first]) else "NaN or an empty cell",
+            "a finite number in each row",
+            "cut the log where the sensor was silent, or leave these rows out",
+        )
+    ]
+
+
+def constant(name: str, values: Array, *, where: str) -> list[Problem]:
+    """A needed column that never changes holds no information."""
+    if values.size < 2 or any(np.any(piece != values[0]) for piece in pieces(values)):
+        return []
+    hint = "is the sensor connected, and is it the right column?"
+    found, expected = f"{values[0]:g} in all {values.size} rows", "a column that varies"
+    return [Problem(f"{name} is constant", where, found, expected, hint)]
+
+
+def bad_times(time: Array, *, where: str, first_row: int) -> list[Problem]:
+    """Times that run backwards or stand twice."""
+    problems = []
+    back, twice = [0, 0], [0, 0]
+    for start in range(0, time.size - 1, _PIECE):
+        step = np.diff(time[start : start + _PIECE + 1])
+        for found, bad in ((back, step < 0.0), (twice, step == 0.0)):
+            if found[0] == 0 and bad.any():
+                found[1] = start + int(np.argmax(bad)) + 1
+            found[0] += int(np.count_nonzero(bad))
+    for (count, row), what in ((back, "runs backwards"), (twice, "stands twice")):
+        if count:
+            problems.append(
+                Problem(
+                    f"time_s {what} in {count} {'place' if count == 1 else 'places'}",
+                    f"{where}, line {first_row + row}",
+                    f"{time[row]:.12g} after {time[row - 1]:.12g}",
+                    "increasing times",
+                    "are two records in one file, or was it sorted by another column?",
+                )
+            )
+    return problems
+
+
+def gaps_of(time: Array) -> tuple[float, tuple[Gap, ...]]:
+    """Median interval [s], and the intervals that are much longer."""
+    if time.size < 3:
+        return (float(time[1] - time[0]) if time.size == 2 else 0.0), ()
+    step = np.diff(time)
+    median = float(np.median(step))
+    places = np.flatnonzero(step > GAP_FACTOR * median)
+    return median, tuple(Gap(float(time[i]), float(time[i + 1])) for i in places)
+
+
+def clipped_rows(values: Array) -> int:
+    """Rows at an end of the range where the column stays at it, else 0."""
+    total = 0
+    for sign in (1.0, -1.0):
+        end = max(float(np.max(sign * piece)) for piece in pieces(values))
+        at_end = sum(int(np.count_nonzero(sign * piece == end)) for piece in pieces(values))
+        if at_end < CLIPPED_ROWS or at_end == values.size:
+            continue
+        below = -np.inf
+        for piece in pieces(values):
+            less = sign * piece
+            less = less[less < end]
+            below = max(below, float(less.max()) if less.size else -np.inf)
+        next_to = sum(int(np.count_nonzero(sign * piece == below)) for piece in pieces(values))
+        if at_end > CLIPPED_RATIO * next_to:
+            total += at_end
+    return total
+
+
+def clipped_columns(columns: Mapping[str, Array]) -> dict[str, int]:
+    """Sensor columns that stay at an end of their range, with the number of rows."""
+    found = {}
+    for name, values in columns.items():
+        if name in SENSOR_COLUMNS and values.size and np.isfinite(values[0]):
+            rows = clipped_rows(values)
+            if rows:
+                found[name] = rows
+    return found
+
+
+def implausible(
+    columns: Mapping[str, Array], *, stated: Collection[str], where: str
+) -> list[Problem]:
+    """Vectors that cannot be in their unit; ``stated`` are the columns with a unit or scale."""
+    problems = []
+    for name, bounds in PLAUSIBLE.items():
+        names = TRIPLES[name]
+        if not all(column in columns for column in names):
+            continue
+        size = np.sqrt(sum(columns[c][:: _stride(columns[c])] ** 2 for c in names))
+        median = float(np.median(size)) if size.size else 0.0
+        if not np.isfinite(median) or bounds.low <= median <= bounds.high:
+            continue
+        unstated = not all(column in stated for column in names)
+        whole = all(_whole(columns[c]) for c in names)
+        what = f"{name}_x/y/z cannot be in {bounds.unit}"
+        if unstated and whole:
+            what = f"{name}_x/y/z are counts without a unit"
+        units = [unit for unit, low, high in bounds.looks_like if low <= median <= high]
+        hint = "counts take --scale COLUMN=VALUE"
+        if units:
+            hint = f"is it {' or '.join(units)}? --unit COLUMN={units[0]}; {hint}"
+        found = f"a median size of {median:.6g} {bounds.unit}"
+        expected = f"{bounds.low:g} to {bounds.high:g} {bounds.unit}"
+        problems.append(Problem(what, where, found, expected, hint))
+    return problems
+
+
+def unstated_counts(
+    columns: Mapping[str, Array], *, stated: Collection[str], where: str
+) -> list[Problem]:
+    """Gyro columns of whole numbers without a unit: a rate in rad/s is none."""
+    problems = []
+    for name in TRIPLES["gyr"]:
+        values = columns.get(name)
+        if values is None or name in stated or values.size < 10:
+            continue
+        if _whole(values) and float(np.ptp(values)) > 0.0:
+            hint = "counts take --scale COLUMN=VALUE (and --unit COLUMN=deg/s)"
+            found = f"whole numbers from {values.min():g} to {values.max():g}"
+            problems.append(
+                Problem(f"{name} is counts without a unit", where, found, "a unit", hint)
+            )
+    return problems
+
+
+def mixed_units(columns: Mapping[str, Array], *, where: str) -> list[Problem]:
+    """Axes of one vector whose sizes differ by more than a factor of 100: two units in one."""
+    problems = []
+    for name in ("mag", "acc"):
+        names = TRIPLES[name]
+        if not all(column in columns for column in names):
+            continue
+        sizes = [float(np.median(np.abs(columns[c][:: _stride(columns[c])]))) for c in names]
+        spans = [float(np.ptp(columns[c][:: _stride(columns[c])])) for c in names]
+        large = max(range(3), key=lambda i: spans[i])
+        others = [spans[i] for i in range(3) if i != large]
+        if min(others) > 0.0 and spans[large] > 100.0 * max(others) and sizes[large] > 100.0:
+            found = ", ".join(f"{c} {s:.4g}" for c, s in zip(names, spans, strict=True))
+            problems.append(
+                Problem(
+                    f"{name}_x/y/z are in different units",
+                    where,
+                    f"ranges {found}",
+                    "one unit for the three axes",
+                    f"give each its own: --unit COLUMN=..., for {names[large]} as well",
+                )
+            )
+    return problems
+
+
+def _stride(values: Array) -> int:
+    return max(values.size // 20_000, 1)
+
+
+def _whole(values: Array) -> bool:
+    sample = values[:: _stride(values)]
+    return bool(np.all(sample == np.round(sample)))
+
+
+def gap_warning(gaps: tuple[Gap, ...]) -> list[ResultWarning]:
+    """That samples are missing, where, and how long the longest gap is."""
+    if not gaps:
+        return []
+    longest = max(gaps, key=lambda gap: gap.end_s - gap.start_s)
+    text = (
+        f"{len(gaps)} {'gap' if len(gaps) == 1 else 'gaps'} in the record; the longest from "
+        f"{longest.start_s:g} to {longest.end_s:g} s."
+    )
+    return [ResultWarning("gaps", text)]
+
+
+def clip_warning(clipped: Mapping[str, int]) -> list[ResultWarning]:
+    """That a sensor was at the end of its range."""
+    return [
+        ResultWarning(
+            "clipped",
+            f"{name} stands at the end of its range in {rows} rows: larger values were lost there.",
+        )
+        for name, rows in clipped.items()
+    ]

@@ -1,0 +1,74 @@
+"""What is calibrated: a log that was opened, its entry in the project, and the options."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import date
+from pathlib import Path
+
+from surveyapp.domain.sensor_entry import SensorLogEntry
+from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.sensor_logs.blocks import Progress
+from surveyapp.io.sensor_logs.reading import LogFile, Need
+
+
+@dataclass(frozen=True, slots=True)
+class CalibrationRequest:
+    """What a calibration starts from.
+
+    Parameters
+    ----------
+    kind : str
+    file : LogFile
+    entry : SensorLogEntry or None
+        Where the log is one of a project.
+    options : mapping
+        Of the command line, under the names that it gives them; absent = not given.
+    folder : Path or None
+        Of the project, or where the log lies.
+    today : datetime.date or None
+        The day on which this runs.
+    progress : callable or None
+    """
+
+    kind: str
+    file: LogFile
+    entry: SensorLogEntry | None = None
+    options: Mapping[str, object] = field(default_factory=dict)
+    folder: Path | None = None
+    today: date | None = None
+    progress: Progress | None = None
+
+    @property
+    def source(self) -> str:
+        """Name of the log in results."""
+        return self.entry.id if self.entry is not None else self.file.request.where
+
+    def read(self, need: Need) -> SensorLog:
+        """Read the columns that are needed."""
+        return self.file.read(need, progress=self.progress)
+
+    def option(self, name: str) -> object:
+        """An option of the command line, else of the project's entry; None if neither has it."""
+        value = self.options.get(name)
+        if value is None and self.entry is not None:
+            return self.entry.options.get(name)
+        return value
+
+    def number(self, name: str, default: float | None = None) -> float | None:
+        """An option as a number.
+
+        Raises
+        ------
+        SurveyError
+            If it is none.
+        """
+        value = self.option(name)
+        if value is None:
+            return default
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            where = name.replace("_", "-")
+            raise SurveyError(Problem("this is no number", where, str(value), "a number"))
+        return float(value)

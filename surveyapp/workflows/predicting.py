@@ -1,0 +1,301 @@
+"""A project made ready for prediction: its table, traverses, gyros and rule book, all checked.
+
+Every problem of all of them comes in one error.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from surveyapp.core.penetration.mine import MeasuredRows, Mine, build_mine
+from surveyapp.core.penetration.refusals import (
+    WHERE,
+    Known,
+    carried,
+    free_sides,
+    placed,
+    refusals,
+)
+from surveyapp.core.penetration.rows import RowKind
+from surveyapp.domain.penetration import Penetration
+from surveyapp.domain.project import Project, ResultWarning, Station
+from surveyapp.domain.results import OrientationResult
+from surveyapp.domain.rulebook import RuleBook
+from surveyapp.domain.traverse_book import Traverse
+from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.penetration.measured import header_sigmas, measured_rows
+from surveyapp.io.penetration.table import read_penetration
+from surveyapp.io.tables import Findings, Table
+
+
+@dataclass(frozen=True, slots=True)
+class ReadyMine:
+    """A mine ready for prediction, with its rule book and what its reader must know.
+
+    ``defaults`` holds the instrument and the sigma [rad] of a further gyro side in a heading that
+    has none.
+    """
+
+    mine: Mine
+    rule_book: RuleBook | None
+    defaults: dict[str, tuple[str, float]]
+    warnings: tuple[ResultWarning, ...]
+
+
+@dataclass(slots=True)
+class _Gathered:
+    """What is gathered before it is judged."""
+
+    project: Project
+    findings: Findings
+    measured: dict[str, MeasuredRows]
+
+
+def has_penetration(project: Project) -> bool:
+    """Whether the project holds a ``[penetration]`` table."""
+    return isinstance(project.tables.get("penetration"), Mapping)
+
+
+def penetration_plan(project: Project, findings: Findings) -> Penetration:
+    """The ``[penetration]`` table of a project; its problems go to the findings.
+
+    Raises
+    ------
+    SurveyError
+        If there is none.
+    """
+    raw = project.tables.get("penetration")
+    if not isinstance(raw, Mapping):
+        raise SurveyError(
+            Problem(
+                "the project holds no breakthrough",
+                "project.toml",
+                "no [penetration]",
+                "[penetration] with its headings",
+                "docs/how-to/predict-a-breakthrough.md shows one",
+            )
+        )
+    return read_penetration(Table(raw, WHERE, findings), project)
+
+
+def ready_mine(
+    project: Project, orientation: OrientationResult | None, *, plan_sides: int | None = None
+) -> ReadyMine:
+    """Read everything that a prediction needs and refuse what cannot be predicted.
+
+    Parameters
+    ----------
+    project : Project
+    orientation : OrientationResult or None
+        What the sessions have oriented; None without sessions.
+    plan_sides : int or None
+        Further gyro sides that are asked for.
+
+    Raises
+    ------
+    SurveyError
+        With every problem together.
+    """
+    gathered = _Gathered(project, Findings(), {})
+    plan = penetration_plan(project, gathered.findings)
+    stations = {station.name: station for station in project.stations}
+    plan = _with_latitude(project, plan, stations)
+    headers = {item.name: item for item in project.traverses}
+    lost = _measure(gathered, plan, headers, orientation)
+    defaults = _defaults(project, plan)
+    used = _used(plan, gathered.measured, defaults)
+    constants, unknown = _constants(project, used, orientation)
+    problems = gathered.findings.problems
+    problems += refusals(plan, _known(project, plan, headers, gathered.measured))
+    problems += _angle_problems(plan, gathered.measured)
+    problems += _plan_problems(plan, gathered.measured, plan_sides)
+    gathered.findings.raise_if_any()
+    mine = build_mine(plan, stations, constants, gathered.measured)
+    warnings = (*project.warnings, *gathered.findings.warnings, *unknown, *lost)
+    warnings = (*warnings, *carried(plan, stations))
+    return ReadyMine(mine, project.rules, defaults, warnings)
+
+
+def _measure(
+    gathered: _Gathered,
+    plan: Penetration,
+    headers: Mapping[str, Traverse],
+    orientation: OrientationResult | None,
+) -> list[ResultWarning]:
+    """Rows of the traverses of all headings; what does not enter is told."""
+    stations = {station.name: station for station in gathered.project.stations}
+    lines = () if orientation is None else orientation.lines
+    warnings = []
+    named = [headers[h.traverse] for h in plan.headings if h.traverse in headers]
+    for heading in plan.headings:
+        header = headers.get(heading.traverse)
+        if header is None:
+            if named:  # the sigmas of the traverses named are the default of all
+                gathered.measured[heading.name] = MeasuredRows((), {}, {}, header_sigmas(named[0]))
+            continue
+        if not placed(heading, stations):
+            continue
+        measured, lost = measured_rows(
+            heading,
+            header,
+            stations,
+            lines,
+            deflection_apart=plan.deflection is not None,
+        )
+        gathered.measured[heading.name] = measured
+        if lost:
+            text = (
+                f"traverse {header.name}: {lost} observations join no neighbouring sides of the "
+                f"route of heading {heading.name} and do not enter the prediction"
+            )
+            warnings.append(ResultWarning("rows_beside_route", text))
+    return warnings
+
+
+def _constants(
+    project: Project, used: Mapping[str, bool], orientation: OrientationResult | None
+) -> tuple[dict[str, float], list[ResultWarning]]:
+    """Sigma of the constant of every gyro [rad]: calibrations win over what is known.
+
+    ``used`` tells whether a gyro observes already; one that only may be planned is not warned of.
+    """
+    calibrated = {} if orientation is None else {c.instrument: c for c in orientation.constants}
+    known = {item.id: item for item in project.instruments}
+    found: dict[str, float] = {}
+    warnings = []
+    for name, observes in used.items():
+        if name not in known:
+            continue
+        result, stated = calibrated.get(name), known[name].known_constant
+        sigma = None if result is None or result.value is None else result.sigma
+        if sigma is None or not math.isfinite(sigma):
+            sigma = None if stated is None else stated[1]
+        if sigma is None and observes:
+            text = (
+                f"instrument {name}: no constant is known, so its shared error counts as 0; "
+                "calibrate it, or give constant = { arcsec, sigma_arcsec }"
+            )
+            warnings.append(ResultWarning("constant_sigma_unknown", text))
+        found[name] = sigma or 0.0
+    return found, warnings
+
+
+def _used(
+    plan: Penetration,
+    measured: Mapping[str, MeasuredRows],
+    defaults: Mapping[str, tuple[str, float]],
+) -> dict[str, bool]:
+    """Gyros of the mine, and whether they observe already or may only be planned."""
+    used = [side.instrument for side in plan.gyro]
+    for rows in measured.values():
+        used += [row.instrument for row in rows.rows if row.kind is RowKind.GYRO]
+    planned = [name for name, _ in defaults.values()]
+    return {**dict.fromkeys(planned, False), **dict.fromkeys(used, True)}
+
+
+def _defaults(project: Project, plan: Penetration) -> dict[str, tuple[str, float]]:
+    """Instrument and sigma of a further side in each heading: its first one, else the card's."""
+    found: dict[str, tuple[str, float]] = {}
+    cards = {item.id: item.card.sigma.azimuth for item in project.instruments}
+    for heading in plan.headings:
+        sides = {frozenset(side) for side in heading.sides}
+        own = [side for side in plan.gyro if frozenset((side.at, side.to)) in sides]
+        if own:
+            found[heading.name] = (own[0].instrument, own[0].sigma)
+            continue
+        # a heading without a gyro takes the one that the mine uses elsewhere, else any with a card
+        names = [*(side.instrument for side in plan.gyro), *cards]
+        sigma = next(((n, s) for n in names if (s := cards.get(n)) is not None), None)
+        if sigma is not None:
+            found[heading.name] = sigma
+    return found
+
+
+def _known(
+    project: Project,
+    plan: Penetration,
+    headers: Mapping[str, Traverse],
+    measured: Mapping[str, MeasuredRows],
+) -> Known:
+    raw = project.tables.get("shaft")
+    shafts = [str(item.get("id")) for item in raw] if isinstance(raw, list) else []
+    oriented = {
+        name
+        for name, rows in measured.items()
+        if any(row.kind in (RowKind.GYRO, RowKind.AZIMUTH) for row in rows.rows)
+    }
+    return Known(
+        {station.name: station for station in project.stations},
+        [item.id for item in project.instruments],
+        headers,
+        shafts,
+        oriented,
+    )
+
+
+def _angle_problems(plan: Penetration, measured: Mapping[str, MeasuredRows]) -> list[Problem]:
+    """A heading with an angle that nobody gives a sigma."""
+    problems = []
+    for heading in plan.headings:
+        rows = measured.get(heading.name)
+        assumed = plan.sigmas.angle if rows is None else plan.sigmas.angle or rows.sigmas.angle
+        done = 0
+        if rows is not None:
+            done = len({row.side for row in rows.rows if row.kind is RowKind.ANGLE})
+        if assumed is None and plan.sigmas.angle is None and done < len(heading.route) - 2:
+            problems.append(
+                Problem(
+                    "the angles have no sigma",
+                    f"{WHERE}, heading {heading.name}",
+                    "nothing",
+                    "sigma_angle_arcsec, or a traverse with one",
+                )
+            )
+    return problems
+
+
+def observed_sides(measured: Mapping[str, MeasuredRows], plan: Penetration) -> list[frozenset[str]]:
+    """Sides whose gyro azimuth a traverse has already."""
+    found = []
+    for heading in plan.headings:
+        rows = measured.get(heading.name)
+        if rows is not None:
+            found += [
+                frozenset(heading.sides[row.side]) for row in rows.rows if row.kind is RowKind.GYRO
+            ]
+    return found
+
+
+def _plan_problems(
+    plan: Penetration, measured: Mapping[str, MeasuredRows], sides: int | None
+) -> list[Problem]:
+    if sides is None:
+        return []
+    free = len(free_sides(plan, observed_sides(measured, plan)))
+    if 1 <= sides <= free:
+        return []
+    return [
+        Problem(
+            "more gyro sides are asked for than sides are free" if sides > 0 else "no sides asked",
+            "plan",
+            str(sides),
+            f"1 to {free}",
+        )
+    ]
+
+
+def _with_latitude(
+    project: Project, plan: Penetration, stations: Mapping[str, Station]
+) -> Penetration:
+    """Latitude of the deflections from the grid where the project states none."""
+    if plan.deflection is None or math.isfinite(plan.deflection.latitude) or project.crs is None:
+        return plan
+    from surveyapp.core.geodesy import open_grid
+
+    try:
+        latitude, _ = open_grid(project.crs).geographic(e=plan.meeting.e, n=plan.meeting.n)
+    except SurveyError:
+        return plan
+    return replace(plan, deflection=replace(plan.deflection, latitude=latitude))
