@@ -23,38 +23,22 @@ from surveyapp.core.observing.steps import (
     step_states,
     swing_begun,
 )
-from surveyapp.core.observing.target import Target, target_of
+from surveyapp.core.observing.target import target_of
 from surveyapp.domain.project import OrientationSession, Project
 from surveyapp.domain.readings import QUIET_KINDS, FieldBook, Reading, ReadingKind
 from surveyapp.domain.results import OrientationResult
-from surveyapp.errors import Problem, SurveyError
+from surveyapp.errors import SurveyError
 from surveyapp.io.fieldbook import append_row, book_columns, read_field_book
 from surveyapp.io.fieldbook.clock import SessionClock, Stamp, local_now, steady_seconds
 from surveyapp.io.fieldbook.problems import edited_problem, moment_problems, read_only_problem
 from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.io.filing.seals import is_closed
 from surveyapp.io.project import read_project
+from surveyapp.observation.aim import Aim
+from surveyapp.observation.half_swing import half_swing_of
 
 FARTHEST: Final = 10.0
 """Periods beyond which a countdown is none: its moments stand on another clock than the session."""
-
-
-@dataclass(frozen=True, slots=True)
-class Aim:
-    """What a session is observed for.
-
-    Parameters
-    ----------
-    target : Target or None
-    book : str
-        Id of the project's rule book, empty without one: tells why there is no target.
-    problem : str
-        Why the rule book cannot be used, empty if it can.
-    """
-
-    target: Target | None
-    book: str = ""
-    problem: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -360,21 +344,6 @@ class SessionDesk:
         self._lock.release()
 
 
-def half_swing_of(project: Project, session: OrientationSession) -> float | None:
-    """Half swing of a session's instrument at its station [s], None where its card tells none."""
-    from surveyapp.core.geodesy import open_grid, position_of
-    from surveyapp.core.swing.card_physics import card_at
-
-    try:
-        grid = open_grid(project.crs) if project.crs is not None else None
-        latitude = position_of(project.station(session.station), grid).latitude
-    except SurveyError:
-        latitude = None
-    here = card_at(project.instrument(session.instrument).card, latitude)
-    period = here.tracking_s if session.method == "tracking" else here.clamped_s
-    return None if period is None else 0.5 * period.value
-
-
 def progress(project: Project, session: str) -> Progress:
     """What a session says so far: forecast, interval, alarm.
 
@@ -409,23 +378,6 @@ def orient_observed(project: Project) -> OrientationResult:
 
     found = oriented(project, all_if_none=False)
     return judged(found, software=api.SOFTWARE).result
-
-
-def write_record(folder: api.Folder) -> str:
-    """Write the record of a project as PDF to its results folder, and return the path.
-
-    Raises
-    ------
-    SurveyError
-        If the project cannot be used or the folder cannot be written to.
-    """
-    path = Path(folder) / "results"
-    try:
-        path.mkdir(exist_ok=True)
-    except OSError as error:
-        what = f"the record cannot be written ({error.strerror or error})"
-        raise SurveyError(Problem(what, str(path))) from None
-    return str(api.report(folder, path / "record.pdf").path)
 
 
 def unfinished_session(project: Project) -> str | None:

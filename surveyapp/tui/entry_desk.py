@@ -15,6 +15,7 @@ from surveyapp.core.observing.typed_rows import EntryError
 from surveyapp.domain.readings import QUANTITY, QUIET_KINDS, Dimension, Face, Reading, ReadingKind
 from surveyapp.errors import SurveyError
 from surveyapp.io.fieldbook.clock import NOTICED_S, Stamp
+from surveyapp.io.fieldbook.problems import read_only_problem
 from surveyapp.observation.entry import (
     Understood,
     expected,
@@ -188,6 +189,9 @@ class Desk:
 
     def _check_place(self) -> None:
         """Refuse a text where its kind is not taken, before it is understood."""
+        if not self.observation.writable:
+            problem = read_only_problem(self.observation.folder, closed=self.observation.closed)
+            raise NotWrittenError(problem_text(SurveyError(problem)))
         was = self.pending
         if was is not None and self._strayed():
             kind = texts.KIND_NAMES[was.kind].split(",")[0]
