@@ -26,6 +26,8 @@ SIGNIFICANCE = 0.01
 
 _FIT_WORDS = {
     "chi_square": "residuals against the card's reading sigma (v'v / sigma^2)",
+    "size": "residuals against what no reading of the kind exceeds (v'v / sigma^2)",
+    "largest_residual": "largest studentized residual",
     "lag1_correlation": "lag-1 correlation of the residuals",
     "runs": "number of runs of equal sign in the residuals",
 }
@@ -51,8 +53,10 @@ def statistical_checks(orientation: Orientation) -> list[Check]:
 def _fit_checks(item: ReducedSession) -> list[Check]:
     checks = _fit_summary(item)
     for test in item.reduction.tests:
-        words = _FIT_WORDS[test.name]
+        words = _FIT_WORDS[test.name] + _point_name(item, test)
         verdict = "fits" if test.passed else "does NOT fit the damped swing"
+        if test.at_limit:
+            verdict += " (at the limit: the draws cannot tell on which side)"
         checks.append(
             Check(
                 rule=f"fit.{test.name}",
@@ -69,16 +73,30 @@ def _fit_checks(item: ReducedSession) -> list[Check]:
     return checks
 
 
+def _point_name(item: ReducedSession, test: FitTest) -> str:
+    """Which reading has the largest residual, in words."""
+    if test.point is None:
+        return ""
+    points = item.reduction.points
+    if test.point >= len(points):
+        return f", passage {test.point - len(points) + 1}"
+    return f", turning point {test.point + 1} (seq {points[test.point].seq})"
+
+
 def _fit_summary(item: ReducedSession) -> list[Check]:
     """One line for the whole run: its rms, and whether every test of fit is met."""
     reduction = item.reduction
     if not reduction.tests or reduction.residual_rms is None:
         return []
-    failed = [_FIT_WORDS[test.name] for test in reduction.tests if not test.passed]
+    failed = [
+        _FIT_WORDS[test.name] + _point_name(item, test)
+        for test in reduction.tests
+        if not test.passed
+    ]
     rms = reduction.residual_rms * RHO_ARCSEC
     limit = None
     for test in reduction.tests:
-        if test.name == "chi_square" and test.high is not None and test.value > 0.0:
+        if test.name in ("chi_square", "size") and test.high is not None and test.value > 0.0:
             limit = rms * math.sqrt(test.high / test.value)
     if failed:
         text = f'rms {rms:.1f}": the damped swing does NOT fit this run ({"; ".join(failed)})'
