@@ -10,11 +10,11 @@ import math
 from dataclasses import replace
 from typing import Final
 
-from surveyapp.core.checks.level import level_of_one
 from surveyapp.core.orientation.known_azimuth import coordinate_error, known_error
 from surveyapp.core.orientation.lines import LineGeometry, OrientedLine
 from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.core.statistics.distributions import student_quantile
+from surveyapp.core.statistics.levels import level_of_one
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.project import OrientationSession, Station, grid_bearing
 from surveyapp.domain.results import Check

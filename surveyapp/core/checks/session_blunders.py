@@ -13,7 +13,6 @@ from typing import Final
 
 import numpy as np
 
-from surveyapp.core.checks.level import level_of_one
 from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.core.statistics.distributions import (
     chi_square_quantile,
@@ -21,6 +20,7 @@ from surveyapp.core.statistics.distributions import (
     normal_quantile,
     student_quantile,
 )
+from surveyapp.core.statistics.levels import level_of_one
 from surveyapp.core.swing.session import ReducedSession, TargetReduction
 from surveyapp.core.swing.sights import moments
 from surveyapp.core.swing.tape_zero import MIN_POINTS_FOR_RESIDUALS

@@ -20,11 +20,9 @@ from surveyapp.core.statistics.distributions import (
     normal_quantile,
     student_quantile,
 )
+from surveyapp.core.statistics.levels import FIT_KIND
 from surveyapp_models.arrays import Floats
 
-SIGNIFICANCE = 0.005
-"""Of each kind of test over ALL sessions of a project together: a clean project of ten sessions
-alarms as rarely as one of a single session (at most 2 % with the four kinds)."""
 DRAWS = 10_000
 MOST_DRAWS = 100_000
 LEAST_REDUNDANCY = 1e-6
@@ -49,7 +47,7 @@ class Judge:
     @property
     def significance(self) -> float:
         """Level of one test of one session."""
-        return SIGNIFICANCE / max(self.sessions, 1)
+        return FIT_KIND / max(self.sessions, 1)
 
     def generator(self, readings: Floats) -> np.random.Generator:
         """Random numbers for the test of these readings."""
