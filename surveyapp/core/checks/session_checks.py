@@ -15,7 +15,7 @@ from surveyapp.core.orientation.instrument_constant import InstrumentConstant, a
 from surveyapp.core.orientation.lines import OrientedLine
 from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.core.statistics.distributions import student_quantile
-from surveyapp.core.statistics.levels import level_of_one
+from surveyapp.core.statistics.levels import CONSTANT_SHARE, level_of_one
 from surveyapp.core.swing.goodness import FitTest
 from surveyapp.core.swing.session import ReducedSession, SightSigma
 from surveyapp.core.swing.sights import drift_probability
@@ -42,8 +42,9 @@ def statistical_checks(orientation: Orientation) -> list[Check]:
         checks += _tape_zero_checks(orientation, item)
         sigma = orientation.sight_sigmas[item.session.instrument]
         checks += _sight_checks(item, sigma, level_of_one(len(orientation.sessions)))
+    constant_level = CONSTANT_SHARE / max(sum(map(_tested, orientation.constants)), 1)
     for constant in orientation.constants:
-        checks += _constant_checks(constant, level_of_one(3 * len(orientation.constants)))
+        checks += _constant_checks(constant, constant_level)
     for line in orientation.lines:
         checks += _line_checks(line, level_of_one(len(orientation.lines)))
     checks += _forward_back(orientation)
@@ -175,6 +176,13 @@ def _sight_checks(item: ReducedSession, sigma: SightSigma, level: float) -> list
             )
         )
     return checks
+
+
+def _tested(constant: InstrumentConstant) -> int:
+    """Number of tests of one constant."""
+    tests = (constant.line_agreement, constant.phase_agreement)
+    known = constant.pooled is not None and constant.known is not None
+    return sum(test is not None for test in tests) + known
 
 
 def _constant_checks(constant: InstrumentConstant, level: float) -> list[Check]:

@@ -16,9 +16,11 @@ divides it by the number of its tests (Bonferroni). What is measured of it is pr
 ``python -m bench blunders``."""
 FIT_KIND: Final = 0.005
 """Of each of the four kinds of tests of fit over all sessions of a project."""
-FAMILY_SHARE: Final = 0.003
-"""Of each of the ten other families: drift and agreement of sights, collimation, tape zero and its
-readings, rounds, constants, sessions of a line, forward and back, coordinates."""
+CONSTANT_SHARE: Final = 0.01
+"""Of the tests of the constants of all instruments: lines, epochs, a value known beforehand."""
+FAMILY_SHARE: Final = 0.002
+"""Of each of the nine other families: drift and agreement of sights, collimation, tape zero and its
+readings, rounds, sessions of a line, forward and back, coordinates."""
 
 
 def level_of_one(tests: int) -> float:
