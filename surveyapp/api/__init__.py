@@ -37,7 +37,7 @@ from surveyapp.api.orientation import (
     plan,
     unfinished,
 )
-from surveyapp.api.penetration import predict
+from surveyapp.api.penetration import cluster_executor, predict
 from surveyapp.api.project import (
     SOFTWARE,
     Folder,
@@ -82,6 +82,7 @@ __all__ = [
     "variance_components",
     "SubjectKeyword",
     "predict",
+    "cluster_executor",
     "shaft",
     "subjects",
     "check",
