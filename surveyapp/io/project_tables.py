@@ -248,6 +248,7 @@ def read_session(table: Table, names: Names) -> OrientationSession:
     azimuth = table.angle("azimuth_known", names.unit)
     if azimuth is not None and purpose is None and "purpose" not in table:
         table.problem("azimuth_known stands without purpose", "", " | ".join(PURPOSES))
+    refraction = table.number("refraction_sigma_arcsec", low=0.0, high=36000.0)
     sigma = table.number("azimuth_known_sigma_arcsec", low=0.0, high=36000.0)
     if sigma is not None and azimuth is None and purpose == "survey":
         table.problem("azimuth_known_sigma_arcsec stands in a survey session", "", "a calibration")
@@ -274,6 +275,7 @@ def read_session(table: Table, names: Names) -> OrientationSession:
         effects=tuple(read_effect(t) for t in table.tables("effect")),
         convergence=read_convergence(table, names.unit),
         recentred=table.boolean("recentred"),
+        refraction_sigma=None if refraction is None else refraction * ARCSEC,
         override=_session_override(table),
     )
     table.warn_unknown("rounds", "sigma_arcsec", "level_division_arcsec")

@@ -29,6 +29,13 @@ from surveyapp.core.geodesy import (
 )
 from surveyapp.core.orientation.adopted import apply_adopted
 from surveyapp.core.orientation.calibration_sessions import calibrations_of
+from surveyapp.core.orientation.campaign_columns import session_temperature
+from surveyapp.core.orientation.deflection_field import Field, deflection_field
+from surveyapp.core.orientation.error_terms import (
+    Circumstance,
+    latitude_warnings,
+    with_error_terms,
+)
 from surveyapp.core.orientation.instrument_constant import (
     InstrumentConstant,
     determine,
@@ -39,6 +46,7 @@ from surveyapp.core.orientation.lines import (
     line_geometry,
 )
 from surveyapp.core.orientation.pooled_weights import with_pooled_weights
+from surveyapp.core.orientation.pooled_zeros import with_pooled_tape_zeros
 from surveyapp.core.orientation.predicted_lines import predicted_lines
 from surveyapp.core.orientation.sequence import session_moments, surveys_before
 from surveyapp.core.orientation.survey_lines import SurveyedLines
@@ -126,15 +134,17 @@ def orient_project(
     judge = Judge(sessions=tested)
     setting = _Setting(project, positions, stations, judge, estimator, run_model)
     reduced, sigmas = _reduce_all(setting)
-    measured = reduced = with_pooled_weights(reduced)
+    measured = reduced = with_pooled_weights(with_pooled_tape_zeros(reduced))
     for instrument in project.instruments:
         reduced, found = apply_adopted(instrument, reduced, positions)
         warnings += found
+    geometry = _geometries(reduced, stations, grid, positions, deflection_field(project, positions))
+    reduced = _with_terms(project, reduced, geometry)
+    warnings += latitude_warnings(project, positions)
     scatters = {
         instrument.id: _scatter_of(project, reduced, instrument.id)
         for instrument in project.instruments
     }
-    geometry = _geometries(reduced, stations, grid, positions)
     refuse_one_place(geometry)
     refuse_other_convergence(project, geometry)
     warnings += place_warnings(list(geometry.values()), grid)
@@ -166,6 +176,28 @@ def orient_project(
         shown,
         tuple(warnings),
     )
+
+
+def _with_terms(
+    project: Project,
+    reduced: Sequence[ReducedSession],
+    geometry: Mapping[tuple[str, str], LineGeometry],
+) -> tuple[ReducedSession, ...]:
+    """Every gyro azimuth with the errors that no residual shows."""
+    found = []
+    for item in reduced:
+        card = project.instrument(item.session.instrument).card
+        temperature = session_temperature(item.session)
+        targets = tuple(
+            with_error_terms(
+                item,
+                target,
+                Circumstance(card, geometry[item.session.id, target.target], temperature),
+            )
+            for target in item.targets
+        )
+        found.append(replace(item, targets=targets))
+    return tuple(found)
 
 
 def _with_position(station: Station, at: Position) -> Station:
@@ -318,6 +350,7 @@ def _geometries(
     stations: Mapping[str, Station],
     grid: Grid | None,
     positions: Mapping[str, Position],
+    field: Field,
 ) -> dict[tuple[str, str], LineGeometry]:
     """Geometry of every sighted line by (session, target)."""
     result = {}
@@ -332,5 +365,6 @@ def _geometries(
                 positions=positions,
                 zenith=zenith,
                 stated=stated_convergence(session, stations[session.station]),
+                deflection_sources=field[session.station],
             )
     return result

@@ -24,6 +24,12 @@ SHARED = (
     "torsion ratio",
     "known constant",
     "adopted effect",
+    "lateral refraction",
+    "observer",
+    "temperature of the constant",
+    "latitude of the constant",
+    "printed convergence",
+    "rotation of the mine grid",
 )
 """Sources that repeated determinations of one line share: they do not average down."""
 
