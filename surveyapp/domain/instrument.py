@@ -235,7 +235,7 @@ class Instrument:
     known_constant : tuple of (float, float) or None
         Instrument constant known beforehand and its sigma [rad].
     constant_choice : str or None
-        predicted | pooled | interpolated | nearest | line:A-B | known; None = nobody chose:
+        predicted | pooled | interpolated | nearest | running:5 | line:A-B | known; None = nobody chose:
         predicted where there are determinations enough, else pooled.
     effects : tuple of AdoptedEffect
     priors : Priors or None

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Literal, cast
 
+from surveyapp.domain.constant_choice import CHOICES, running_count
 from surveyapp.domain.instrument import Instrument, InstrumentCard
 from surveyapp.domain.project import (
     DEFAULT_DEFLECTION_SIGMA,
@@ -35,7 +36,6 @@ from surveyapp_models.angles import ARCSEC, AngleUnit
 
 METHODS: Final = ("tracking", "amplitude", "transit", "automatic")
 PURPOSES: Final = ("calibration", "survey")
-CHOICES: Final = ("predicted", "pooled", "interpolated", "nearest", "known")
 
 _GRID_LIMIT_M: Final = 1e8
 _HEIGHT_LIMITS_M: Final = (-12000.0, 12000.0)
@@ -88,9 +88,9 @@ class Names:
                 choice,
                 "constant = { arcsec = ..., sigma_arcsec = ... } in [[instrument]]",
             )
-        if choice in CHOICES:
+        if choice in CHOICES or running_count(choice) is not None:
             return
-        expected = " | ".join(CHOICES) + " | line:A-B"
+        expected = " | ".join(CHOICES) + " | running:5 | line:A-B"
         if not choice.startswith("line:"):
             hint = nearest_names(choice, CHOICES)
             table.problem("constant_choice is not known", choice, expected, hint)

@@ -138,9 +138,10 @@ class InstrumentConstant:
         if not self.calibrations:
             return None
         mean = weighted_mean([item.value for item in self.calibrations])
-        return self._with_disagreement(mean)
+        return self.with_disagreement(mean)
 
-    def _with_disagreement(self, mean: Uncertain) -> Uncertain:
+    def with_disagreement(self, mean: Uncertain) -> Uncertain:
+        """A mean of determinations with the disagreement of lines and epochs in its sigma."""
         for name, test in (("lines", self.line_agreement), ("epochs", self.phase_agreement)):
             if test is not None and not test.agree and test.scatter > 0.0:
                 source = Source("constant instability", self.instrument.id, float(test.dof), name)
@@ -242,7 +243,7 @@ def choose(
     ----------
     constant : InstrumentConstant
     choice : str
-        predicted | pooled | interpolated | nearest | line:A-B | known. What is predicted for each
+        predicted | pooled | interpolated | nearest | line:A-B | known (``running:5``: ``running_constant``). What is predicted for each
         line is made elsewhere; who asks for it here has too few determinations.
     moment : float or None
         When the survey session took place.

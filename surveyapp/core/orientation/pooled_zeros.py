@@ -95,7 +95,8 @@ def _replaced(
             pooled = found.get((name, source.detail))
             mine = source.name == NAME and source.entity == name and math.isfinite(source.dof)
             if pooled is not None and mine:
-                parts[replace(source, dof=pooled[1])] = part * pooled[0]
+                pool = item.session.instrument
+                parts[replace(source, dof=pooled[1], pool=pool)] = part * pooled[0]
             else:
                 parts[source] = part
         return replace(value, parts=parts)

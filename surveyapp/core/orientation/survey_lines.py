@@ -11,6 +11,7 @@ from surveyapp.core.orientation.instrument_constant import Chosen, InstrumentCon
 from surveyapp.core.orientation.lines import LineGeometry, OrientedLine, Round, orient_line
 from surveyapp.core.orientation.predicted_constant import leaves_out
 from surveyapp.core.orientation.predicted_lines import Key, PredictedLine, survey_groups
+from surveyapp.core.orientation.running_constant import running_constant
 from surveyapp.core.orientation.sequence import SessionOrder, session_moments
 from surveyapp.core.statistics.repeated import RunScatter
 from surveyapp.core.swing.session import ReducedSession
@@ -132,6 +133,12 @@ def _round(
     def distance_to(name: str) -> float | None:
         return grid_distance_m(stations[session.station], stations[name])
 
+    running = running_constant(constant, choice, block=order.block(session.id))
+    if running is not None:
+        own = scatter.applied(azimuth, session.id)
+        return Round(
+            session.id, own, Chosen(running, choice), rounds_of(item), own_centring(session)
+        )
     chosen = choose(
         constant,
         choice,

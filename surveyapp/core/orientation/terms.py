@@ -24,6 +24,7 @@ TERMS: Final[dict[str, str]] = {
     "twist": "sigma.twist_arcsec of the card, where no second sights tell it",
     "lateral refraction": "refraction_sigma_arcsec of the session, else the card's",
     "observer": "sigma.observer_arcsec of the card; remedy: exchange of observers",
+    "scatter of determinations": "repeated sessions that state no sigma",
     "run-to-run scatter": "repeated sessions of one line",
     "centring": "centring_mm over the length of the line",
     "known azimuth": "azimuth_known_sigma_arcsec, else sigma_m of the stations over the length",

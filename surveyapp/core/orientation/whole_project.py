@@ -48,9 +48,10 @@ from surveyapp.core.orientation.lines import (
 from surveyapp.core.orientation.pooled_weights import with_pooled_weights
 from surveyapp.core.orientation.pooled_zeros import with_pooled_tape_zeros
 from surveyapp.core.orientation.predicted_lines import predicted_lines
-from surveyapp.core.orientation.sequence import session_moments, surveys_before
+from surveyapp.core.orientation.repeated_runs import run_groups, scatter_of
+from surveyapp.core.orientation.scatter_sigma import with_scatter_sigma
 from surveyapp.core.orientation.survey_lines import SurveyedLines
-from surveyapp.core.statistics.repeated import RunScatter, run_scatter
+from surveyapp.core.statistics.repeated import RunScatter
 from surveyapp.core.swing.goodness import Judge
 from surveyapp.core.swing.run_model import RunModel
 from surveyapp.core.swing.session import (
@@ -64,7 +65,6 @@ from surveyapp.core.swing.session import (
     sight_resolution,
 )
 from surveyapp.core.swing.sights import SightSet, tripod_twist, zenith_angle
-from surveyapp.core.uncertain import Uncertain, aligned
 from surveyapp.domain.project import (
     OrientationSession,
     Project,
@@ -141,20 +141,17 @@ def orient_project(
     geometry = _geometries(reduced, stations, grid, positions, deflection_field(project, positions))
     reduced = _with_terms(project, reduced, geometry)
     warnings += latitude_warnings(project, positions)
+    groups = {item.id: run_groups(project, reduced, item.id) for item in project.instruments}
+    reduced, more = with_scatter_sigma(project, reduced, groups)
+    warnings += more
     scatters = {
-        instrument.id: _scatter_of(project, reduced, instrument.id)
-        for instrument in project.instruments
+        item.id: scatter_of(run_groups(project, reduced, item.id)) for item in project.instruments
     }
     refuse_one_place(geometry)
     refuse_other_convergence(project, geometry)
     warnings += place_warnings(list(geometry.values()), grid)
-    constants = []
-    for instrument in project.instruments:
-        calibrations, more = calibrations_of(
-            project, reduced, instrument.id, geometry, scatters[instrument.id]
-        )
-        warnings += more
-        constants.append(determine(instrument, calibrations))
+    constants, more = _constants(project, reduced, geometry, scatters)
+    warnings += more
     known, predicted, more = predicted_lines(reduced, constants, positions, None)
     warnings += more
     surveyed = SurveyedLines(project, reduced, known, geometry, scatters, stations)
@@ -176,6 +173,23 @@ def orient_project(
         shown,
         tuple(warnings),
     )
+
+
+def _constants(
+    project: Project,
+    reduced: Sequence[ReducedSession],
+    geometry: Mapping[tuple[str, str], LineGeometry],
+    scatters: Mapping[str, RunScatter],
+) -> tuple[list[InstrumentConstant], list[ResultWarning]]:
+    constants = []
+    warnings: list[ResultWarning] = []
+    for instrument in project.instruments:
+        calibrations, more = calibrations_of(
+            project, reduced, instrument.id, geometry, scatters[instrument.id]
+        )
+        warnings += more
+        constants.append(determine(instrument, calibrations))
+    return constants, warnings
 
 
 def _with_terms(
@@ -321,28 +335,6 @@ def _latitude_warnings(
         )
         return [ResultWarning("latitude_high", text, Subject.session(session.id))]
     return []
-
-
-def _scatter_of(project: Project, reduced: Sequence[ReducedSession], instrument: str) -> RunScatter:
-    """Scatter between the runs of one line and epoch: a drift between epochs is not scatter."""
-    keys = session_moments(project, instrument)
-    surveys = [
-        keys[session.id]
-        for session in project.sessions
-        if session.instrument == instrument and session.purpose == "survey"
-    ]
-    groups: dict[tuple[str, str, str], list[Uncertain]] = {}
-    for item in reduced:
-        if item.session.instrument != instrument:
-            continue
-        for target in item.targets:
-            if target.gyro_azimuth is not None:
-                phase: str = item.session.purpose
-                if phase == "calibration":
-                    phase = f"block {surveys_before(keys[item.session.id], surveys)}"
-                key = (item.session.station, target.target, phase)
-                groups.setdefault(key, []).append(target.gyro_azimuth)
-    return run_scatter([aligned(group) for group in groups.values()])
 
 
 def _geometries(

@@ -50,7 +50,7 @@ def reduce_classical(
         If the clamp reading, one side of the swing or three passages of one division are missing.
     """
     c = constant_at(card, latitude)
-    clamp, clamp_sigma = clamp_reading(session)
+    clamp, _ = clamp_reading(session)
     observed = observe(session, card)
     period = observed.period_s
     if period is None:
@@ -71,16 +71,7 @@ def reduce_classical(
             hint="State the scale value and the torsion ratio, or time the middle.",
         )
     a, dt = found.amplitude, found.difference
-    north = Uncertain(
-        clamp + c.value * a.value * dt.value,
-        {
-            Source("passages", session.id): c.value * a.value * dt.sigma,
-            Source("scale readings", session.id): c.value * dt.value * a.sigma,
-            Source("clamp reading", session.id): clamp_sigma,
-            Source("transit constant", session.instrument): a.value * dt.value * c.sigma,
-            Source("linear form", session.id): c.value * a.value * dt.value * _bent(found, period),
-        },
-    )
+    north = _north(session, c, found, period)
     swing = observed.swing
     readings: Sequence[float] = swing.readings.tolist()
     blank = [None] * len(readings)
@@ -107,6 +98,25 @@ def reduce_classical(
             ("transit constant", math.degrees(c.value) * 3600.0, "arcsec/(div s)"),
         ),
         warnings=_warnings(session),
+    )
+
+
+def _north(
+    session: OrientationSession, c: Estimate, found: ClosedTransit, period: float
+) -> Uncertain:
+    """N' + C a dt with its error; the linear form is left as it is, its excess in the sigma."""
+    clamp, clamp_sigma = clamp_reading(session)
+    a, dt = found.amplitude, found.difference
+    product = c.value * a.value * dt.value
+    return Uncertain(
+        clamp + product,
+        {
+            Source("passages", session.id): c.value * a.value * dt.sigma,
+            Source("scale readings", session.id): c.value * dt.value * a.sigma,
+            Source("clamp reading", session.id): clamp_sigma,
+            Source("transit constant", session.instrument): a.value * dt.value * c.sigma,
+            Source("linear form", session.id): product * _bent(found, period),
+        },
     )
 
 

@@ -270,7 +270,7 @@ def reduce_targets(
         return tuple(results)
     for target, item in sights.items():
         correction, spread = eccentric_of(session, target, item.line_reading, stations)
-        source = Source("sights", session.id, sigma.dof, target)
+        source = Source("sights", session.id, sigma.dof, target, pool=session.instrument)
         reading = Uncertain(
             wrap_two_pi(item.line_reading + correction),
             {source: math.sqrt(item.cofactor) * sigma.value},
