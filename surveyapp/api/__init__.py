@@ -38,6 +38,7 @@ from surveyapp.api.orientation import (
     unfinished,
 )
 from surveyapp.api.penetration import predict
+from surveyapp.api.pooling import diagnose_instrument
 from surveyapp.api.project import (
     SOFTWARE,
     Folder,
@@ -49,6 +50,7 @@ from surveyapp.api.project import (
 )
 from surveyapp.api.rate import north, plan_fog_station, spectrum
 from surveyapp.api.sensors import LogOptions, calibrate, open_sensor_log
+from surveyapp.api.shafts import shaft
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.fieldfile import ImportResult
@@ -81,9 +83,11 @@ __all__ = [
     "variance_components",
     "SubjectKeyword",
     "predict",
+    "shaft",
     "subjects",
     "check",
     "diagnose",
+    "diagnose_instrument",
     "calibrate",
     "plan_fog_station",
     "north",

@@ -168,6 +168,25 @@ class MissCandidate:
 
 
 @dataclass(frozen=True, slots=True)
+class HeadingShare:
+    """By how much the end of a heading moves when the miss is distributed: right, along, up [m]."""
+
+    heading: str
+    lateral_m: float | None
+    longitudinal_m: float | None
+    vertical_m: float | None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON."""
+        return {
+            "heading": self.heading,
+            "lateral_m": finite(self.lateral_m),
+            "longitudinal_m": finite(self.longitudinal_m),
+            "vertical_m": finite(self.vertical_m),
+        }
+
+
+@dataclass(frozen=True, slots=True)
 class MissTest:
     """The measured miss against its prediction.
 
@@ -179,6 +198,7 @@ class MissTest:
     consistent : bool
     verdict : str
     candidates : tuple of MissCandidate
+    distribution : tuple of HeadingShare
     text : str
         What it means, in the trade's words.
     """
@@ -189,6 +209,7 @@ class MissTest:
     consistent: bool
     verdict: Verdict
     candidates: tuple[MissCandidate, ...]
+    distribution: tuple[HeadingShare, ...] = ()
     text: str = ""
 
     def to_dict(self) -> dict[str, Any]:
@@ -202,6 +223,7 @@ class MissTest:
             "consistent": self.consistent,
             "verdict": self.verdict,
             "candidates": [item.to_dict() for item in self.candidates],
+            "distribution": [item.to_dict() for item in self.distribution],
             "text": self.text,
         }
 

@@ -181,7 +181,8 @@ def _heading_rows(plan: Penetration, route: Route, found: MeasuredRows | None) -
     heights = np.full(route.sides, np.nan)
     for side, sigma in ({} if found is None else found.heights).items():
         heights[side] = sigma
-    return HeadingRows(route, tuple(rows), length, centring_m, heights)
+    marks = (both["instrument_m"], both["target_m"])
+    return HeadingRows(route, tuple(rows), length, centring_m, heights, marks)
 
 
 def _gyro_rows(

@@ -14,6 +14,7 @@ from surveyapp.core.penetration.covariance import (
     heights_known,
     total,
 )
+from surveyapp.core.penetration.evaluation import evaluate_miss
 from surveyapp.core.penetration.mine import Mine
 from surveyapp.core.penetration.sections import sectioned
 from surveyapp.domain.penetration_result import (
@@ -72,6 +73,7 @@ def prediction(
     factor, source, told = factor_of(mine.plan, book)
     tolerance, more = tolerance_of(mine.plan, book, drive_length_km(mine))
     passed, failed, open_ones = judge(sigma, factor, tolerance)
+    miss = mine.plan.measured
     own = [*warnings, *told, *more, *open_ones, *_not_stated(mine)]
     return Prediction(
         project=project,
@@ -87,6 +89,7 @@ def prediction(
         simulated=None,
         budget=budget(parts),
         ellipse=ellipse(mine, total(parts)[0]),
+        measured=None if miss is None else evaluate_miss(mine, miss),
         steps=mine.plan.steps,
         warnings=tuple(own),
     )
