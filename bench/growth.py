@@ -2,8 +2,8 @@
 
 A programme of a mine with many gyro sides: every tenth session stands on one of two known lines
 (at most ``CALIBRATIONS`` of them), the others orient sides of 400 m four times each. Automatic
-sessions of three rounds, and tracking runs of eight turning points beside them. Every measurement is
-a process of its own, so that its memory is its own; on an idle machine it says what the program
+sessions of three rounds, and tracking runs of eight turning points beside them. Every measurement
+is a process of its own, so that its memory is its own; on an idle machine it says what the program
 takes, beside others it is an upper bound (processor seconds are printed as well).
 """
 
