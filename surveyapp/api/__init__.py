@@ -7,7 +7,7 @@ Each subject has a module of its own behind this one, which is all that scripts 
 from __future__ import annotations
 
 from surveyapp.api.batch import batch, batch_rows
-from surveyapp.api.importing import import_file
+from surveyapp.api.importing import export_survey, import_file
 from surveyapp.api.judgement import check, diagnose, subjects
 from surveyapp.api.network import (
     adjust,
@@ -101,6 +101,7 @@ __all__ = [
     "reopen",
     "compare",
     "import_file",
+    "export_survey",
     "export_csv",
     "export_gkf",
     "export_json",
