@@ -38,6 +38,7 @@ from surveyapp.api.orientation import (
     unfinished,
 )
 from surveyapp.api.penetration import predict
+from surveyapp.api.pooling import diagnose_instrument
 from surveyapp.api.project import (
     SOFTWARE,
     Folder,
@@ -86,6 +87,7 @@ __all__ = [
     "subjects",
     "check",
     "diagnose",
+    "diagnose_instrument",
     "calibrate",
     "plan_fog_station",
     "north",
