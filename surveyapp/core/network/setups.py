@@ -43,7 +43,7 @@ def setup_of(text: str) -> str:
 
 
 def setup_blocks(
-    traverse: Traverse, known: Mapping[int, Observation]
+    traverse: Traverse, known: Mapping[int, Observation], lengths: Mapping[str, float]
 ) -> tuple[dict[int, Observation], list[tuple[tuple[int, ...], Floats]]]:
     """Observations with the sigma of their heights, and the covariances of each set-up.
 
@@ -52,6 +52,8 @@ def setup_blocks(
     traverse : Traverse
     known : mapping
         Observations by the place of their row, centring in their sigma.
+    lengths : mapping
+        Horizontal lengths of sides by ``a|b`` [m].
 
     Returns
     -------
@@ -72,30 +74,20 @@ def setup_blocks(
         if len(places) < 2:
             continue
         found = [known[place] for place in places]
-        covariance = _covariance(found, shared)
+        targets = _targets(found, lengths)
+        covariance = _covariance(found, targets, shared)
+        flat = _covariance(found, targets, (*shared[:2], 0.0, 0.0))  # centring is in sigma already
         own = np.array([obs.sigma**2 for obs in found])
         for i, obs in enumerate(found):
             if obs.kind in (K.ZENITH, K.SLOPE_DISTANCE):
-                own[i] += _height_variance(covariance, i, obs, found, shared)
+                own[i] += float((covariance - flat)[i, i])
                 changed[places[i]] = replace(obs, sigma=math.sqrt(own[i]))
         np.fill_diagonal(covariance, own)
         blocks.append((tuple(places), covariance))
     return changed, blocks
 
 
-def _height_variance(
-    covariance: Floats,
-    i: int,
-    obs: Observation,
-    found: Sequence[Observation],
-    shared: tuple[float, ...],
-) -> float:
-    """Variance of one row by the heights alone: centring is in its sigma already."""
-    flat = _covariance(found, (*shared[:2], 0.0, 0.0))
-    return float(covariance[i, i] - flat[i, i])
-
-
-def _targets(found: Sequence[Observation]) -> dict[str, _Target]:
+def _targets(found: Sequence[Observation], lengths: Mapping[str, float]) -> dict[str, _Target]:
     """Where each target of a set-up lies, from its first readings."""
     azimuths: dict[str, float] = {}
     turns: dict[str, float] = {}
@@ -114,15 +106,12 @@ def _targets(found: Sequence[Observation]) -> dict[str, _Target]:
             turns[obs.set] = 0.0 if fellow is None else fellow.value - azimuths[fellow.to]
         azimuths.setdefault(obs.to, wrap_pi(obs.value - turns[obs.set]))
     zeniths = {o.to: o.value for o in reversed(found) if o.kind is K.ZENITH}
-    lengths = {
-        o.to: o.value * (math.sin(zeniths.get(o.to, math.pi / 2)) if slope else 1.0)
-        for o in reversed(found)
-        if (slope := o.kind is K.SLOPE_DISTANCE) or o.kind is K.DISTANCE
-    }
-    names = dict.fromkeys(obs.to for obs in found)
+    at = found[0].at
     return {
-        name: _Target(azimuths.get(name), lengths.get(name), zeniths.get(name, math.pi / 2))
-        for name in names
+        name: _Target(
+            azimuths.get(name), lengths.get(f"{at}|{name}"), zeniths.get(name, math.pi / 2)
+        )
+        for name in dict.fromkeys(obs.to for obs in found)
     }
 
 
@@ -143,10 +132,11 @@ def _effect(obs: Observation, target: _Target) -> tuple[float, float, float]:
     return sin, cos, up
 
 
-def _covariance(found: Sequence[Observation], shared: Sequence[float]) -> Floats:
+def _covariance(
+    found: Sequence[Observation], places: Mapping[str, _Target], shared: Sequence[float]
+) -> Floats:
     """Covariance of what the rows of one set-up share."""
     instrument, target, instrument_h, target_h = shared
-    places = _targets(found)
     effects = np.array([_effect(obs, places[obs.to]) for obs in found])
     common = effects * np.array([instrument, instrument, instrument_h])
     covariance = common @ common.T

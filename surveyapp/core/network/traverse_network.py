@@ -175,7 +175,8 @@ def _collect(
     A gyro side whose session is still being observed is passed over.
     """
     known, problems = book_observations(traverse, project.stations)
-    known, blocks = setup_blocks(traverse, known)
+    lengths = _lengths(traverse.rows, {station.name: station for station in project.stations})
+    known, blocks = setup_blocks(traverse, known, lengths)
     member_of: dict[int, int] = {}
     observations: list[Observation] = []
     gyro: list[tuple[int, int]] = []
