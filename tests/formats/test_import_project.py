@@ -74,7 +74,7 @@ def test_import_adjust_check_and_record_without_an_edit(tmp_path: Path) -> None:
 
 
 def _true_traverse() -> tuple[list[w.Setup], list[w.Sight]]:
-    """B and C known, D and E new; readings computed from places, 2" and 0.5 mm of noise, 1 mm of centring."""
+    """B, C known, D, E new; readings from places, 2" and 0.5 mm of noise, 1 mm of centring."""
     import math
     import random
 
