@@ -7,7 +7,8 @@ Each subject has a module of its own behind this one, which is all that scripts 
 from __future__ import annotations
 
 from surveyapp.api.batch import batch, batch_rows
-from surveyapp.api.importing import import_file
+from surveyapp.api.importing import export_survey, import_file
+from surveyapp.api.instruments import follow_turn, read_instrument
 from surveyapp.api.judgement import check, diagnose, subjects
 from surveyapp.api.network import (
     adjust,
@@ -37,7 +38,8 @@ from surveyapp.api.orientation import (
     plan,
     unfinished,
 )
-from surveyapp.api.penetration import predict
+from surveyapp.api.penetration import cluster_executor, predict
+from surveyapp.api.pooling import diagnose_instrument
 from surveyapp.api.project import (
     SOFTWARE,
     Folder,
@@ -82,10 +84,12 @@ __all__ = [
     "variance_components",
     "SubjectKeyword",
     "predict",
+    "cluster_executor",
     "shaft",
     "subjects",
     "check",
     "diagnose",
+    "diagnose_instrument",
     "calibrate",
     "plan_fog_station",
     "north",
@@ -100,7 +104,10 @@ __all__ = [
     "close",
     "reopen",
     "compare",
+    "read_instrument",
+    "follow_turn",
     "import_file",
+    "export_survey",
     "export_csv",
     "export_gkf",
     "export_json",

@@ -123,7 +123,7 @@ def orient_project(
     }
     warnings = [*project.warnings, *check_adopted(project)]
     tested = sum(session.method != "automatic" for session in project.sessions)
-    judge = Judge(rng, tested)
+    judge = Judge(sessions=tested)
     setting = _Setting(project, positions, stations, judge, estimator, run_model)
     reduced, sigmas = _reduce_all(setting)
     measured = reduced = with_pooled_weights(reduced)
@@ -145,13 +145,13 @@ def orient_project(
         )
         warnings += more
         constants.append(determine(instrument, calibrations))
-    known, predicted, more = predicted_lines(reduced, constants, positions, None, {})
+    known, predicted, more = predicted_lines(reduced, constants, positions, None)
     warnings += more
     surveyed = SurveyedLines(project, reduced, known, geometry, scatters, stations)
     lines, more = surveyed.oriented(predicted)
     shown = lines
     if only is not None:
-        predicted = predicted_lines(reduced, constants, positions, only, {})[1]
+        predicted = predicted_lines(reduced, constants, positions, only)[1]
         shown, more = surveyed.oriented(predicted, only)
     warnings += more
     return Orientation(
