@@ -45,6 +45,8 @@ class ReadyMine:
     rule_book: RuleBook | None
     defaults: dict[str, tuple[str, float]]
     warnings: tuple[ResultWarning, ...]
+    project: str = ""
+    digest: str = ""
 
 
 @dataclass(slots=True)
@@ -119,7 +121,7 @@ def ready_mine(
     mine = build_mine(plan, stations, constants, gathered.measured)
     warnings = (*project.warnings, *gathered.findings.warnings, *unknown, *lost, *fed)
     warnings = (*warnings, *carried(plan, stations))
-    return ReadyMine(mine, project.rules, defaults, warnings)
+    return ReadyMine(mine, project.rules, defaults, warnings, project.name, project.digest)
 
 
 def _measure(
