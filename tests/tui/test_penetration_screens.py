@@ -87,13 +87,14 @@ async def test_the_shaft_shows_azimuths_swings_and_triangles(folder: Path) -> No
         screen = app.screen
         assert isinstance(screen, ShaftScreen)
         table = screen.query_one("#azimuth DataTable", DataTable)
-        assert [str(c) for c in table.get_row_at(2)][0] == texts.S_TOGETHER
+        assert next(str(c) for c in table.get_row_at(2)) == texts.S_TOGETHER
         assert shaft.combined.consistent
-        for key in "234":
-            await pilot.press(key)
-            await pilot.pause()
+        await pilot.press("2")
+        await settle(app, pilot)
         swings = screen.query_one(SwingPictures).render().plain
         assert swings.count("rest") == 4
+        await pilot.press("3")
+        await settle(app, pilot)
         triangles = screen.query_one(TrianglePictures).render().plain
         assert "surface" in triangles
         assert "W1" in triangles
