@@ -235,8 +235,8 @@ class Instrument:
     known_constant : tuple of (float, float) or None
         Instrument constant known beforehand and its sigma [rad].
     constant_choice : str or None
-        predicted | pooled | interpolated | nearest | running:5 | line:A-B | known; None = nobody chose:
-        predicted where there are determinations enough, else pooled.
+        predicted | pooled | interpolated | nearest | running:5 | line:A-B | known;
+        None = nobody chose: predicted where there are determinations enough, else pooled.
     effects : tuple of AdoptedEffect
     priors : Priors or None
         How often each cause is at work in this instrument, learned from its archive.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from surveyapp.core.orientation.sequence import session_moments, surveys_before
+from surveyapp.core.orientation.sequence import SessionOrder
 from surveyapp.core.statistics.repeated import RunScatter, run_scatter
 from surveyapp.core.swing.session import ReducedSession
 from surveyapp.core.uncertain import Uncertain, aligned
@@ -16,12 +16,7 @@ Groups = Mapping[tuple[str, str, str], Sequence[Uncertain]]
 
 def run_groups(project: Project, reduced: Sequence[ReducedSession], instrument: str) -> Groups:
     """Repetitions of one instrument: a drift between epochs is not scatter."""
-    keys = session_moments(project, instrument)
-    surveys = [
-        keys[session.id]
-        for session in project.sessions
-        if session.instrument == instrument and session.purpose == "survey"
-    ]
+    order = SessionOrder.of(project, instrument)
     groups: dict[tuple[str, str, str], list[Uncertain]] = {}
     for item in reduced:
         if item.session.instrument != instrument:
@@ -30,7 +25,7 @@ def run_groups(project: Project, reduced: Sequence[ReducedSession], instrument: 
             if target.gyro_azimuth is not None:
                 phase: str = item.session.purpose
                 if phase == "calibration":
-                    phase = f"block {surveys_before(keys[item.session.id], surveys)}"
+                    phase = f"block {order.block(item.session.id)}"
                 key = (item.session.station, target.target, phase)
                 groups.setdefault(key, []).append(target.gyro_azimuth)
     return groups

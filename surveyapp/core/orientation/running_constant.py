@@ -6,7 +6,11 @@ mean of the five determinations nearest in time on either side.
 
 from __future__ import annotations
 
-from surveyapp.core.orientation.instrument_constant import Calibration, InstrumentConstant
+from surveyapp.core.orientation.instrument_constant import (
+    Calibration,
+    InstrumentConstant,
+    with_disagreement,
+)
 from surveyapp.core.statistics.repeated import weighted_mean
 from surveyapp.core.uncertain import Uncertain
 from surveyapp.domain.constant_choice import running_count
@@ -29,7 +33,9 @@ def running_constant(constant: InstrumentConstant, choice: str, *, block: int) -
     ordered = sorted(constant.calibrations, key=_place)
     before = [item.value for item in ordered if item.block <= block][-count:]
     after = [item.value for item in ordered if item.block > block][:count]
-    return constant.with_disagreement(weighted_mean([*before, *after]))
+    mean = weighted_mean([*before, *after])
+    lines, epochs = constant.line_agreement, constant.phase_agreement
+    return with_disagreement(mean, constant.instrument.id, lines, epochs)
 
 
 def _place(item: Calibration) -> tuple[int, float]:
