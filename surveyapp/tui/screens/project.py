@@ -54,6 +54,10 @@ class ProjectScreen(Screen[None]):
         Binding("t", "traverses", texts.KEY_TRAVERSE, tooltip=texts.LONG_TRAVERSES, show=False),
         Binding("i", "import", texts.KEY_IMPORT, tooltip=texts.LONG_IMPORT, show=False),
         Binding("e", "export", texts.KEY_EXPORT, tooltip=texts.LONG_EXPORT, show=False),
+        Binding(
+            "p", "breakthrough", texts.KEY_PENETRATION, tooltip=texts.LONG_PENETRATION, show=False
+        ),
+        Binding("s", "shafts", texts.KEY_SHAFTS, tooltip=texts.LONG_SHAFTS, show=False),
         Binding("f5", "reload", texts.KEY_RELOAD, tooltip=texts.LONG_RELOAD),
         Binding("escape", "back", texts.KEY_BACK, tooltip=texts.LONG_BACK),
     ]
@@ -212,6 +216,28 @@ class ProjectScreen(Screen[None]):
         from surveyapp.tui.screens.exchange import ExportScreen
 
         self.app.push_screen(ExportScreen(self.folder))
+
+    def action_breakthrough(self) -> None:
+        """Show the breakthrough, if there is one."""
+        if self.project is None:
+            return
+        from surveyapp.tui.screens.penetration import PenetrationScreen
+
+        if api.has_breakthrough(self.project):
+            self.app.push_screen(PenetrationScreen(self.folder))
+        else:
+            self.notify(texts.NO_PENETRATION, severity="warning", markup=False)
+
+    def action_shafts(self) -> None:
+        """Show the shafts, if there are any."""
+        if self.project is None:
+            return
+        from surveyapp.tui.screens.shaft import ShaftScreen
+
+        if api.has_shafts(self.project):
+            self.app.push_screen(ShaftScreen(self.folder, self.project.angle_unit))
+        else:
+            self.notify(texts.NO_SHAFT, severity="warning", markup=False)
 
     def _diagnosed(self, _: None) -> None:
         self.action_reload()
