@@ -40,7 +40,7 @@ def _child(act: Callable[[], object], at: int, out: int, *, half_write: bool) ->
     count = 0
     real_write = os.write
 
-    def write(handle: int, data: bytes) -> int:
+    def write(handle: int, data: Any) -> int:
         if half_write and count >= at:
             real_write(handle, data[: len(data) // 2])
             os._exit(9)
