@@ -7,7 +7,8 @@ Each subject has a module of its own behind this one, which is all that scripts 
 from __future__ import annotations
 
 from surveyapp.api.batch import batch, batch_rows
-from surveyapp.api.importing import import_file
+from surveyapp.api.importing import export_survey, import_file
+from surveyapp.api.instruments import follow_turn, read_instrument
 from surveyapp.api.judgement import check, diagnose, subjects
 from surveyapp.api.network import (
     adjust,
@@ -37,7 +38,13 @@ from surveyapp.api.orientation import (
     plan,
     unfinished,
 )
-from surveyapp.api.penetration import predict
+from surveyapp.api.penetration import (
+    Trial,
+    cluster_executor,
+    has_breakthrough,
+    predict,
+    trial,
+)
 from surveyapp.api.pooling import diagnose_instrument
 from surveyapp.api.project import (
     SOFTWARE,
@@ -50,7 +57,7 @@ from surveyapp.api.project import (
 )
 from surveyapp.api.rate import north, plan_fog_station, spectrum
 from surveyapp.api.sensors import LogOptions, calibrate, open_sensor_log
-from surveyapp.api.shafts import shaft
+from surveyapp.api.shafts import has_shafts, shaft
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.fieldfile import ImportResult
@@ -83,6 +90,11 @@ __all__ = [
     "variance_components",
     "SubjectKeyword",
     "predict",
+    "cluster_executor",
+    "Trial",
+    "has_breakthrough",
+    "has_shafts",
+    "trial",
     "shaft",
     "subjects",
     "check",
@@ -102,7 +114,10 @@ __all__ = [
     "close",
     "reopen",
     "compare",
+    "read_instrument",
+    "follow_turn",
     "import_file",
+    "export_survey",
     "export_csv",
     "export_gkf",
     "export_json",

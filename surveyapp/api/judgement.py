@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from surveyapp.api.orientation import Source, oriented
 from surveyapp.api.project import SOFTWARE, Folder, opened
+from surveyapp.domain.advance import Advance, silent
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import Verdicts
 from surveyapp.domain.subject import SubjectKeyword
@@ -16,10 +17,17 @@ if TYPE_CHECKING:
     from surveyapp.workflows.diagnosing import Diagnosed
 
 
-def check(source: Source) -> Verdicts:
+def check(source: Source, *, seal: str | None = None, advance: Advance = silent) -> Verdicts:
     """Apply every limit and test that the project's data can answer.
 
     The same verdicts stand in the result of ``orient``, on the screens and in the record.
+
+    Parameters
+    ----------
+    source : Project, path or Computed
+    seal : str or None
+        A head that a signed record prints: one check more tells whether the ledger holds it and
+        what was sealed then is as it was.
 
     Raises
     ------
@@ -32,10 +40,17 @@ def check(source: Source) -> Verdicts:
         found = source
     else:
         project = opened(source)
-        made = oriented(project, even_unfinished=bool(project.traverses))
+        made = oriented(project, even_unfinished=bool(project.traverses), advance=advance)
         found = judged(made, software=SOFTWARE)
     told = tuple(w for w in found.result.warnings if w.code == "session_unfinished")
-    return Verdicts(found.result.checks, told)
+    checks = found.result.checks
+    if seal is not None:
+        from surveyapp.core.checks.filing_checks import seal_check
+        from surveyapp.io.filing.seals import sealed_by
+
+        folder = Path(found.project.path)
+        checks = (*checks, seal_check(*sealed_by(folder, seal)))
+    return Verdicts(checks, told)
 
 
 def diagnose(

@@ -16,11 +16,13 @@ from surveyapp.api.judgement import diagnose, subjects
 from surveyapp.api.network import adjust, network
 from surveyapp.api.orientation import Source, compute, orient
 from surveyapp.api.project import SOFTWARE, Folder
+from surveyapp.domain.advance import Advance, silent
+from surveyapp.errors import SurveyError
 
 if TYPE_CHECKING:
     from surveyapp.core.differences import Snapshot
     from surveyapp.domain.filing import ClosingResult, ComparisonResult, ExportResult
-    from surveyapp.report.blocks import Document
+    from surveyapp.report.blocks import Block, Document
     from surveyapp.report.record import Extra
     from surveyapp.report.written import ReportResult
     from surveyapp.workflows.computing import Computed
@@ -37,6 +39,7 @@ def report(
     font: Folder | None = None,
     extras: tuple[Extra, ...] = (),
     diagnosis: bool = False,
+    advance: Advance = silent,
 ) -> ReportResult:
     """Write the survey record as PDF; the same input gives the same bytes.
 
@@ -52,22 +55,23 @@ def report(
         Sections from elsewhere, before the checks.
     diagnosis : bool
         Diagnose every run and campaign of the project and show what was found.
+    advance : callable
+        Told how far it is.
 
     Raises
     ------
     SurveyError
         If the project cannot be used, the face cannot be embedded or the file not be written.
     """
-    found = compute(source)
+    found = compute(source, advance=advance)
     if diagnosis:
-        extras = (*extras, *_diagnoses(found))
+        extras = (*extras, *_diagnoses(found, advance))
     document, sections = _record(found, extras)
-    return _write_document(document, sections, Path(output), font)
+    return _write_document(document, sections, Path(output), font, advance)
 
 
 def _traverses(found: Computed) -> tuple[Extra, ...]:
     """A section for every traverse; one that cannot be adjusted says why."""
-    from surveyapp.errors import SurveyError
     from surveyapp.report.blocks import Heading, Paragraph
     from surveyapp.report.record import Extra
     from surveyapp.report.sections import traverse as section
@@ -86,15 +90,53 @@ def _traverses(found: Computed) -> tuple[Extra, ...]:
     return tuple(extras)
 
 
-def _diagnoses(found: Computed) -> tuple[Extra, ...]:
+def _shafts(found: Computed) -> tuple[Extra, ...]:
+    """A section for the shafts; what cannot be oriented says why."""
+    from surveyapp.api.shafts import shaft
+    from surveyapp.report.record import Extra
+    from surveyapp.report.sections import shafts as section
+
+    if not found.project.tables.get("shaft"):
+        return ()
+    try:
+        made = section.blocks(shaft(found.project), unit=found.project.angle_unit)
+    except SurveyError as error:
+        made = _refused("Shafts", error)
+    return (Extra("shafts", made),)
+
+
+def _breakthrough(found: Computed) -> tuple[Extra, ...]:
+    """A section for the breakthrough; one that cannot be predicted says why."""
+    from surveyapp.api.penetration import predict
+    from surveyapp.report.record import Extra
+    from surveyapp.report.sections import penetration as section
+
+    if not found.project.tables.get("penetration"):
+        return ()
+    try:
+        made = section.blocks(predict(found))
+    except SurveyError as error:
+        made = _refused("Breakthrough", error)
+    return (Extra("breakthrough", made),)
+
+
+def _refused(title: str, error: SurveyError) -> tuple[Block, ...]:
+    """A section that says why there is nothing in it."""
+    from surveyapp.report.blocks import Heading, Paragraph
+
+    return (Heading(title), *(Paragraph(str(p), "warning") for p in error.problems))
+
+
+def _diagnoses(found: Computed, advance: Advance) -> tuple[Extra, ...]:
     """A section for every subject that can be diagnosed; too few observations are passed over."""
-    from surveyapp.errors import SurveyError
     from surveyapp.report.record import Extra
     from surveyapp.report.sections import diagnosis as section
 
     unit = found.project.angle_unit
     extras = []
-    for option, identity in subjects(found):
+    chosen = subjects(found)
+    for place, (option, identity) in enumerate(chosen):
+        advance("subjects diagnosed", place, len(chosen))
         try:
             if option == "session":
                 made = diagnose(found, session=identity, log=False)
@@ -133,22 +175,31 @@ def blank_form(method: str, output: Folder, *, font: Folder | None = None) -> Re
 
 
 def _record(found: Computed, extras: tuple[Extra, ...]) -> tuple[Document, tuple[str, ...]]:
+    from surveyapp.io.files import visible
     from surveyapp.report.record import Record, SealShown, record_document
 
-    extras = (*_traverses(found), *extras)
+    extras = (*_shafts(found), *_traverses(found), *_breakthrough(found), *extras)
     closing = found.project.filing.project_closing
-    seal = None if closing is None else SealShown(closing.at, closing.by, closing.seal)
+    seal = (
+        None
+        if closing is None
+        else SealShown(closing.at, visible(closing.by), closing.head, closing.seal)
+    )
     return record_document(Record(found.project, found.result, found.project.rules, seal, extras))
 
 
 def _write_document(
-    document: Document, sections: tuple[str, ...], output: Path, font: Folder | None
+    document: Document,
+    sections: tuple[str, ...],
+    output: Path,
+    font: Folder | None,
+    advance: Advance = silent,
 ) -> ReportResult:
     from surveyapp.io.tomltext import atomic_write
     from surveyapp.report.pdf import write_pdf
     from surveyapp.report.written import ReportResult
 
-    written = write_pdf(document, face=None if font is None else Path(font))
+    written = write_pdf(document, face=None if font is None else Path(font), advance=advance)
     atomic_write(output, written.data)
     digest = hashlib.sha256(written.data).hexdigest()
     return ReportResult(str(output), written.pages, sections, digest)
@@ -222,11 +273,15 @@ def export_gkf(source: Source, output: Folder) -> ExportResult:
     SurveyError
         If there is no traverse, or the format has no words for something in it.
     """
+    from dataclasses import replace
+
+    from surveyapp.core.network.setups import without_setup_blocks
     from surveyapp.io.exporters.gkf import gkf_text
 
-    found = network(source)
+    found, warnings = without_setup_blocks(network(source))
     data = gkf_text(found).encode("utf-8")
-    return _write_export("gkf", data, Path(output), len(found.observations))
+    result = _write_export("gkf", data, Path(output), len(found.observations))
+    return replace(result, warnings=warnings)
 
 
 def export_json(source: Source, output: Folder) -> ExportResult:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.results import finite
 
 Part = Literal["input", "software", "card", "rule_book", "result"]
@@ -30,6 +31,8 @@ class ClosingResult:
         What had been changed when it was reopened.
     entry : int
         Number of the ledger entry.
+    head : str
+        Of the ledger's chain, 20 characters in groups: what ``check --seal`` verifies.
     """
 
     action: str
@@ -42,6 +45,7 @@ class ClosingResult:
     files: int
     found: tuple[str, ...]
     entry: int
+    head: str = ""
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON, schema ``surveyapp.closing/1``."""
@@ -54,6 +58,7 @@ class ClosingResult:
             "by": self.by,
             "reason": self.reason,
             "seal": self.seal or None,
+            "head": self.head or None,
             "files": self.files,
             "found": list(self.found),
             "entry": self.entry,
@@ -68,6 +73,7 @@ class ExportResult:
     path: str
     items: int
     sha256: str
+    warnings: tuple[ResultWarning, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON, schema ``surveyapp.export/1``."""
@@ -77,6 +83,7 @@ class ExportResult:
             "path": self.path,
             "items": self.items,
             "sha256": self.sha256,
+            "warnings": [item.to_dict() for item in self.warnings],
         }
 
 

@@ -29,6 +29,13 @@ from surveyapp.core.geodesy import (
 )
 from surveyapp.core.orientation.adopted import apply_adopted
 from surveyapp.core.orientation.calibration_sessions import calibrations_of
+from surveyapp.core.orientation.campaign_columns import session_temperature
+from surveyapp.core.orientation.deflection_field import Field, deflection_field
+from surveyapp.core.orientation.error_terms import (
+    Circumstance,
+    latitude_warnings,
+    with_error_terms,
+)
 from surveyapp.core.orientation.instrument_constant import (
     InstrumentConstant,
     determine,
@@ -39,10 +46,12 @@ from surveyapp.core.orientation.lines import (
     line_geometry,
 )
 from surveyapp.core.orientation.pooled_weights import with_pooled_weights
+from surveyapp.core.orientation.pooled_zeros import with_pooled_tape_zeros
 from surveyapp.core.orientation.predicted_lines import predicted_lines
-from surveyapp.core.orientation.sequence import session_moments, surveys_before
+from surveyapp.core.orientation.repeated_runs import run_groups, scatter_of
+from surveyapp.core.orientation.scatter_sigma import with_scatter_sigma
 from surveyapp.core.orientation.survey_lines import SurveyedLines
-from surveyapp.core.statistics.repeated import RunScatter, run_scatter
+from surveyapp.core.statistics.repeated import RunScatter
 from surveyapp.core.swing.goodness import Judge
 from surveyapp.core.swing.run_model import RunModel
 from surveyapp.core.swing.session import (
@@ -56,7 +65,7 @@ from surveyapp.core.swing.session import (
     sight_resolution,
 )
 from surveyapp.core.swing.sights import SightSet, tripod_twist, zenith_angle
-from surveyapp.core.uncertain import Uncertain, aligned
+from surveyapp.domain.advance import Advance, silent
 from surveyapp.domain.project import (
     OrientationSession,
     Project,
@@ -94,6 +103,7 @@ def orient_project(
     estimator: str | None = None,
     only: str | None = None,
     run_model: RunModel | None = None,
+    advance: Advance = silent,
 ) -> Orientation:
     """Reduce every session, determine the constants, orient every line.
 
@@ -109,6 +119,8 @@ def orient_project(
         calibrations.
     run_model : callable or None
         Estimates runs with adopted effects.
+    advance : callable
+        Told how many sessions are reduced.
 
     Raises
     ------
@@ -123,28 +135,27 @@ def orient_project(
     }
     warnings = [*project.warnings, *check_adopted(project)]
     tested = sum(session.method != "automatic" for session in project.sessions)
-    judge = Judge(rng, tested)
+    judge = Judge(sessions=tested)
     setting = _Setting(project, positions, stations, judge, estimator, run_model)
-    reduced, sigmas = _reduce_all(setting)
-    measured = reduced = with_pooled_weights(reduced)
+    reduced, sigmas = _reduce_all(setting, advance)
+    measured = reduced = with_pooled_weights(with_pooled_tape_zeros(reduced))
     for instrument in project.instruments:
         reduced, found = apply_adopted(instrument, reduced, positions)
         warnings += found
+    geometry = _geometries(reduced, stations, grid, positions, deflection_field(project, positions))
+    reduced = _with_terms(project, reduced, geometry)
+    warnings += latitude_warnings(project, positions)
+    groups = {item.id: run_groups(project, reduced, item.id) for item in project.instruments}
+    reduced, more = with_scatter_sigma(project, reduced, groups)
+    warnings += more
     scatters = {
-        instrument.id: _scatter_of(project, reduced, instrument.id)
-        for instrument in project.instruments
+        item.id: scatter_of(run_groups(project, reduced, item.id)) for item in project.instruments
     }
-    geometry = _geometries(reduced, stations, grid, positions)
     refuse_one_place(geometry)
     refuse_other_convergence(project, geometry)
     warnings += place_warnings(list(geometry.values()), grid)
-    constants = []
-    for instrument in project.instruments:
-        calibrations, more = calibrations_of(
-            project, reduced, instrument.id, geometry, scatters[instrument.id]
-        )
-        warnings += more
-        constants.append(determine(instrument, calibrations))
+    constants, more = _constants(project, reduced, geometry, scatters)
+    warnings += more
     known, predicted, more = predicted_lines(reduced, constants, positions, None)
     warnings += more
     surveyed = SurveyedLines(project, reduced, known, geometry, scatters, stations)
@@ -168,6 +179,45 @@ def orient_project(
     )
 
 
+def _constants(
+    project: Project,
+    reduced: Sequence[ReducedSession],
+    geometry: Mapping[tuple[str, str], LineGeometry],
+    scatters: Mapping[str, RunScatter],
+) -> tuple[list[InstrumentConstant], list[ResultWarning]]:
+    constants = []
+    warnings: list[ResultWarning] = []
+    for instrument in project.instruments:
+        calibrations, more = calibrations_of(
+            project, reduced, instrument.id, geometry, scatters[instrument.id]
+        )
+        warnings += more
+        constants.append(determine(instrument, calibrations))
+    return constants, warnings
+
+
+def _with_terms(
+    project: Project,
+    reduced: Sequence[ReducedSession],
+    geometry: Mapping[tuple[str, str], LineGeometry],
+) -> tuple[ReducedSession, ...]:
+    """Every gyro azimuth with the errors that no residual shows."""
+    found = []
+    for item in reduced:
+        card = project.instrument(item.session.instrument).card
+        temperature = session_temperature(item.session)
+        targets = tuple(
+            with_error_terms(
+                item,
+                target,
+                Circumstance(card, geometry[item.session.id, target.target], temperature),
+            )
+            for target in item.targets
+        )
+        found.append(replace(item, targets=targets))
+    return tuple(found)
+
+
 def _with_position(station: Station, at: Position) -> Station:
     return replace(station, e=at.e, n=at.n, latitude=at.latitude, longitude=at.longitude)
 
@@ -184,7 +234,9 @@ class _Setting:
     run_model: RunModel | None
 
 
-def _reduce_all(setting: _Setting) -> tuple[tuple[ReducedSession, ...], dict[str, SightSigma]]:
+def _reduce_all(
+    setting: _Setting, advance: Advance
+) -> tuple[tuple[ReducedSession, ...], dict[str, SightSigma]]:
     problems: list[Problem] = []
     sights: dict[str, dict[str, SightSet]] = {}
     for session in setting.project.sessions:
@@ -195,7 +247,8 @@ def _reduce_all(setting: _Setting) -> tuple[tuple[ReducedSession, ...], dict[str
             problems += error.problems
     sigmas = _sight_sigmas(setting.project, sights)
     reduced = []
-    for session in setting.project.sessions:
+    for place, session in enumerate(setting.project.sessions):
+        advance("sessions reduced", place, len(setting.project.sessions))
         if session.id not in sights:
             continue
         try:
@@ -291,33 +344,12 @@ def _latitude_warnings(
     return []
 
 
-def _scatter_of(project: Project, reduced: Sequence[ReducedSession], instrument: str) -> RunScatter:
-    """Scatter between the runs of one line and epoch: a drift between epochs is not scatter."""
-    keys = session_moments(project, instrument)
-    surveys = [
-        keys[session.id]
-        for session in project.sessions
-        if session.instrument == instrument and session.purpose == "survey"
-    ]
-    groups: dict[tuple[str, str, str], list[Uncertain]] = {}
-    for item in reduced:
-        if item.session.instrument != instrument:
-            continue
-        for target in item.targets:
-            if target.gyro_azimuth is not None:
-                phase: str = item.session.purpose
-                if phase == "calibration":
-                    phase = f"block {surveys_before(keys[item.session.id], surveys)}"
-                key = (item.session.station, target.target, phase)
-                groups.setdefault(key, []).append(target.gyro_azimuth)
-    return run_scatter([aligned(group) for group in groups.values()])
-
-
 def _geometries(
     reduced: Sequence[ReducedSession],
     stations: Mapping[str, Station],
     grid: Grid | None,
     positions: Mapping[str, Position],
+    field: Field,
 ) -> dict[tuple[str, str], LineGeometry]:
     """Geometry of every sighted line by (session, target)."""
     result = {}
@@ -332,5 +364,6 @@ def _geometries(
                 positions=positions,
                 zenith=zenith,
                 stated=stated_convergence(session, stations[session.station]),
+                deflection_sources=field[session.station],
             )
     return result

@@ -5,9 +5,14 @@ Whoever comes second, and whoever stands before a read-only folder, reads. Nothi
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Final
+
+from surveyapp.errors import SurveyError
+from surveyapp.io.filing.journal import settle
+from surveyapp.io.guarded import is_regular
 
 if TYPE_CHECKING:
     from filelock import BaseFileLock
@@ -49,7 +54,8 @@ class ProjectLock:
             self._acquire()
 
     def _acquire(self) -> None:
-        if not self.folder.is_dir():
+        path = self.folder / LOCK_FILE
+        if not self.folder.is_dir() or (os.path.lexists(path) and not is_regular(path)):
             return
         import filelock
 
@@ -59,6 +65,11 @@ class ProjectLock:
         except (filelock.Timeout, OSError, ValueError, NotImplementedError):
             return
         self._lock = lock
+        try:
+            settle(self.folder)
+        except (SurveyError, OSError):  # a disk that refuses: who only reads sees the old state
+            self.release()
+            return
         self.writable = True
 
     def release(self) -> None:
