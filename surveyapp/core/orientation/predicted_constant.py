@@ -16,6 +16,7 @@ import numpy as np
 from surveyapp.core.orientation.campaign_columns import Circumstances, columns_of
 from surveyapp.core.orientation.instrument_constant import Calibration, InstrumentConstant
 from surveyapp.core.prediction.average import Determinations, Predicted, predict
+from surveyapp.core.prediction.kernels import telling
 from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp.core.statistics.repeated import SHARED, RunScatter
 from surveyapp.core.uncertain import Source, Spread, Uncertain
@@ -30,6 +31,8 @@ MOST = 240
 """The latest determinations that are used: older ones tell of another instrument."""
 CAUSE = "constant: cause not known"
 SCATTER = "constant: scatter of the determinations"
+TOGETHER = 16
+"""Lines that are predicted at once: work and memory grow with their number, no faster."""
 BESIDE = ("run-to-run scatter", "adopted effect outside its range")
 """Contributions that the prediction estimates itself, from the scatter and its causes."""
 UNIT_OF_EFFECT: Mapping[str, str] = {
@@ -114,29 +117,75 @@ def predict_constants(
     priors : Priors
     """
     used = _latest(constant.calibrations, facts)
-    circumstances = [facts[item.session, item.target] for item in used]
-    n = len(used)
-    owns = [_own(item) for item in used]
-    sigmas = np.array([own.sigma for own in owns])
-    stated = bool(np.all(np.isfinite(sigmas) & (sigmas > 0.0)))
-    sources, carried = _shared(used)
-    visits = [visit for line in wanted for _, visit in line.visits]
-    columns, gaps, warnings = _columns(constant.instrument.id, circumstances, visits)
-    targets = _targets(wanted, n, sigmas if stated else None)
-    columns, targets, states = _scenarios(columns, targets, gaps, n)
-    first = used[0].value.value
-    values = np.array([first + wrap_pi(item.value.value - first) for item in used])
+    known = [facts[item.session, item.target] for item in used]
+    base = _Base(constant, used, known, *_shared(used))
     named = frozenset(
         UNIT_OF_EFFECT[e.id] for e in constant.instrument.effects if e.id in UNIT_OF_EFFECT
     )
-    found = predict(
-        Determinations(values, sigmas if stated else None, columns, targets, carried, states),
-        priors.without(named),
-    )
-    constants = _uncertain(constant.instrument.id, found, sources)
-    warnings += _told(constant.instrument.id, wanted, circumstances, gaps)
-    scatter = RunScatter(found.excess if stated else 0.0, round(found.dof), None)
-    return PredictedConstants(constants[0], constants[1:], found.weights, scatter, tuple(warnings))
+    priors = priors.without(named)
+    every = [visit for line in wanted for _, visit in line.visits]
+    alike = frozenset(telling(columns_of([*known, *every])))
+    average: Uncertain | None = None
+    lines: list[Uncertain] = []
+    warnings: list[ResultWarning] = []
+    found: Predicted | None = None
+    for start in range(0, max(len(wanted), 1), TOGETHER):
+        part = wanted[start : start + TOGETHER]
+        chosen = None if found is None else found.counting
+        more, gaps, told = base.predicted(part, alike, chosen, priors)
+        found = more if found is None else found
+        values = _uncertain(constant.instrument.id, more, base.sources, start)
+        average = values[0] if average is None else average
+        lines += values[1:]
+        warnings += [w for w in told if w not in warnings]
+        warnings += _told(constant.instrument.id, part, known, gaps)
+    warnings += _one_block(constant.instrument.id, known, bool(wanted))
+    assert found is not None
+    assert average is not None
+    scatter = RunScatter(found.excess if base.stated else 0.0, round(found.dof), None)
+    return PredictedConstants(average, tuple(lines), found.weights, scatter, tuple(warnings))
+
+
+@dataclass(frozen=True, slots=True)
+class _Base:
+    """The determinations that everything is predicted from, with what they share."""
+
+    constant: InstrumentConstant
+    used: Sequence[Calibration]
+    known: Sequence[Circumstances]
+    sources: list[Source]
+    carried: Floats
+
+    @property
+    def sigmas(self) -> Floats:
+        """Stated standard deviations of what belongs to one determination alone [rad]."""
+        return np.array([_own(item).sigma for item in self.used])
+
+    @property
+    def stated(self) -> bool:
+        """Whether every determination states one."""
+        return bool(np.all(np.isfinite(self.sigmas) & (self.sigmas > 0.0)))
+
+    def predicted(
+        self,
+        part: Sequence[Wanted],
+        alike: frozenset[str],
+        chosen: frozenset[int] | None,
+        priors: Priors,
+    ) -> tuple[Predicted, frozenset[str], list[ResultWarning]]:
+        """Predict the average and some lines with the members that count."""
+        visits = [visit for line in part for _, visit in line.visits]
+        columns, gaps, told = _columns(self.constant.instrument.id, self.known, visits)
+        columns = {name: values for name, values in columns.items() if name in alike}
+        gaps = gaps & alike
+        n, sigmas = len(self.used), self.sigmas if self.stated else None
+        columns, targets, states = _scenarios(columns, _targets(part, n, sigmas), gaps, n)
+        first = self.used[0].value.value
+        values = [first + wrap_pi(item.value.value - first) for item in self.used]
+        data = Determinations(
+            np.array(values), sigmas, columns, targets, self.carried, states, chosen
+        )
+        return predict(data, priors), gaps, told
 
 
 def _latest(
@@ -249,7 +298,7 @@ def _state(name: str, known: Floats, z: float) -> float:
 
 
 def _uncertain(
-    instrument: str, found: Predicted, sources: Sequence[Source]
+    instrument: str, found: Predicted, sources: Sequence[Source], start: int
 ) -> tuple[Uncertain, ...]:
     """Predicted values with their contributions.
 
@@ -275,7 +324,7 @@ def _uncertain(
         parts[Source(SCATTER, instrument, found.dof)] = float(found.readings[t])
         for k, part in enumerate(root[t]):
             if part != 0.0:
-                parts[Source(CAUSE, instrument, found.dof, str(k))] = float(part)
+                parts[Source(CAUSE, instrument, found.dof, f"{start}.{k}")] = float(part)
         kept = {source: part for source, part in parts.items() if part != 0.0}
         result.append(Uncertain(float(value), kept, Spread(CAUSE, found.mixtures[t])))
     return tuple(result)
@@ -306,14 +355,21 @@ def _told(
                 "extrapolated, and its interval is wider for it"
             )
             warnings.append(ResultWarning("prediction_extrapolated", text))
-    days = {item.block for item in known}
-    if len(known) > 1 and len(days) == 1 and known[0].elapsed_days is not None and wanted:
-        text = (
-            f"instrument {instrument}: all determinations were made in one block of work: "
-            "what changes from day to day is not seen in them"
-        )
-        warnings.append(ResultWarning("one_block", text))
     return warnings
+
+
+def _one_block(
+    instrument: str, known: Sequence[Circumstances], wanted: bool
+) -> list[ResultWarning]:
+    """Tell that all determinations belong together."""
+    one = len({item.block for item in known}) == 1 and known[0].elapsed_days is not None
+    if not one or not wanted:
+        return []
+    text = (
+        f"instrument {instrument}: all determinations were made in one block of work: "
+        "what changes from day to day is not seen in them"
+    )
+    return [ResultWarning("one_block", text)]
 
 
 def _lacks(visit: Circumstances, name: str) -> bool:
