@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import inspect
+import re
 import typing
 
 from surveyapp import api
@@ -31,8 +32,8 @@ Every function returns a frozen dataclass with `to_dict()`, the JSON of the comm
 
 Angles are radians; `.deg`, `.arcsec`, `.sigma_arcsec` and `.interval95_arcsec` stand beside them.
 What cannot be used raises `SurveyError` with every problem (`what`, `where`, `found`, `expected`,
-`hint`); `where` names the argument where one is to blame. A function that takes a `Source` takes a folder, a
-`Project` or what `compute` made of it: then nothing is read or computed again.
+`hint`); `where` names the argument where one is to blame. A function that takes a `Source` takes a
+folder, a `Project` or what `compute` made of it: then nothing is read or computed again.
 """
 
 
@@ -60,15 +61,11 @@ def pages() -> dict[str, str]:
 
 def _function(name: str) -> list[str]:
     function = getattr(api, name)
-    signature = str(inspect.signature(function)).replace("'", "")
-    signature = signature.replace("<function silent>", "silent")
-    if "<function" in signature or " at 0x" in signature:
-        signature = _plain(function)
-    return [f"### {name}", "", f"    {name}{signature}", "", *_doc(function)]
+    return [f"### {name}", "", f"    {name}{_signature(function)}", "", *_doc(function)]
 
 
-def _plain(function: typing.Any) -> str:
-    """Signature whose defaults are functions: they are shown by their names."""
+def _signature(function: typing.Any) -> str:
+    """Signature as it is written: annotations without quotes, functions by their names."""
     parameters = []
     for item in inspect.signature(function).parameters.values():
         default = item.default
@@ -76,7 +73,7 @@ def _plain(function: typing.Any) -> str:
             item = item.replace(default=_Named(default.__name__))
         parameters.append(item)
     text = str(inspect.signature(function).replace(parameters=parameters))
-    return text.replace("'", "")
+    return re.sub(r"(: |-> )'([^']*)'", r"\1\2", text)
 
 
 class _Named:
