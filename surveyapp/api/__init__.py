@@ -48,7 +48,7 @@ from surveyapp.api.project import (
     simulate,
 )
 from surveyapp.api.rate import north, plan_fog_station, spectrum
-from surveyapp.api.sensors import LogOptions, calibrate, open_sensor_log
+from surveyapp.api.sensors import LogOptions, allan, calibrate, filter_log, open_sensor_log
 from surveyapp.api.shafts import shaft
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.calibration import Calibration
@@ -86,7 +86,9 @@ __all__ = [
     "subjects",
     "check",
     "diagnose",
+    "allan",
     "calibrate",
+    "filter_log",
     "plan_fog_station",
     "north",
     "spectrum",

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
 
 from surveyapp.api.project import SOFTWARE, Folder, open_project, require
 from surveyapp.domain.calibration import Calibration
+from surveyapp.domain.noise import AllanResult, FilterResult
 from surveyapp.errors import Problem, SurveyError
 
 if TYPE_CHECKING:
@@ -179,4 +182,107 @@ def calibrate(
     result = run_calibration(request)
     if card is not None and result.met:
         write_card(Path(card), result, request, software=SOFTWARE)
+    return result
+
+
+def allan(
+    source: Folder,
+    *,
+    sensor: str | None = None,
+    log: LogOptions | None = None,
+    column: str | None = None,
+    estimator: Literal["oadev", "adev"] = "oadev",
+    taus: Sequence[float] | None = None,
+    allow_outside: bool = False,
+    progress: Progress | None = None,
+) -> AllanResult:
+    """Allan deviation with intervals, and the noise coefficients, of the columns of a log.
+
+    Parameters
+    ----------
+    source : path
+        A CSV file, or a project folder together with ``sensor``.
+    sensor : str, optional
+    log : LogOptions, optional
+    column : str, optional
+        One column by its canonical name or its name in the file; by default every sensor column.
+    estimator : str
+        ``oadev`` or ``adev``.
+    taus : sequence of float, optional
+        Averaging times [s]; by default 1, 2, 4 ... samples up to a quarter of the record.
+    allow_outside : bool
+    progress : callable, optional
+
+    Returns
+    -------
+    AllanResult
+
+    Raises
+    ------
+    SurveyError
+        For input that cannot be used.
+    """
+    from surveyapp.workflows.noise import allan_of_log
+
+    opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
+    return allan_of_log(
+        opened.file, column=column, estimator=estimator, taus=taus, progress=progress
+    )
+
+
+def filter_log(
+    source: Folder,
+    *,
+    name: str = "kalman",
+    sensor: str | None = None,
+    log: LogOptions | None = None,
+    column: str | None = None,
+    q: float | None = None,
+    r: float | None = None,
+    seed: int = 1,
+    out: Folder | None = None,
+    allow_outside: bool = False,
+    progress: Progress | None = None,
+) -> FilterResult:
+    """Filter a column of a log, and tell what it costs: deviation ratios with the lag of a step.
+
+    Parameters
+    ----------
+    source : path
+    name : str
+        kalman, sage-husa or particle.
+    sensor : str, optional
+    log : LogOptions, optional
+    column : str, optional
+        May be left out where the log has one sensor column only.
+    q, r : float, optional
+        Variances in the unit of the column squared, per sample.
+    seed : int
+        Of the particle filter and of the step test.
+    out : path, optional
+        A CSV file for the raw and the filtered series.
+    allow_outside : bool
+    progress : callable, optional
+
+    Returns
+    -------
+    FilterResult
+
+    Raises
+    ------
+    SurveyError
+        For input that cannot be used.
+    """
+    from surveyapp.workflows.filtering import filter_log as run
+
+    opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
+    result, raw, filtered = run(
+        opened.file, name=name, column=column, q=q, r=r, seed=seed, progress=progress
+    )
+    if out is not None:
+        from surveyapp.io.sensor_logs.writing import write_columns
+
+        times = np.arange(raw.size) / result.before.rate_hz
+        columns = {"time_s": times, result.column: raw, f"filtered_{result.column}": filtered}
+        write_columns(Path(out), columns)
     return result
