@@ -86,10 +86,19 @@ class ValidRange:
         Largest latitude, absolute [rad].
     temperature_c : tuple of float or None
         Lowest and highest temperature [degree Celsius].
+    supply : tuple of (unit, low, high)
+        Lowest and highest supply of the spin motor by its unit (V, Hz, mA).
+    level : float or None
+        Largest level reading at which the instrument works, absolute [rad].
+    zenith : tuple of float or None
+        Smallest and largest zenith angle in face left that its telescope reaches [rad].
     """
 
     latitude_max: float | None = None
     temperature_c: tuple[float, float] | None = None
+    supply: tuple[tuple[str, float, float], ...] = ()
+    level: float | None = None
+    zenith: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)

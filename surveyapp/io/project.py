@@ -190,7 +190,7 @@ def _read_tables(top: _Top, repair: bool | None) -> Project:
         traverses=traverses,
         crs=crs,
         grid=read_mine_grid(table, unit, crs),
-        station_sigma_m=table.number("station_sigma_m", low=0.0, high=1e3),
+        station_sigma_m=_station_sigma(table, rules),
         angle_unit=unit,
         angle_typing=table.choice("angle_typing", ANGLE_TYPING) or ANGLE_TYPING[0],
         rule_book=rule_book,
@@ -224,6 +224,12 @@ def _rules(top: _Top) -> tuple[str | None, RuleBook | None]:
         else:
             files.findings.absorb(error)
         return name, None
+
+
+def _station_sigma(table: Table, rules: RuleBook | None) -> float | None:
+    """The project's own, else the rule book's [m]."""
+    own = table.number("station_sigma_m", low=0.0, high=1e3)
+    return own if own is not None or rules is None else rules.station_sigma_m
 
 
 def _filing(files: ProjectFiles) -> Filing:

@@ -19,15 +19,18 @@ from surveyapp.core.penetration.refusals import (
     refusals,
 )
 from surveyapp.core.penetration.rows import RowKind
-from surveyapp.domain.penetration import Penetration
+from surveyapp.domain.penetration import Heading, Penetration
 from surveyapp.domain.project import Project, ResultWarning, Station
 from surveyapp.domain.results import OrientationResult
 from surveyapp.domain.rulebook import RuleBook
+from surveyapp.domain.shaft_result import ShaftOrientation
 from surveyapp.domain.traverse_book import Traverse
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.penetration.measured import header_sigmas, measured_rows
 from surveyapp.io.penetration.table import read_penetration
+from surveyapp.io.shafts.table import shaft_tables
 from surveyapp.io.tables import Findings, Table
+from surveyapp.workflows.plumbing import orient_shafts
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,6 +105,7 @@ def ready_mine(
     plan = penetration_plan(project, gathered.findings)
     stations = {station.name: station for station in project.stations}
     plan = _with_latitude(project, plan, stations)
+    plan, fed = _with_shafts(project, plan, gathered.findings)
     headers = {item.name: item for item in project.traverses}
     lost = _measure(gathered, plan, headers, orientation)
     defaults = _defaults(project, plan)
@@ -113,7 +117,7 @@ def ready_mine(
     problems += _plan_problems(plan, gathered.measured, plan_sides)
     gathered.findings.raise_if_any()
     mine = build_mine(plan, stations, constants, gathered.measured)
-    warnings = (*project.warnings, *gathered.findings.warnings, *unknown, *lost)
+    warnings = (*project.warnings, *gathered.findings.warnings, *unknown, *lost, *fed)
     warnings = (*warnings, *carried(plan, stations))
     return ReadyMine(mine, project.rules, defaults, warnings)
 
@@ -284,6 +288,45 @@ def _plan_problems(
             f"1 to {free}",
         )
     ]
+
+
+def _with_shafts(
+    project: Project, plan: Penetration, findings: Findings
+) -> tuple[Penetration, list[ResultWarning]]:
+    """Starts of headings from the shafts through which they begin: azimuth and depth."""
+    named = {heading.shaft for heading in plan.headings if heading.shaft}
+    if not named or not shaft_tables(project):
+        return plan, []
+    try:
+        shafts = {item.id: item for item in orient_shafts(project, software="").shafts}
+    except SurveyError as refused:
+        findings.absorb(refused)
+        return plan, []
+    headings, warnings = [], []
+    for heading in plan.headings:
+        shaft = shafts.get(heading.shaft)
+        if shaft is not None:
+            heading, told = _fed(heading, shaft)
+            warnings += told
+        headings.append(heading)
+    return replace(plan, headings=tuple(headings)), warnings
+
+
+def _fed(heading: Heading, shaft: ShaftOrientation) -> tuple[Heading, list[ResultWarning]]:
+    """A heading with the start that its shaft gives; what the project states wins."""
+    if heading.height_transfer_m is None:
+        heading = replace(heading, height_transfer_m=shaft.depth.m)
+    if heading.start.azimuth_sigma is not None:
+        return heading, []
+    where = f"heading {heading.name}, shaft {shaft.id}"
+    if shaft.combined.azimuth is None:
+        text = f"{where}: wires and gyro contradict each other, no start azimuth is taken from them"
+        return heading, [ResultWarning("shaft_contradicts", text)]
+    if heading.sides and set(heading.sides[0]) != {shaft.at, shaft.to}:
+        text = f"{where}: it orients {shaft.at}-{shaft.to}, which is not the first side"
+        return heading, [ResultWarning("shaft_side_not_first", text)]
+    start = replace(heading.start, azimuth_sigma=shaft.combined.azimuth.sigma)
+    return replace(heading, start=start), []
 
 
 def _with_latitude(
