@@ -14,6 +14,7 @@ from surveyapp.core.orientation.instrument_constant import InstrumentConstant, a
 from surveyapp.core.orientation.lines import OrientedLine
 from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.core.statistics.distributions import student_quantile
+from surveyapp.core.statistics.levels import LOUD
 from surveyapp.core.swing.goodness import FitTest
 from surveyapp.core.swing.session import ReducedSession, SightSigma
 from surveyapp.core.swing.sights import drift_probability
@@ -21,8 +22,6 @@ from surveyapp.core.uncertain import Uncertain
 from surveyapp.domain.results import Check
 from surveyapp.domain.subject import Subject
 from surveyapp_models.angles import RHO_ARCSEC, wrap_pi
-
-SIGNIFICANCE = 0.01
 
 _FIT_WORDS = {
     "chi_square": "residuals against the card's reading sigma (v'v / sigma^2)",
@@ -39,7 +38,7 @@ def statistical_checks(orientation: Orientation) -> list[Check]:
         checks += _fit_checks(item)
         checks += _tape_zero_checks(orientation, item)
         sigma = orientation.sight_sigmas[item.session.instrument]
-        checks += _sight_checks(item, sigma, SIGNIFICANCE / len(orientation.sessions))
+        checks += _sight_checks(item, sigma, LOUD / len(orientation.sessions))
     for constant in orientation.constants:
         checks += _constant_checks(constant)
     for line in orientation.lines:
@@ -188,7 +187,7 @@ def _constant_checks(constant: InstrumentConstant) -> list[Check]:
 
 
 def _compare(rule: str, difference: Uncertain, subject: Subject, *, text: str = "") -> Check:
-    limit = student_quantile(1.0 - 0.5 * SIGNIFICANCE, max(difference.dof, 1.0)) * difference.sigma
+    limit = student_quantile(1.0 - 0.5 * LOUD, max(difference.dof, 1.0)) * difference.sigma
     value = abs(wrap_pi(difference.value))
     return Check(
         rule=rule,
@@ -215,7 +214,7 @@ def _line_checks(line: OrientedLine) -> list[Check]:
             value=test.statistic,
             limit=None,
             confirmed=True,
-            passed=test.probability >= SIGNIFICANCE,
+            passed=test.probability >= LOUD,
             where=f"{line.result.station}-{line.result.target}",
             text=(
                 f"{len(line.result.sessions)} sessions of one line, scatter against their own "

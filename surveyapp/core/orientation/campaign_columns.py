@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from datetime import date
 from typing import Literal
 
 import numpy as np
@@ -21,6 +22,7 @@ from surveyapp.domain.readings import SWING_KINDS, ReadingKind
 from surveyapp_models.arrays import Floats
 
 SECONDS_PER_DAY = 86400.0
+EPOCH_ORDINAL = date(1970, 1, 1).toordinal()
 BLOCK_GAP_DAYS = 0.25
 """A pause of six hours ends a block: a shift is one block, also over midnight of any zone."""
 LABELLED = frozenset({"line", "block"})
@@ -70,7 +72,7 @@ def circumstances(
     session = item.session
     stamp = session_timestamp(session)
     if stamp is None and session.date is not None:
-        stamp = (session.date.toordinal() - 719163) * SECONDS_PER_DAY + 0.5 * SECONDS_PER_DAY
+        stamp = (session.date.toordinal() - EPOCH_ORDINAL) * SECONDS_PER_DAY + 0.5 * SECONDS_PER_DAY
     days = None if stamp is None else stamp / SECONDS_PER_DAY
     north = item.reduction.north
     return Circumstances(

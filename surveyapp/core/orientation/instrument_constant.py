@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from surveyapp.core.statistics.distributions import f_tail, student_quantile
+from surveyapp.core.statistics.levels import CONSISTENT
 from surveyapp.core.statistics.repeated import SHARED, weighted_mean
 from surveyapp.core.uncertain import Source, Uncertain, combine
 from surveyapp.domain.instrument import Instrument
@@ -23,9 +24,6 @@ from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.angles import RHO_ARCSEC
 
 Phase = Literal["before", "between", "after"]
-
-SIGNIFICANCE = 0.05
-"""Of the stability tests: a constant that may have moved must be looked at."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,8 +175,8 @@ def compare_groups(groups: Sequence[tuple[str, Uncertain]]) -> Agreement | None:
     spread = usable[widest][1] - usable[lowest][1]
     return Agreement(
         difference=spread.value,
-        limit=student_quantile(1.0 - 0.5 * SIGNIFICANCE / dof, max(spread.dof, 1.0)) * spread.sigma,
-        agree=probability >= SIGNIFICANCE,
+        limit=student_quantile(1.0 - 0.5 * CONSISTENT / dof, max(spread.dof, 1.0)) * spread.sigma,
+        agree=probability >= CONSISTENT,
         scatter=math.sqrt(max(external - 1.0 / total, 0.0)),
         dof=dof,
         probability=probability,

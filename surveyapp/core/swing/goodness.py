@@ -13,11 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from surveyapp.core.statistics.distributions import chi_square_quantile
+from surveyapp.core.statistics.levels import LOUD
 from surveyapp_models.arrays import Floats
 
-SIGNIFICANCE = 0.01
-"""Of each kind of test over ALL sessions of a project together: a clean project of ten sessions
-alarms as rarely as one of a single session (at most 3 % with the three kinds)."""
 DRAWS = 2000
 MOST_DRAWS = 40_000
 
@@ -39,7 +37,7 @@ class Judge:
     @property
     def significance(self) -> float:
         """Level of one test of one session."""
-        return SIGNIFICANCE / max(self.sessions, 1)
+        return LOUD / max(self.sessions, 1)
 
     @property
     def draws(self) -> int:
