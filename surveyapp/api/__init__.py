@@ -38,6 +38,7 @@ from surveyapp.api.orientation import (
     unfinished,
 )
 from surveyapp.api.penetration import predict
+from surveyapp.api.pooling import diagnose_instrument
 from surveyapp.api.project import (
     SOFTWARE,
     Folder,
@@ -87,6 +88,7 @@ __all__ = [
     "check",
     "diagnose",
     "allan",
+    "diagnose_instrument",
     "calibrate",
     "filter_log",
     "plan_fog_station",

@@ -8,6 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
+from surveyapp.domain.priors import Priors
+
 InstrumentKind = Literal["suspended", "automatic"]
 
 
@@ -208,6 +210,8 @@ class Instrument:
         predicted | pooled | interpolated | nearest | line:A-B | known; None = nobody chose:
         predicted where there are determinations enough, else pooled.
     effects : tuple of AdoptedEffect
+    priors : Priors or None
+        How often each cause is at work in this instrument, learned from its archive.
     """
 
     id: str
@@ -216,3 +220,4 @@ class Instrument:
     known_constant: tuple[float, float] | None = None
     constant_choice: str | None = None
     effects: tuple[AdoptedEffect, ...] = ()
+    priors: Priors | None = None

@@ -20,6 +20,7 @@ from surveyapp.io.cards import is_path
 from surveyapp.io.files import decode, read_bytes, shown, shown_path
 from surveyapp.io.filing.seals import changed_after_closing, read_filing
 from surveyapp.io.grid_tables import read_mine_grid, refuse_two_convergences
+from surveyapp.io.priors import with_priors
 from surveyapp.io.project_files import PROJECT_FILE, ProjectFiles, inside
 from surveyapp.io.project_tables import (
     Names,
@@ -171,6 +172,10 @@ def _read_tables(top: _Top, repair: bool | None) -> Project:
         known_constants=frozenset(str(t.get("id")) for t in cards if "constant" in t),
         unit=unit,
     )
+    instruments = [
+        with_priors(instrument, card, files)
+        for instrument, card in zip(instruments, cards, strict=True)
+    ]
     sessions = read_sessions(top.tables("orientation"), files, names, repair=repair)
     for instrument, card in zip(instruments, cards, strict=True):
         names.check_choice(card, instrument.constant_choice or "pooled", instrument.id)

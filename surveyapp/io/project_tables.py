@@ -224,7 +224,7 @@ def read_instrument(table: Table, folder: Path) -> Instrument:
         effects=tuple(read_effect(t) for t in table.tables("effect")),
     )
     table.get("note")
-    table.warn_unknown(*CARD_KEYS)
+    table.warn_unknown(*CARD_KEYS, "priors")
     return instrument
 
 

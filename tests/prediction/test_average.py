@@ -11,8 +11,8 @@ from bench._campaigns import ABSENT, CATALOGUE, CLEAN, LATER, LINE_SIGMA, WANDER
 from surveyapp.core.prediction.average import Determinations, members, predict
 from surveyapp.core.prediction.kernels import clock, kernels, step_columns
 from surveyapp.core.prediction.learning import evidence_of, learned
-from surveyapp.core.prediction.priors import AMPLITUDES, DEFAULT_PRIORS, NU0, UNITS, Priors
 from surveyapp.core.statistics.mixture import Mixture, student_cdf
+from surveyapp.domain.priors import AMPLITUDES, DEFAULT_PRIORS, NU0, UNITS, Priors
 from surveyapp_models.arrays import Floats
 
 

@@ -16,10 +16,10 @@ import numpy as np
 from surveyapp.core.orientation.campaign_columns import Circumstances, columns_of
 from surveyapp.core.orientation.instrument_constant import Calibration, InstrumentConstant
 from surveyapp.core.prediction.average import Determinations, Predicted, predict
-from surveyapp.core.prediction.priors import DEFAULT_PRIORS, Priors
 from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp.core.statistics.repeated import SHARED, RunScatter
 from surveyapp.core.uncertain import Source, Spread, Uncertain
+from surveyapp.domain.priors import DEFAULT_PRIORS, Priors
 from surveyapp.domain.project import ResultWarning
 from surveyapp_models.angles import RHO_ARCSEC, wrap_pi
 from surveyapp_models.arrays import Floats

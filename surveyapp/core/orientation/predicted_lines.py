@@ -13,10 +13,10 @@ from surveyapp.core.orientation.predicted_constant import (
     predict_constants,
     predictable,
 )
-from surveyapp.core.prediction.priors import DEFAULT_PRIORS, Priors
 from surveyapp.core.statistics.repeated import RunScatter, run_scatter, weights_of
 from surveyapp.core.swing.session import ReducedSession
 from surveyapp.core.uncertain import Uncertain, aligned
+from surveyapp.domain.priors import DEFAULT_PRIORS
 from surveyapp.domain.project import ResultWarning
 
 Key = tuple[str, str, str]
@@ -51,7 +51,6 @@ def predicted_lines(
     constants: Sequence[InstrumentConstant],
     positions: Mapping[str, Position],
     only: str | None,
-    priors: Mapping[str, Priors],
 ) -> tuple[tuple[InstrumentConstant, ...], dict[Key, PredictedLine], list[ResultWarning]]:
     """The constants with their average over the campaign, and that of every survey line.
 
@@ -61,8 +60,6 @@ def predicted_lines(
     ----------
     only : str or None
         Survey lines with this session alone.
-    priors : mapping of instrument to Priors
-        Of its archive; the defaults where there is none.
     """
     groups = survey_groups(reduced, only)
     found: list[InstrumentConstant] = []
@@ -76,7 +73,9 @@ def predicted_lines(
         facts = facts_of(reduced, name, positions)
         own = {key: members for key, members in groups.items() if key[2] == name}
         wanted = [_wanted(key, members, facts) for key, members in own.items()]
-        result = predict_constants(constant, facts, wanted, priors.get(name, DEFAULT_PRIORS))
+        result = predict_constants(
+            constant, facts, wanted, constant.instrument.priors or DEFAULT_PRIORS
+        )
         # the lines repeat themselves too: whichever of both tells of more
         seen = run_scatter([aligned([a for _, a in members]) for members in own.values()])
         scatter = seen if seen.sigma > result.scatter.sigma else result.scatter

@@ -145,13 +145,13 @@ def orient_project(
         )
         warnings += more
         constants.append(determine(instrument, calibrations))
-    known, predicted, more = predicted_lines(reduced, constants, positions, None, {})
+    known, predicted, more = predicted_lines(reduced, constants, positions, None)
     warnings += more
     surveyed = SurveyedLines(project, reduced, known, geometry, scatters, stations)
     lines, more = surveyed.oriented(predicted)
     shown = lines
     if only is not None:
-        predicted = predicted_lines(reduced, constants, positions, only, {})[1]
+        predicted = predicted_lines(reduced, constants, positions, only)[1]
         shown, more = surveyed.oriented(predicted, only)
     warnings += more
     return Orientation(

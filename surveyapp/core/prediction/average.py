@@ -17,8 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from surveyapp.core.prediction.members import Determinations, Members, members
-from surveyapp.core.prediction.priors import BASE, Priors
 from surveyapp.core.statistics.mixture import Mixture
+from surveyapp.domain.priors import BASE, Priors
 from surveyapp_models.arrays import Floats
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from surveyapp.core.prediction.members import Determinations, members
-from surveyapp.core.prediction.priors import (
+from surveyapp.domain.priors import (
     AMPLITUDES,
     BASE,
     DEFAULT_PRIORS,

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from surveyapp.core.prediction.kernels import PAIRED, Kernel, kernels, step_columns
-from surveyapp.core.prediction.priors import (
+from surveyapp.domain.priors import (
     AMPLITUDES,
     BASE,
     GROSS,
