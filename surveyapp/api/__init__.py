@@ -49,7 +49,14 @@ from surveyapp.api.project import (
     simulate,
 )
 from surveyapp.api.rate import north, plan_fog_station, spectrum
-from surveyapp.api.sensors import LogOptions, allan, calibrate, filter_log, open_sensor_log
+from surveyapp.api.sensors import (
+    LogOptions,
+    allan,
+    calibrate,
+    compensate,
+    filter_log,
+    open_sensor_log,
+)
 from surveyapp.api.shafts import shaft
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.calibration import Calibration
@@ -91,6 +98,7 @@ __all__ = [
     "diagnose_instrument",
     "calibrate",
     "filter_log",
+    "compensate",
     "plan_fog_station",
     "north",
     "spectrum",

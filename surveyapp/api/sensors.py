@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from surveyapp.domain.sensor_entry import SensorLogEntry
     from surveyapp.io.sensor_logs.blocks import Progress
     from surveyapp.io.sensor_logs.reading import LogFile
+    from surveyapp.workflows.compensating import CompensationResult
 
 
 @dataclass(frozen=True, slots=True)
@@ -286,3 +287,65 @@ def filter_log(
         columns = {"time_s": times, result.column: raw, f"filtered_{result.column}": filtered}
         write_columns(Path(out), columns)
     return result
+
+
+def compensate(
+    kind: str,
+    source: Folder,
+    *,
+    card: Folder,
+    out: Folder,
+    declination: str | None = None,
+    sensor: str | None = None,
+    log: LogOptions | None = None,
+    allow_outside: bool = False,
+    progress: Progress | None = None,
+) -> CompensationResult:
+    """Apply a sensor card to a log, and write the corrected columns.
+
+    Parameters
+    ----------
+    kind : str
+        compass, tilt or rate.
+    source : path
+    card : path
+        A sensor card; refused outside its days and temperatures.
+    out : path
+        The CSV file to write.
+    declination : str, optional
+        ``D`` or ``D,SIGMA`` [degrees, east positive]: only for a compass.
+    sensor, log, allow_outside, progress
+        As of ``calibrate``.
+
+    Returns
+    -------
+    CompensationResult
+
+    Raises
+    ------
+    SurveyError
+        If the card does not hold for this log, and for input that cannot be used.
+    """
+    import math
+
+    from surveyapp.core.sensors.compensation import Declination
+    from surveyapp.workflows.calibrating.compass import declination_of
+    from surveyapp.workflows.compensating import compensate_log, write_compensated
+
+    opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
+    added = None
+    if declination is not None:
+        value, sigma = declination_of(declination)
+        added = Declination(math.radians(value), None if sigma is None else math.radians(sigma))
+    found, record, used = compensate_log(
+        kind,
+        opened.file,
+        Path(card),
+        entry=opened.entry,
+        today=datetime.now(UTC).astimezone().date(),
+        declination=added,
+        progress=progress,
+    )
+    return write_compensated(
+        found, record, used, kind=kind, card_path=os.fspath(card), out=Path(out)
+    )

@@ -43,6 +43,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("spectrum", "spectrum", "interference lines of a record, and a magnetic bias budget"),
     Command("north", "north", "north by a rate sensor: on a total station, indexed, turned"),
     Command("allan", "allan", "Allan deviation and noise coefficients of a sensor log"),
+    Command("compensate", "compensate", "a sensor card applied to a log"),
     Command("filter", "filter", "a filter on a sensor log: deviation before, after, and its lag"),
     Command("close", "close", "seal a project or a session with a hash chain in the ledger"),
     Command("reopen", "reopen", "open what was closed; the ledger keeps the reason"),
