@@ -162,7 +162,7 @@ def _swing_sigma(card: SensorCard, heading: Floats) -> Floats:
         return np.full(heading.size, math.radians(largest))
     basis = deviation_basis(heading)
     variance = np.sum((basis @ card.covariance) * basis, axis=1)
-    return np.radians(np.sqrt(np.maximum(variance, 0.0)))
+    return np.asarray(np.radians(np.sqrt(np.maximum(variance, 0.0))))
 
 
 def compensate_tilt(log: SensorLog, card: SensorCard, *, where: str) -> Compensated:
