@@ -37,7 +37,7 @@ from surveyapp.api.orientation import (
     plan,
     unfinished,
 )
-from surveyapp.api.penetration import predict
+from surveyapp.api.penetration import cluster_executor, predict
 from surveyapp.api.pooling import diagnose_instrument
 from surveyapp.api.project import (
     SOFTWARE,
@@ -90,6 +90,7 @@ __all__ = [
     "variance_components",
     "SubjectKeyword",
     "predict",
+    "cluster_executor",
     "shaft",
     "subjects",
     "check",

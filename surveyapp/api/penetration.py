@@ -2,12 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from concurrent.futures import Executor
+from contextlib import contextmanager
 from dataclasses import replace
 
 from surveyapp.api.orientation import Source, oriented
 from surveyapp.api.project import SOFTWARE
 from surveyapp.domain.penetration_result import Prediction
+
+
+@contextmanager
+def cluster_executor(address: str | None) -> Iterator[Executor | None]:
+    """Executor of the cluster at an address (extra ``cluster``), None without one.
+
+    Raises
+    ------
+    SurveyError
+        If the extra is not installed, or nobody answers.
+    """
+    from surveyapp.workflows.cluster import cluster_executor as connected
+
+    with connected(address) as executor:
+        yield executor
 
 
 def predict(

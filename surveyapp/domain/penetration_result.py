@@ -148,6 +148,8 @@ class MissCandidate:
         Size in declared sigmas; None where none is declared.
     component : str
         lateral | longitudinal.
+    subject : str
+        Instrument or heading; empty: the whole mine.
     """
 
     effect: str
@@ -155,6 +157,7 @@ class MissCandidate:
     unit: str
     sigmas: float | None
     component: str
+    subject: str = ""
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""
@@ -164,6 +167,7 @@ class MissCandidate:
             "unit": self.unit,
             "sigmas": finite(self.sigmas),
             "component": self.component,
+            "subject": self.subject or None,
         }
 
 
@@ -254,6 +258,30 @@ class MeetingEllipse:
 
 
 @dataclass(frozen=True, slots=True)
+class MineDrawing:
+    """What a plan of the mine shows, east and north [m].
+
+    Parameters
+    ----------
+    names : tuple of str
+        Headings.
+    routes : tuple of tuple of (east, north)
+        Stations of each heading, carried on to the meeting point.
+    gyro : tuple of pairs
+        Ends of the gyro sides.
+    meeting : (east, north)
+    axis_azimuth : float
+        [rad].
+    """
+
+    names: tuple[str, ...]
+    routes: tuple[tuple[tuple[float, float], ...], ...]
+    gyro: tuple[tuple[tuple[float, float], tuple[float, float]], ...]
+    meeting: tuple[float, float]
+    axis_azimuth: float
+
+
+@dataclass(frozen=True, slots=True)
 class Prediction:
     """Everything that ``predict`` finds."""
 
@@ -274,9 +302,10 @@ class Prediction:
     measured: MissTest | None = None
     steps: tuple[ProcedureStep, ...] = ()
     warnings: tuple[ResultWarning, ...] = ()
+    drawing: MineDrawing | None = None
 
     def to_dict(self) -> dict[str, Any]:
-        """Keys of the JSON, schema ``surveyapp.predict/1``."""
+        """Keys of the JSON, schema ``surveyapp.predict/1``; the drawing is not in it."""
         return {
             "schema": "surveyapp.predict/1",
             "project": self.project,

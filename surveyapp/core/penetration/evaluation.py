@@ -145,29 +145,21 @@ def _lateral(mine: Mine, solved: Estimator, miss: float) -> list[MissCandidate]:
         lever = float(gain[rows.instrument == i].sum())
         if abs(lever) > LEAST_LEVER:
             needed = miss / lever / ARCSEC
-            found.append(
-                _candidate("gyro_constant", needed, "arcsec", float(sigma) / ARCSEC, "lateral")
-            )
+            item = _candidate("gyro_constant", needed, "arcsec", float(sigma) / ARCSEC, "lateral")
+            found.append(replace(item, subject=mine.instruments[i]))
     for number, heading in enumerate(mine.plan.headings):
         start = (rows.kind == RowKind.AZIMUTH) & (rows.heading == number)
         lever = float(gain[start].sum())
         if abs(lever) > LEAST_LEVER:
             needed = miss / lever / ARCSEC
-            declared = heading.start.azimuth_sigma
-            found.append(
-                _candidate(
-                    "start_azimuth",
-                    needed,
-                    "arcsec",
-                    None if declared is None else declared / ARCSEC,
-                    "lateral",
-                )
-            )
-    for column, declared in _walls(mine, solved):
-        if abs(column) > LEAST_LEVER:
-            found.append(
-                _candidate("lateral_refraction", miss / column, "K/m", declared, "lateral")
-            )
+            declared = float(np.sqrt(np.mean(rows.reading[start] ** 2))) / ARCSEC
+            item = _candidate("start_azimuth", needed, "arcsec", declared, "lateral")
+            found.append(replace(item, subject=heading.name))
+    found += [
+        _candidate("lateral_refraction", miss / column, "K/m", declared, "lateral")
+        for column, declared in _walls(mine, solved)
+        if abs(column) > LEAST_LEVER
+    ]
     return found
 
 

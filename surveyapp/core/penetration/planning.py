@@ -145,7 +145,7 @@ def measures(mine: Mine) -> tuple[Measure, ...]:
             "angles",
             _scaled(mine, RowKind.ANGLE, BETTER_ANGLES),
             0,
-            'angles with 5/7 of the sigma (7" to 5")',
+            "angles with 5/7 of the sigma",
         )
     ]
     if gyro:
@@ -156,7 +156,7 @@ def measures(mine: Mine) -> tuple[Measure, ...]:
                 "gyro",
                 _scaled(mine, RowKind.GYRO, BETTER_GYRO),
                 0,
-                'gyro sides with 2/3 of the sigma (15" to 10")',
+                "gyro sides with 2/3 of the sigma",
             ),
             (
                 "second_instrument",
