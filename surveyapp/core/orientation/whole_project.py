@@ -123,7 +123,7 @@ def orient_project(
     }
     warnings = [*project.warnings, *check_adopted(project)]
     tested = sum(session.method != "automatic" for session in project.sessions)
-    judge = Judge(rng, tested)
+    judge = Judge(sessions=tested)
     setting = _Setting(project, positions, stations, judge, estimator, run_model)
     reduced, sigmas = _reduce_all(setting)
     measured = reduced = with_pooled_weights(reduced)
