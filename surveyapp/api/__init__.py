@@ -38,7 +38,13 @@ from surveyapp.api.orientation import (
     plan,
     unfinished,
 )
-from surveyapp.api.penetration import cluster_executor, predict
+from surveyapp.api.penetration import (
+    Trial,
+    cluster_executor,
+    has_breakthrough,
+    predict,
+    trial,
+)
 from surveyapp.api.pooling import diagnose_instrument
 from surveyapp.api.project import (
     SOFTWARE,
@@ -59,6 +65,8 @@ from surveyapp.api.sensors import (
     open_sensor_log,
 )
 from surveyapp.api.shafts import shaft
+from surveyapp.api.sensors import LogOptions, calibrate, open_sensor_log
+from surveyapp.api.shafts import has_shafts, shaft
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.fieldfile import ImportResult
@@ -92,6 +100,10 @@ __all__ = [
     "SubjectKeyword",
     "predict",
     "cluster_executor",
+    "Trial",
+    "has_breakthrough",
+    "has_shafts",
+    "trial",
     "shaft",
     "subjects",
     "check",
