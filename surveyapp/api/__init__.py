@@ -61,11 +61,10 @@ from surveyapp.api.sensors import (
     allan,
     calibrate,
     compensate,
+    diagnose_sensor,
     filter_log,
     open_sensor_log,
 )
-from surveyapp.api.shafts import shaft
-from surveyapp.api.sensors import LogOptions, calibrate, open_sensor_log
 from surveyapp.api.shafts import has_shafts, shaft
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.calibration import Calibration
@@ -113,6 +112,7 @@ __all__ = [
     "calibrate",
     "filter_log",
     "compensate",
+    "diagnose_sensor",
     "plan_fog_station",
     "north",
     "spectrum",

@@ -176,9 +176,12 @@ def _added_field(
         added[:, 0] = effect.size * (temperature - temperature.mean())
         return added, {"uT_per_K": effect.size}
     if effect.id == "field_gradient":
-        along = path.places @ _direction(rng)
-        turned = np.einsum("nij,i->nj", path.matrices, direction)
-        return effect.size * along[:, None] * turned, {"uT_per_m": effect.size}
+        shape = rng.normal(size=(3, 3))
+        shape = 0.5 * (shape + shape.T)
+        shape -= np.trace(shape) / 3.0 * np.eye(3)  # a field without sources or currents
+        shape *= effect.size / np.abs(np.linalg.eigvalsh(shape)).max()
+        turned = np.einsum("nij,ni->nj", path.matrices, path.places @ shape)
+        return turned, {"uT_per_m": shape.tolist()}
     count = int(effect.option("count") or 8.0)
     rows = np.sort(rng.choice(time.size, size=count, replace=False))
     added = np.zeros((time.size, 3))
