@@ -61,7 +61,7 @@ from surveyapp.api.sensors import (
     allan,
     calibrate,
     compensate,
-    diagnose_sensor,
+    diagnose_log,
     filter_log,
     open_sensor_log,
 )
@@ -112,7 +112,7 @@ __all__ = [
     "calibrate",
     "filter_log",
     "compensate",
-    "diagnose_sensor",
+    "diagnose_log",
     "plan_fog_station",
     "north",
     "spectrum",

@@ -352,7 +352,7 @@ def compensate(
     )
 
 
-def diagnose_sensor(
+def diagnose_log(
     source: Folder,
     *,
     sensor: str | None = None,
@@ -380,10 +380,10 @@ def diagnose_sensor(
     SurveyError
         For input that cannot be used.
     """
-    from surveyapp.workflows.diagnosing_sensor import diagnose_log
+    from surveyapp.workflows.diagnosing_log import diagnose_log as run
 
     opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
     entry = opened.entry
     kind = None if entry is None else entry.kind
     identity = opened.file.request.id if entry is None else entry.id
-    return diagnose_log(kind, identity, opened.file, progress=progress)
+    return run(kind, identity, opened.file, progress=progress)

@@ -126,7 +126,7 @@ def _sensor(options: argparse.Namespace) -> int:
                 "calibrate KIND DIR --sensor ID --card OUT.toml writes what is determined",
             )
         )
-    found = api.diagnose_sensor(
+    found = api.diagnose_log(
         options.folder, sensor=options.sensor, allow_outside=options.allow_outside
     )
     if options.json:

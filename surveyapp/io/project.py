@@ -18,6 +18,7 @@ from surveyapp.domain.rulebook import RuleBook
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.cards import is_path
 from surveyapp.io.files import decode, read_inside, shown, shown_path
+from surveyapp.io.filing.journal import unsettled
 from surveyapp.io.filing.seals import changed_after_closing, read_filing
 from surveyapp.io.grid_tables import read_mine_grid, refuse_two_convergences
 from surveyapp.io.priors import with_priors
@@ -76,6 +77,10 @@ def read_project(folder: Path, *, repair: bool | None = None, observing: bool = 
         With every problem of project.toml and of all its books; in a closed project also with what
         was changed since it was closed.
     """
+    if repair is None and unsettled(folder):
+        from surveyapp.io.filing.lock import ProjectLock
+
+        ProjectLock(folder, even_closed=True).release()  # whoever takes the lock settles
     try:
         return _read(folder, repair=repair, observing=observing)
     except SurveyError as error:

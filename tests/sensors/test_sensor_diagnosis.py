@@ -19,7 +19,7 @@ BROAD = SHARED / "broad_magnetometer"
 def diagnosed(tmp_path: Path, kind: str, *effects: str, seed: int = 1) -> tuple[Any, Any]:
     made = api.simulate(kind, tmp_path / f"{kind}{seed}", effects=effects, seed=seed)
     truth = json.loads(Path(made.truth).read_text())
-    return api.diagnose_sensor(made.folder).to_dict(), truth
+    return api.diagnose_log(made.folder).to_dict(), truth
 
 
 def named(document: Any) -> set[str]:
@@ -102,7 +102,7 @@ def test_correlated_noise_is_not_named(tmp_path: Path, walk: bool) -> None:
                     noise[k] = 0.95 * noise[k - 1] + 0.1 * rng.normal()
             table[:, axis] += noise
         np.savetxt(path, table, delimiter=",", header=head, comments="", fmt="%.9g")
-        wrong += bool(api.diagnose_sensor(made.folder).to_dict()["adopted"])
+        wrong += bool(api.diagnose_log(made.folder).to_dict()["adopted"])
     assert wrong <= 1
 
 
@@ -127,7 +127,7 @@ def test_the_command_and_what_it_refuses(
 @pytest.mark.skipif(not BROAD.exists(), reason="measured records are not there")
 def test_the_magnet_of_broad_33_is_found_with_its_times() -> None:
     path = BROAD / "33_disturbed_attached_magnet_2cm_20Hz.csv"
-    document = api.diagnose_sensor(path, log=LogOptions(columns={"time_s": "t_s"})).to_dict()
+    document = api.diagnose_log(path, log=LogOptions(columns={"time_s": "t_s"})).to_dict()
     assert "interference_step" in named(document)
     assert "hard_iron" not in named(document)
     found = coefficients(document, "interference_step")
@@ -145,14 +145,14 @@ def test_the_magnet_of_broad_33_is_found_with_its_times() -> None:
 def test_the_room_of_broad_01_needs_the_place(tmp_path: Path) -> None:
     path = BROAD / "01_undisturbed_slow_rotation_A_20Hz.csv"
     options = LogOptions(columns={"time_s": "t_s"})
-    whole = api.diagnose_sensor(path, log=options).to_dict()
+    whole = api.diagnose_log(path, log=options).to_dict()
     assert "field_gradient" in named(whole)
     assert whole["size_rms_uT"]["before"] == pytest.approx(1.53, abs=0.01)
     assert whole["size_rms_uT"]["after"] < 0.9
     lines = path.read_text().splitlines()
     bare = tmp_path / "bare.csv"
     bare.write_text("\n".join(",".join(line.split(",")[:10]) for line in lines) + "\n")
-    document = api.diagnose_sensor(bare, log=options).to_dict()
+    document = api.diagnose_log(bare, log=options).to_dict()
     assert document["verdict"] == "not_separable"
     assert document["adopted"] == []
 
@@ -167,4 +167,4 @@ def test_a_calibrated_magnetometer_adopts_nothing(tmp_path: Path) -> None:
         path, np.column_stack([time, data["mag"]]), delimiter=",", comments="", fmt="%.7g",
         header="time_s,mag_x_uT,mag_y_uT,mag_z_uT",
     )  # fmt: skip
-    assert api.diagnose_sensor(path).to_dict()["adopted"] == []
+    assert api.diagnose_log(path).to_dict()["adopted"] == []
