@@ -58,6 +58,7 @@ from surveyapp.api.project import (
 from surveyapp.api.rate import north, plan_fog_station, spectrum
 from surveyapp.api.sensors import LogOptions, calibrate, open_sensor_log
 from surveyapp.api.shafts import has_shafts, shaft
+from surveyapp.api.sheets import write_sheets
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.fieldfile import ImportResult
@@ -110,6 +111,7 @@ __all__ = [
     "batch_rows",
     "report",
     "report_text",
+    "write_sheets",
     "blank_form",
     "close",
     "reopen",
