@@ -14,6 +14,7 @@ from surveyapp.api.network import (
     adjust,
     adjust_network,
     compass_rule,
+    data_snooping,
     network,
     variance_components,
 )
@@ -89,6 +90,7 @@ __all__ = [
     "adjust_network",
     "compass_rule",
     "variance_components",
+    "data_snooping",
     "SubjectKeyword",
     "predict",
     "cluster_executor",
