@@ -77,6 +77,7 @@ if TYPE_CHECKING:
     from surveyapp.api.sensors import OpenedLog
     from surveyapp.core.comparison import DemonstratedSample
     from surveyapp.core.network.bowditch import CompassResult
+    from surveyapp.core.network.snooping import SnoopingResult
     from surveyapp.core.network.variance_components import VarianceComponent
     from surveyapp.core.plan import StationPlan
     from surveyapp.core.sensors.rate.fog_station_plan import FogStationPlan
@@ -97,7 +98,7 @@ if TYPE_CHECKING:
     from surveyapp.domain.results import AngleResult, ConstantResult, LineResult, SessionResult
     from surveyapp.domain.shaft_result import ShaftResult
     from surveyapp.io.simulated import SimulatedFiles
-    from surveyapp.report.written import ReportResult
+    from surveyapp.report.written import ReportResult, SheetsResult
     from surveyapp.workflows.choosing import Diagnosable
     from surveyapp.workflows.computing import Computed
     from surveyapp.workflows.diagnosing import Diagnosed
@@ -116,6 +117,7 @@ _TYPES: Final = {
     "Diagnosable": "surveyapp.workflows.choosing",
     "Diagnosed": "surveyapp.workflows.diagnosing",
     "ExportResult": "surveyapp.domain.filing",
+    "SnoopingResult": "surveyapp.core.network.snooping",
     "FogStationPlan": "surveyapp.core.sensors.rate.fog_station_plan",
     "FollowedTurn": "surveyapp.domain.instrument_reading",
     "InstrumentDiagnosis": "surveyapp.workflows.pooling",
@@ -131,6 +133,7 @@ _TYPES: Final = {
     "ResultWarning": "surveyapp.domain.project",
     "SessionResult": "surveyapp.domain.results",
     "ShaftResult": "surveyapp.domain.shaft_result",
+    "SheetsResult": "surveyapp.report.written",
     "SimulatedFiles": "surveyapp.io.simulated",
     "StationPlan": "surveyapp.core.plan",
     "VarianceComponent": "surveyapp.core.network.variance_components",
@@ -202,6 +205,8 @@ __all__ = [
     "export_json",
     "export_zip",
     "AdjustmentResult",
+    "SheetsResult",
+    "SnoopingResult",
     "ImportResult",
     "Calibration",
     "InstrumentCard",

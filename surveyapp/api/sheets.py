@@ -8,9 +8,10 @@ from surveyapp.api.network import adjust
 from surveyapp.api.orientation import Source, compute
 from surveyapp.api.project import SOFTWARE, Folder
 from surveyapp.errors import SurveyError
+from surveyapp.report.written import SheetsResult
 
 
-def write_sheets(source: Source, output: Folder) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def write_sheets(source: Source, output: Folder) -> SheetsResult:
     """Write the sheets of a project beside a record, as CSV and as HTML.
 
     Parameters
@@ -21,8 +22,7 @@ def write_sheets(source: Source, output: Folder) -> tuple[tuple[str, ...], tuple
 
     Returns
     -------
-    paths, problems
-        What was written, and why a traverse has no sheet.
+    SheetsResult
 
     Raises
     ------
@@ -52,4 +52,4 @@ def write_sheets(source: Source, output: Folder) -> tuple[tuple[str, ...], tuple
             path = base.with_name(f"{base.stem}-{name}{ending}")
             atomic_write(path, text.encode("utf-8"))
             paths.append(str(path))
-    return tuple(paths), tuple(problems)
+    return SheetsResult(tuple(paths), tuple(problems))

@@ -45,15 +45,14 @@ def run(options: argparse.Namespace) -> int:
             diagnosis=options.diagnosis,
             advance=options.advance,
         )
-    sheets: tuple[str, ...] = ()
-    problems: tuple[str, ...] = ()
+    sheets = api.SheetsResult((), ())
     if options.sheets and options.blank is None:
-        sheets, problems = api.write_sheets(options.folder, options.output)
+        sheets = api.write_sheets(options.folder, options.output)
     if options.json:
-        print_json({**written.to_dict(), "sheets": list(sheets), "without_sheet": list(problems)})
+        print_json({**written.to_dict(), **sheets.to_dict()})
     else:
         print(f"{written.path}: {written.pages} pages\n  sha256 {written.sha256}")
-        for text in (*sheets, *problems):
+        for text in (*sheets.paths, *sheets.problems):
             print(f"  {text}")
     return 0
 

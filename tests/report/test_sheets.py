@@ -91,8 +91,9 @@ def test_the_traverse_sheet(tmp_path: Path) -> None:
 
 def test_the_gyro_sheet_of_a_measured_sample(tmp_path: Path) -> None:
     folder = ROOT / "projects" / "tongjin-2015"
-    paths, problems = api.write_sheets(folder, tmp_path / "record.pdf")
-    assert problems == ()
+    written = api.write_sheets(folder, tmp_path / "record.pdf")
+    assert written.problems == ()
+    paths = written.paths
     lines = api.orient(folder).lines
     with Path(paths[0]).open(encoding="utf-8", newline="") as stream:
         text = stream.read().split("\n\n")[0]
