@@ -60,7 +60,15 @@ from surveyapp.api.project import (
     simulate,
 )
 from surveyapp.api.rate import north, plan_fog_station, spectrum
-from surveyapp.api.sensors import LogOptions, calibrate, open_sensor_log
+from surveyapp.api.sensors import (
+    LogOptions,
+    allan,
+    calibrate,
+    compensate,
+    diagnose_log,
+    filter_log,
+    open_sensor_log,
+)
 from surveyapp.api.shafts import has_shafts, shaft
 from surveyapp.api.sheets import write_sheets
 from surveyapp.domain.adjustment import AdjustmentResult
@@ -180,8 +188,12 @@ __all__ = [
     "subjects",
     "check",
     "diagnose",
+    "allan",
     "diagnose_instrument",
     "calibrate",
+    "filter_log",
+    "compensate",
+    "diagnose_log",
     "plan_fog_station",
     "north",
     "spectrum",
