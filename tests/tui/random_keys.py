@@ -27,8 +27,6 @@ FEW = re.compile(
     r"too few|Observe more|not finished|no reading|nothing to|needs|no clamp|two target"
     r"|only a reversal run"
 )
-    r"too few|Observe more|not finished|no reading|nothing to|needs|no clamp|two target"
-)
 _ON_DISK = re.compile(r"on disk: row (\d+), (.*?) (\S+?)(;|$)")
 
 
