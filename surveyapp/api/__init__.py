@@ -28,6 +28,7 @@ from surveyapp.api.office import (
     reopen,
     report,
     report_text,
+    undrawn_text,
 )
 from surveyapp.api.orientation import (
     Source,
@@ -110,6 +111,7 @@ __all__ = [
     "batch_rows",
     "report",
     "report_text",
+    "undrawn_text",
     "blank_form",
     "close",
     "reopen",

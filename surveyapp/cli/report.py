@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 
 from surveyapp.cli.output import print_json
 from surveyapp.errors import Problem, SurveyError
@@ -42,6 +43,8 @@ def run(options: argparse.Namespace) -> int:
             diagnosis=options.diagnosis,
             advance=options.advance,
         )
+    for warning in written.warnings:
+        print(warning.text, file=sys.stderr)
     if options.json:
         print_json(written.to_dict())
     else:
