@@ -5,10 +5,12 @@ A value that its maker or a source does not state is None: it is absent, never g
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Literal
 
 from surveyapp.domain.priors import Priors
+from surveyapp_models.angles import RHO_ARCSEC
 
 InstrumentKind = Literal["suspended", "automatic"]
 
@@ -48,12 +50,33 @@ class ReadingSigmas:
         One scale reading [div].
     time_s : float or None
         One timed passage [s].
+    level : float or None
+        Tilt of the standing axis of one set-up, each direction [rad].
+    graduation : float or None
+        Graduation of the circle: one direction on it [rad].
+    twist : float or None
+        Turning of tripod or pillar where no second sights tell it [rad].
+    refraction : float or None
+        Lateral refraction of one sight [rad].
+    observer : float or None
+        What one observer reads east and west alike wrong [rad].
+    temperature : float or None
+        Change of the constant with temperature [rad/degree Celsius].
+    latitude : float or None
+        k of the change k sec(latitude) of the constant [rad].
     """
 
     reversal: float | None = None
     azimuth: float | None = None
     scale_div: float | None = None
     time_s: float | None = None
+    level: float | None = None
+    graduation: float | None = None
+    twist: float | None = None
+    refraction: float | None = None
+    observer: float | None = None
+    temperature: float | None = None
+    latitude: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,12 +93,15 @@ class TapeZeroCard:
         What is ADDED to gyro north per division [rad/div] (= -lambda mu) at ``latitude``.
     latitude : float or None
         [rad].
+    correction_sigma : float or None
+        Standard deviation of ``correction_per_div`` [rad/div].
     """
 
     limit_div: float | None = None
     div_per_tilt: float | None = None
     correction_per_div: float | None = None
     latitude: float | None = None
+    correction_sigma: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,8 +142,10 @@ class InstrumentCard:
     periods : Periods or None
     torsion_lambda : float or None
         lambda = D/M at ``periods.latitude`` [-].
-    transit_c : float or None
-        C at ``periods.latitude`` [rad/(div s)].
+    torsion_sigma : float or None
+        Standard deviation of a stated lambda [-].
+    transit_c, transit_c_sigma : float or None
+        C at ``periods.latitude`` and its standard deviation [rad/(div s)].
     sigma : ReadingSigmas
     tape_zero : TapeZeroCard
     valid : ValidRange
@@ -136,13 +164,54 @@ class InstrumentCard:
     scale_value: float | None = None
     periods: Periods | None = None
     torsion_lambda: float | None = None
+    torsion_sigma: float | None = None
     transit_c: float | None = None
+    transit_c_sigma: float | None = None
     sigma: ReadingSigmas = field(default_factory=ReadingSigmas)
     tape_zero: TapeZeroCard = field(default_factory=TapeZeroCard)
     valid: ValidRange = field(default_factory=ValidRange)
     resolution: float | None = None
     calibration_due: str | None = None
     notes: tuple[tuple[str, str], ...] = ()
+
+    def known(self) -> dict[str, float | None]:
+        """Every quantity of the card in the units of its file, None where it is absent."""
+        periods, zero, valid = self.periods, self.tape_zero, self.valid
+
+        def seconds(value: float | None) -> float | None:
+            return None if value is None else value * RHO_ARCSEC
+
+        def degrees(value: float | None) -> float | None:
+            return None if value is None else math.degrees(value)
+
+        cold, hot = valid.temperature_c or (None, None)
+        return {
+            "scale_value_arcsec": seconds(self.scale_value),
+            "period.latitude_deg": degrees(periods.latitude) if periods else None,
+            "period.tracking_s": periods.tracking_s if periods else None,
+            "period.clamped_s": periods.clamped_s if periods else None,
+            "period.unspun_s": periods.unspun_s if periods else None,
+            "period.sigma_s": periods.sigma_s if periods else None,
+            "torsion.lambda": self.torsion_lambda,
+            "transit.c_arcsec_per_div_s": seconds(self.transit_c),
+            "sigma.reversal_arcsec": seconds(self.sigma.reversal),
+            "sigma.azimuth_arcsec": seconds(self.sigma.azimuth),
+            "sigma.scale_div": self.sigma.scale_div,
+            "sigma.time_s": self.sigma.time_s,
+            "tape_zero.limit_div": zero.limit_div,
+            "tape_zero.div_per_arcsec_tilt": None
+            if zero.div_per_tilt is None
+            else zero.div_per_tilt / RHO_ARCSEC,
+            "tape_zero.correction_arcsec_per_div": seconds(zero.correction_per_div),
+            "tape_zero.latitude_deg": degrees(zero.latitude),
+            "range.latitude_max_deg": degrees(valid.latitude_max),
+            "range.temperature_min_c": cold,
+            "range.temperature_max_c": hot,
+        }
+
+    def to_dict(self) -> dict[str, object]:
+        """Keys of the JSON."""
+        return {"id": self.id, "title": self.title, "kind": self.kind, "known": self.known()}
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,8 +276,8 @@ class Instrument:
     known_constant : tuple of (float, float) or None
         Instrument constant known beforehand and its sigma [rad].
     constant_choice : str or None
-        predicted | pooled | interpolated | nearest | line:A-B | known; None = nobody chose:
-        predicted where there are determinations enough, else pooled.
+        predicted | pooled | interpolated | nearest | running:5 | line:A-B | known;
+        None = nobody chose: predicted where there are determinations enough, else pooled.
     effects : tuple of AdoptedEffect
     priors : Priors or None
         How often each cause is at work in this instrument, learned from its archive.

@@ -25,6 +25,8 @@ Purpose = Literal["calibration", "survey"]
 
 DEFAULT_DEFLECTION_SIGMA = 5.0 * ARCSEC
 """Sigma of an unknown deflection of the vertical, each component (design.md section 2)."""
+DEFLECTION_LENGTH_M = 20_000.0
+"""Distance over which the correlation of unknown deflections falls to 1/e: a default of reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,6 +151,8 @@ class OrientationSession:
         As the record prints it.
     recentred : bool
         The instrument was centred anew for this session: its centring error is its own.
+    refraction_sigma : float or None
+        Lateral refraction of its sights, along a wall or over a shaft [rad].
     override : tuple of (str, object)
         Further keys of the table, kept for those who know them.
     """
@@ -174,6 +178,7 @@ class OrientationSession:
     effects: tuple[AdoptedEffect, ...] = ()
     convergence: StatedConvergence | None = None
     recentred: bool = False
+    refraction_sigma: float | None = None
     override: tuple[tuple[str, object], ...] = ()
 
 
@@ -223,6 +228,8 @@ class Project:
         As written.
     grid : MineGrid or None
         The mine's own grid; wins over ``crs``, which is then its base.
+    deflection_length_m : float
+        Correlation length of unknown deflections of the vertical [m]; 0: independent.
     station_sigma_m : float or None
         Standard deviation of a station's coordinates where it states none [m].
     angle_unit : AngleUnit
@@ -253,6 +260,7 @@ class Project:
     traverses: tuple[Traverse, ...] = ()
     crs: str | None = None
     grid: MineGrid | None = None
+    deflection_length_m: float = DEFLECTION_LENGTH_M
     station_sigma_m: float | None = None
     angle_unit: AngleUnit = AngleUnit.DMS
     angle_typing: str = "separated"
@@ -287,6 +295,35 @@ class Project:
         if not self._sessions:
             self._sessions.update({item.id: item for item in reversed(self.sessions)})
         return self._sessions[identity]
+
+    def to_dict(self) -> dict[str, Any]:
+        """What a folder holds, schema ``surveyapp.project/1``; the readings stand in its books."""
+        return {
+            "schema": "surveyapp.project/1",
+            "name": self.name,
+            "path": self.path or None,
+            "crs": self.crs,
+            "angle_unit": str(self.angle_unit),
+            "rule_book": self.rule_book,
+            "input_sha256": self.digest,
+            "stations": [item.name for item in self.stations],
+            "instruments": [{"id": i.id, "card": i.card.id} for i in self.instruments],
+            "sessions": [
+                {
+                    "id": item.id,
+                    "station": item.station,
+                    "target": item.target,
+                    "instrument": item.instrument,
+                    "method": item.method,
+                    "purpose": item.purpose,
+                    "rows": len(item.book.live),
+                }
+                for item in self.sessions
+            ],
+            "traverses": [{"name": t.name, "rows": len(t.rows)} for t in self.traverses],
+            "closed": self.filing.project_closing is not None,
+            "warnings": [warning.to_dict() for warning in self.warnings],
+        }
 
     def traverse(self, name: str) -> Traverse:
         """Traverse by name."""

@@ -141,6 +141,10 @@ class SurveyApp(App[int]):
     def on_home_screen_folder_chosen(self, message: HomeScreen.FolderChosen) -> None:
         """Open what was chosen."""
         self.open_folder(message.folder)
+        if message.importing:
+            from surveyapp.tui.screens.exchange import ImportScreen
+
+            self.push_screen(ImportScreen(message.folder))
 
     def open_session(self, session: str) -> None:
         """Open a session of the project for observing."""
