@@ -154,6 +154,8 @@ def test_the_same_input_gives_the_same_bytes_in_another_process(
         "sections",
         "sha256",
         "missing_glyphs",
+        "sheets",
+        "without_sheet",
         "warnings",
     }
     assert printed["pages"] == result.pages == len(pypdf.PdfReader(path).pages)
