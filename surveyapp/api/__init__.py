@@ -48,6 +48,7 @@ from surveyapp.api.penetration import (
     cluster_executor,
     has_breakthrough,
     predict,
+    record_step,
     trial,
 )
 from surveyapp.api.pooling import diagnose_instrument
@@ -183,6 +184,7 @@ __all__ = [
     "cluster_executor",
     "Trial",
     "has_breakthrough",
+    "record_step",
     "has_shafts",
     "trial",
     "shaft",
