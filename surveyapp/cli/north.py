@@ -14,9 +14,15 @@ NUMBERS = (
     ("--constant-sigma-arcsec", "S", "of that constant"),
     ("--approximate-north-deg", "DEG", "circle reading of north within some degrees"),
     ("--rate-sigma-deg-h", "S", "standard deviation of one row"),
+    ("--bias-prior-sigma-deg-h", "S", "of the biases known beforehand"),
+    ("--index-sigma-deg", "S", "standard deviation of every index angle"),
 )
 TEXTS = (
     ("--reading-from-elevation", "RULE", "increases | decreases, as in calibrate fog-station"),
+    ("--bias-prior-deg-h", "X,Y,Z", "biases known beforehand"),
+    ("--index-axis", "x|y|z", "body axis about which the sensor was turned (z)"),
+    ("--second", "FILE", "log of a second unit on the same vehicle"),
+    ("--indexed", "first|second", "which of the two was turned (first)"),
     ("--declination", "D[,SIGMA]", "degrees, east positive; of a MAGNETIC heading only"),
 )
 
@@ -24,7 +30,7 @@ TEXTS = (
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     parser.add_argument("source", metavar="FILE", nargs="?", help="log, or project folder")
-    parser.add_argument("--method", metavar="NAME", help="fog-station")
+    parser.add_argument("--method", metavar="NAME", help="fog-station | indexing | rotation")
     add_log_arguments(parser)
     group = parser.add_argument_group("the method")
     for option, metavar, text in NUMBERS:
@@ -32,6 +38,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     for option, metavar, text in TEXTS:
         names = [option, "--declination-deg"] if option == "--declination" else [option]
         group.add_argument(*names, metavar=metavar, help=text)
+    group.add_argument(
+        "--track", action="store_true", default=None, help="follow the bias from set to set"
+    )
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 
@@ -42,6 +51,7 @@ def run(options: argparse.Namespace) -> int:
     if options.source is None:
         raise SurveyError(Problem("an argument is missing", "surveyapp north", "", "FILE or DIR"))
     names = [option.strip("-").replace("-", "_") for option, _, _ in (*NUMBERS, *TEXTS)]
+    names.append("track")
     own = {name: getattr(options, name) for name in names}
     result = api.north(
         options.source,

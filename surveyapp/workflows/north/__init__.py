@@ -14,6 +14,7 @@ from surveyapp.workflows.north.request import NorthRequest, declination_problems
 
 METHODS: Final = {
     "fog-station": "fog_station",
+    "indexing": "indexing",
 }
 """Method to its module."""
 

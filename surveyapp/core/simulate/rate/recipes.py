@@ -9,6 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from surveyapp.core.simulate.rate.indexing import IndexingRun, indexing_log, indexing_sets
 from surveyapp.core.simulate.rate.log import SimulatedLog
 from surveyapp.core.simulate.rate.table_programmes import (
     DEG_H,
@@ -185,6 +186,63 @@ def _fog_station(effects: Sequence[Effect], rng: np.random.Generator) -> Simulat
     return SimulatedLog(log.columns, log.texts, dict(log.truth) | {"effects": sizes})
 
 
+INDEXING_EFFECTS: Final = (
+    EffectKind("index_error", "deg", math.radians(1.0), "error of every index angle but the first"),
+    EffectKind(
+        "g_sensitivity", "deg/h/g", DEG_H, "bias of gyro x per g along y, half of it z to x"
+    ),
+    EffectKind("bias_step", "deg/h", DEG_H, "step of the bias of x at the second stop"),
+)
+"""Effects of a unit that is turned at rest."""
+
+
+def _indexing_unit(sizes: Mapping[str, float], rng: np.random.Generator) -> IndexingRun:
+    g = np.zeros((3, 3))
+    g[0, 1], g[2, 0] = sizes.get("g_sensitivity", 0.0), 0.5 * sizes.get("g_sensitivity", 0.0)
+    return IndexingRun(
+        latitude=math.radians(35.0),
+        heading=rng.uniform(0.0, 2.0 * math.pi),
+        pitch=math.radians(6.0),
+        roll=math.radians(-3.0),
+        gyro=Triad(
+            bias=rng.normal(0.0, 5.0, 3) * DEG_H,
+            noise=0.05 * DEG_H * math.sqrt(600.0),
+            g_sensitivity=g,
+        ),
+        accelerometer=Triad(bias=np.array([0.01, -0.02, 0.0]), noise=0.01),
+        index_error=sizes.get("index_error", 0.0),
+    )
+
+
+def _indexing(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
+    sizes = _sizes(effects)
+    log = indexing_log(_indexing_unit(sizes, rng), rng)
+    return SimulatedLog(log.columns, log.texts, dict(log.truth) | {"effects": sizes})
+
+
+def _indexing_stops(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
+    """Six stops of a vehicle; at the third the index axis is level and points east-west."""
+    sizes = _sizes(effects)
+    first = _indexing_unit(sizes, rng)
+    bias = first.gyro.bias
+    runs = []
+    for k in range(6):
+        bias = bias + rng.normal(0.0, 0.02, 3) * DEG_H
+        if k == 1:
+            bias = bias + np.array([sizes.get("bias_step", 0.0), 0.0, 0.0])
+        bad = k == 2
+        runs.append(
+            replace(
+                first,
+                heading=math.radians(90.0) if bad else rng.uniform(0.0, 2.0 * math.pi),
+                pitch=math.radians(89.0) if bad else math.radians(rng.uniform(-8.0, 8.0)),
+                gyro=replace(first.gyro, bias=bias),
+            )
+        )
+    log = indexing_sets(runs, rng, every_s=1200.0)
+    return SimulatedLog(log.columns, log.texts, dict(log.truth) | {"effects": sizes})
+
+
 Recipe = Callable[[Sequence[Effect], np.random.Generator], SimulatedLog]
 
 PROGRAMMES: Final[Mapping[str, Mapping[str, tuple[Recipe, tuple[EffectKind, ...]]]]] = {
@@ -193,10 +251,15 @@ PROGRAMMES: Final[Mapping[str, Mapping[str, tuple[Recipe, tuple[EffectKind, ...]
         "temperature": (_temperature, TABLE_EFFECTS[:2]),
     },
     "fog-station": {"": (_fog_station, FOG_EFFECTS)},
+    "indexing": {
+        "one-stop": (_indexing, INDEXING_EFFECTS[:2]),
+        "several-stops": (_indexing_stops, INDEXING_EFFECTS),
+    },
 }
 """Kind of log to its programmes, the first one the default, and the effects that each knows."""
 
 _ENTRY_KEYS: Final[Mapping[str, str]] = {
+    "indexing": 'method = "indexing"\n',
     "fog-station": 'reading_from_elevation = "increases"\n',
 }
 
