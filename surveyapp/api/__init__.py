@@ -47,7 +47,7 @@ from surveyapp.api.project import (
     open_project,
     simulate,
 )
-from surveyapp.api.rate import north, plan_fog_station, spectrum
+from surveyapp.api.rate import motion, north, plan_fog_station, spectrum
 from surveyapp.api.sensors import LogOptions, calibrate, open_sensor_log
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.calibration import Calibration
@@ -87,6 +87,7 @@ __all__ = [
     "plan_fog_station",
     "north",
     "spectrum",
+    "motion",
     "open_sensor_log",
     "LogOptions",
     "batch",

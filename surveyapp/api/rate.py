@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from surveyapp.api.project import Folder
 from surveyapp.api.sensors import LogOptions, open_sensor_log
 from surveyapp.domain.line_spectrum import LineSpectrum
+from surveyapp.domain.motion import Motion
 from surveyapp.domain.north import NorthResult
 from surveyapp.errors import Problem, SurveyError
 
@@ -155,3 +156,36 @@ def spectrum(
         against=other,
         progress=progress,
     )
+
+
+def motion(
+    source: Folder,
+    *,
+    sensor: str | None = None,
+    log: LogOptions | None = None,
+    allow_outside: bool = False,
+    options: Mapping[str, object] | None = None,
+    progress: Progress | None = None,
+) -> Motion:
+    """State of motion of a vehicle, and its path.
+
+    Parameters
+    ----------
+    source : path
+    sensor : str, optional
+    log : LogOptions, optional
+    allow_outside : bool
+    options : mapping, optional
+        ``false_alarm``, ``path``, ``begin`` ("E,N,AZIMUTH"), ``end`` ("E,N"), ``snap``,
+        ``snap_power_cycle``, ``still_gate_factor``.
+    progress : callable, optional
+
+    Raises
+    ------
+    SurveyError
+        For input that cannot be used.
+    """
+    from surveyapp.workflows.motion import find_motion
+
+    opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
+    return find_motion(opened.file, options or {}, progress=progress)

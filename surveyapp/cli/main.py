@@ -41,6 +41,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("diagnose", "diagnose", "which effect does the model lack, and how sure is that"),
     Command("calibrate", "calibrate", "a sensor log to parameters, sigmas and a sensor card"),
     Command("spectrum", "spectrum", "interference lines of a record, and a magnetic bias budget"),
+    Command("motion", "motion", "state of motion of a vehicle, and its path"),
     Command("north", "north", "north by a rate sensor: on a total station, indexed, turned"),
     Command("close", "close", "seal a project or a session with a hash chain in the ledger"),
     Command("reopen", "reopen", "open what was closed; the ledger keeps the reason"),
