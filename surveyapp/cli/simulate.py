@@ -9,7 +9,11 @@ from surveyapp.cli.output import print_json
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    parser.add_argument("kind", metavar="KIND", help="reversal-run | campaign | rate | fog-station")
+    parser.add_argument(
+        "kind",
+        metavar="KIND",
+        help="reversal-run | campaign | rate | fog-station | indexing | vehicle",
+    )
     parser.add_argument("out", metavar="OUT", help="folder to make; must not hold anything")
     parser.add_argument(
         "--effect",
@@ -19,7 +23,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="a disturbing effect and its size; may be given several times",
     )
     parser.add_argument(
-        "--programme", metavar="NAME", help="of rate: six-position (default) | temperature"
+        "--programme",
+        metavar="NAME",
+        help="of rate: six-position (default) | temperature | multi-position; of "
+        "indexing: one-stop (default) | several-stops",
     )
     parser.add_argument("--seed", type=int, default=1, metavar="N", help="default 1")
     parser.add_argument("--json", action="store_true", help="print one JSON object")

@@ -22,6 +22,8 @@ from surveyapp_models.arrays import Floats
 SMOOTHED_S = 1.0
 LEVEL_S = 30.0
 """Time constant of the complementary filter: longer than a manoeuvre, shorter than a slope."""
+REST_S = 2.0
+"""Of a rest beside a motion, over which its level is averaged."""
 LEAST_S = 0.5
 """A shorter state is noise."""
 LEAST_TURN = math.radians(0.5)
@@ -61,22 +63,27 @@ def _complementary(rate: Floats, felt: Floats, still: Mask, interval_s: float) -
     """First-order complementary filter of an angle, piecewise between rests.
 
     Within a motion the angle is the one of the rest before it plus the integrated rate, pulled
-    linearly to that of the rest after it: what the gyro drifted in between.
+    linearly to that of the rest after it: what the gyro drifted in between. A record without any
+    rest is pulled to the accelerometer with a long time constant.
     """
-    steps = np.cumsum(rate) * interval_s
+    steps = np.concatenate([[0.0], np.cumsum(rate) * interval_s])
     width = max(round(0.5 / interval_s), 1)
-    level = smoothed(felt, width)
-    result = level.copy()
-    moving = runs_of(~still)
-    for first, last in moving:
-        begin = float(level[first - 1]) if first > 0 else float(level[first])
-        carried = begin + steps[first:last] - (steps[first - 1] if first > 0 else 0.0)
-        if last < felt.size:
-            miss = float(level[last]) - float(carried[-1])
-            carried = carried + miss * np.linspace(0.0, 1.0, last - first)
-        elif (last - first) * interval_s > LEVEL_S:
-            slow = smoothed(felt[first:last], max(round(LEVEL_S / interval_s), 1))
-            carried = carried + smoothed(slow - carried, max(round(LEVEL_S / interval_s), 1))
+    reach = max(round(REST_S / interval_s), 1)
+    result = smoothed(felt, width)
+    for first, last in runs_of(~still):
+        before, after = felt[max(first - reach, 0) : first], felt[last : last + reach]
+        carried = steps[first:last] - steps[first]
+        if before.size and after.size:
+            begin, end = float(np.mean(before)), float(np.mean(after))
+            drift = end - begin - float(steps[last] - steps[first])
+            carried = begin + carried + drift * np.linspace(0.0, 1.0, last - first)
+        elif before.size:
+            carried = float(np.mean(before)) + carried
+        elif after.size:
+            carried = float(np.mean(after)) - float(steps[last] - steps[first]) + carried
+        else:
+            slow = max(round(LEVEL_S / interval_s), 1)
+            carried = carried + smoothed(felt[first:last] - carried, slow)
         result[first:last] = carried
     return result
 

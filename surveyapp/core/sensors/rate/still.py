@@ -26,6 +26,8 @@ QUIET_FACTOR = 1.6
 WINDOW_S = 0.15
 """Of the likelihood ratio."""
 FALSE_ALARM = 0.01
+CLEARLY_TWO = 4.0
+"""Ashman's D from which a cluster is split again; one skewed cluster has about 2.5."""
 LEAST_STOP_S = 0.3
 """A shorter rest is a turning point of a vibration."""
 BRIDGED_S = 0.1
@@ -189,11 +191,12 @@ def motion_gate(values: Floats, *, window: int, false_alarm: float, factor: floa
     return Gate(factor * max(threshold, plain.threshold), window, false_alarm, plain.inflation)
 
 
-def _lower_cluster(logs: Floats) -> tuple[float, float] | None:
+def _lower_cluster(logs: Floats, *, clearness: float = 2.0) -> tuple[float, float] | None:
     """Mean and standard deviation of the lower of two normal clusters; None if there are not two.
 
-    Expectation and maximisation from the halves of the range; two clusters must lie apart by more
-    than twice the sum of half their spreads and each hold a fiftieth of the record.
+    Expectation and maximisation from the ends of the range; each cluster must hold a fiftieth of
+    the record. The lower one is split again where it clearly is two: rest, steady driving and
+    turning are three.
     """
     low, high = np.quantile(logs, [0.02, 0.98])
     if logs.size < 40 or high - low < 0.5:
@@ -214,9 +217,12 @@ def _lower_cluster(logs: Floats) -> tuple[float, float] | None:
         means = moved
     first = int(np.argmin(means))
     apart = float(means[1 - first] - means[first])
-    if weights.min() < 0.02 or apart < float(spreads.sum()) or apart < 0.7:
+    clear = math.sqrt(2.0) * apart / math.hypot(*spreads.tolist())  # Ashman, Bird and Zepf 1994
+    if weights.min() < 0.02 or clear < clearness or apart < 0.7:
         return None
-    return float(means[first]), float(spreads[first])
+    between = 0.5 * (means[first] + spreads[first] + means[1 - first] - spreads[1 - first])
+    deeper = _lower_cluster(logs[logs < between], clearness=CLEARLY_TWO)
+    return deeper or (float(means[first]), float(spreads[first]))
 
 
 def bridged(mask: Mask, *, rate_hz: float, least_s: float = LEAST_STOP_S) -> Mask:

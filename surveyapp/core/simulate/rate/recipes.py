@@ -20,6 +20,13 @@ from surveyapp.core.simulate.rate.table_programmes import (
     six_position_log,
     temperature_log,
 )
+from surveyapp.core.simulate.rate.vehicle import (
+    HandRun,
+    VehicleRun,
+    hand_held_log,
+    usual_drive,
+    vehicle_log,
+)
 from surveyapp.core.simulate.specification import Effect, EffectKind
 from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.angles import ARCSEC
@@ -243,18 +250,93 @@ def _indexing_stops(effects: Sequence[Effect], rng: np.random.Generator) -> Simu
     return SimulatedLog(log.columns, log.texts, dict(log.truth) | {"effects": sizes})
 
 
+VEHICLE_EFFECTS: Final = (
+    EffectKind("noise", "1", 1.0, "factor on the noise and the vibration"),
+    EffectKind("power_cycle", "1", 1.0, "number of the rest in which the unit was switched off"),
+    EffectKind("gyro_drift", "deg/h", DEG_H, "bias of the vertical gyro from the first stop on"),
+)
+"""Effects of a vehicle."""
+
+HAND_EFFECTS: Final = (
+    EffectKind("g_sensitivity", "deg/s per m/s2", math.radians(1.0), "bias of each gyro per force"),
+    EffectKind("temperature", "deg/s/K", math.radians(1.0), "bias per kelvin"),
+    EffectKind("bias_ramp", "deg/s", math.radians(1.0), "drift of every bias over the record"),
+    EffectKind("scale_asymmetry", "1", 1.0, "excess of the scale factor for positive rates"),
+    EffectKind("gross_error", "deg/s", math.radians(1.0), "one stop of one gyro is off"),
+    EffectKind("random_walk", "deg/s", math.radians(1.0), "walk of every bias from stop to stop"),
+    EffectKind("stops", "1", 1.0, "number of stops"),
+)
+"""Effects of a unit that is turned by hand."""
+
+
+def _vehicle(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
+    sizes = _sizes(effects)
+    noise = sizes.get("noise", 1.0)
+    cycle = sizes.get("power_cycle")
+    run = VehicleRun(
+        legs=usual_drive(),
+        heading=math.radians(30.0),
+        gyro=Triad(
+            bias=np.array([0.002, -0.001, 0.0015 + sizes.get("gyro_drift", 0.0)]),
+            noise=0.001 * noise,
+        ),
+        accelerometer=Triad(noise=0.02 * noise),
+        shake=0.15 * noise,
+        power_cycle_after=None if cycle is None else round(cycle),
+    )
+    log = vehicle_log(run, rng)
+    return SimulatedLog(log.columns, log.texts, dict(log.truth) | {"effects": sizes})
+
+
+def hand_run(sizes: Mapping[str, float], rng: np.random.Generator) -> HandRun:
+    """A micro-mechanical unit with the effects that are asked for."""
+    stops = round(sizes.get("stops", 18.0))
+    sensitivity = rng.normal(0.0, 1.0, (3, 3)) * sizes.get("g_sensitivity", 0.0) * 9.80665
+    seconds = stops * 6.0 - 2.0
+    return HandRun(
+        gyro=Triad(
+            scale=np.array([0.01, -0.008, 0.005]),
+            misalignment=np.array([[0.0, 0.01, -0.006], [0.004, 0.0, 0.02], [-0.01, 0.005, 0.0]]),
+            bias=np.radians([0.3, -0.5, 0.2]),
+            g_sensitivity=sensitivity,
+            asymmetry=np.full(3, sizes.get("scale_asymmetry", 0.0)),
+            noise=math.radians(0.05),
+        ),
+        accelerometer=Triad(
+            scale=np.array([2e-3, -5e-3, 1e-3]),
+            misalignment=np.array([[0.0] * 3, [3e-3, 0.0, 0.0], [5e-3, -4e-3, 0.0]]),
+            bias=np.array([0.05, -0.08, 0.03]),
+            noise=0.01,
+        ),
+        stops=stops,
+        ramp=sizes.get("bias_ramp", 0.0) / seconds,
+        temperature=sizes.get("temperature", 0.0),
+        walk=math.radians(0.006),
+        random_walk=sizes.get("random_walk", 0.0),
+        gross=sizes.get("gross_error", 0.0),
+    )
+
+
+def _hand_held(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
+    sizes = _sizes(effects)
+    log = hand_held_log(hand_run(sizes, rng), rng)
+    return SimulatedLog(log.columns, log.texts, dict(log.truth) | {"effects": sizes})
+
+
 Recipe = Callable[[Sequence[Effect], np.random.Generator], SimulatedLog]
 
 PROGRAMMES: Final[Mapping[str, Mapping[str, tuple[Recipe, tuple[EffectKind, ...]]]]] = {
     "rate": {
         "six-position": (_six_positions, TABLE_EFFECTS),
         "temperature": (_temperature, TABLE_EFFECTS[:2]),
+        "multi-position": (_hand_held, HAND_EFFECTS),
     },
     "fog-station": {"": (_fog_station, FOG_EFFECTS)},
     "indexing": {
         "one-stop": (_indexing, INDEXING_EFFECTS[:2]),
         "several-stops": (_indexing_stops, INDEXING_EFFECTS),
     },
+    "vehicle": {"": (_vehicle, VEHICLE_EFFECTS)},
 }
 """Kind of log to its programmes, the first one the default, and the effects that each knows."""
 
