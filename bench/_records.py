@@ -49,6 +49,7 @@ class Truth:
     noise: float = 4.0
     rounding: float = 0.1
     amplitude: float = 1.0
+    one_sign: bool = False
     reference: tuple[float | None, float | None, float | None] = field(default=(None, None, None))
 
 
@@ -136,7 +137,7 @@ def noise_of(truth: Truth, runs: int, g: np.random.Generator) -> Floats:
 def midpoint(truth: Truth, runs: int, g: np.random.Generator) -> Callable[[float], Floats]:
     """North of each run [arcsec] as a function of time."""
     n = truth.size
-    sign = g.choice([-1.0, 1.0], runs)
+    sign = np.ones(runs) if truth.one_sign else g.choice([-1.0, 1.0], runs)
     when = g.uniform(0.25, 0.75, runs) * n
     period = g.uniform(0.3, 0.55, runs) * n
     phase = g.uniform(0.0, 2.0 * np.pi, runs)

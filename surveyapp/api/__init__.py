@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from surveyapp.api.batch import batch, batch_rows
 from surveyapp.api.importing import import_file
-from surveyapp.api.judgement import SubjectKeyword, check, diagnose, subjects
+from surveyapp.api.judgement import check, diagnose, subjects
 from surveyapp.api.network import (
     adjust,
     adjust_network,
@@ -37,7 +37,8 @@ from surveyapp.api.orientation import (
     plan,
     unfinished,
 )
-from surveyapp.api.penetration import predict
+from surveyapp.api.penetration import cluster_executor, predict
+from surveyapp.api.pooling import diagnose_instrument
 from surveyapp.api.project import (
     SOFTWARE,
     Folder,
@@ -49,12 +50,14 @@ from surveyapp.api.project import (
 )
 from surveyapp.api.rate import motion, north, plan_fog_station, spectrum
 from surveyapp.api.sensors import LogOptions, calibrate, open_sensor_log
+from surveyapp.api.shafts import shaft
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.fieldfile import ImportResult
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import Check, OrientationResult, Subject, Verdicts
+from surveyapp.domain.subject import SubjectKeyword
 from surveyapp.domain.traverse import Network
 from surveyapp.errors import Problem, SurveyError
 
@@ -80,9 +83,12 @@ __all__ = [
     "variance_components",
     "SubjectKeyword",
     "predict",
+    "cluster_executor",
+    "shaft",
     "subjects",
     "check",
     "diagnose",
+    "diagnose_instrument",
     "calibrate",
     "plan_fog_station",
     "north",

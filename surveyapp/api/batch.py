@@ -23,6 +23,7 @@ from surveyapp.api.project import Folder
 from surveyapp.domain.filing import BATCH_COLUMNS, BatchResult, BatchRow
 from surveyapp.domain.results import LineResult, to_arcsec, to_degrees
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.workflows.spreading import ATTEMPTS, is_lost
 
 CHUNK: Final = 16
 """Projects a task: a tenth of a second of work or more, against which its transport is nothing."""
@@ -97,7 +98,7 @@ def batch_rows(
             waiting.append((chunk, _submitted(pool, chunk)))
         while waiting:
             done, future = waiting.popleft()
-            yield from _rows_of(done, future)
+            yield from _rows_of(done, future, pool)
             for chunk in islice(chunks, 1):
                 waiting.append((chunk, _submitted(pool, chunk)))
 
@@ -112,13 +113,23 @@ def _submitted(pool: Executor, paths: list[str]) -> Future[list[BatchRow]]:
         return future
 
 
-def _rows_of(paths: Sequence[str], future: Future[list[BatchRow]]) -> list[BatchRow]:
-    """Rows of a task; a worker that died is told for each of its projects."""
-    try:
-        return future.result()
-    except Exception as fault:  # a broken pool, a lost worker: its projects are named
-        text = f"the worker was lost: {type(fault).__name__}"
-        return [BatchRow(path, "failed", problem=text) for path in paths]
+def _rows_of(paths: list[str], future: Future[list[BatchRow]], pool: Executor) -> list[BatchRow]:
+    """Rows of a task; one that was lost with its worker is given away again.
+
+    Where nobody brings it back, each of its projects is told: they are not computed here, because
+    one of them may be what killed the worker.
+    """
+    fault: Exception | None = None
+    for _ in range(ATTEMPTS):
+        try:
+            return future.result()
+        except Exception as error:
+            fault = error
+            if not is_lost(error):
+                break
+        future = _submitted(pool, paths)
+    text = f"the worker was lost: {type(fault).__name__}"
+    return [BatchRow(path, "failed", problem=text) for path in paths]
 
 
 def batch(

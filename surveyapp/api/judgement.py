@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from surveyapp.api.orientation import Source, oriented
 from surveyapp.api.project import SOFTWARE, Folder, opened
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import Verdicts
+from surveyapp.domain.subject import SubjectKeyword
 
 if TYPE_CHECKING:
     from surveyapp.workflows.diagnosing import Diagnosed
-
-SubjectKeyword = Literal["session", "campaign", "traverse"]
 
 
 def check(source: Source) -> Verdicts:
@@ -102,10 +101,5 @@ def subjects(source: Source) -> tuple[tuple[SubjectKeyword, str], ...]:
     from surveyapp.core.orientation.unfinished import without_unfinished
     from surveyapp.workflows.choosing import subjects_of
 
-    keywords: dict[str, SubjectKeyword] = {
-        "--session": "session",
-        "--campaign": "campaign",
-        "--traverse": "traverse",
-    }
     kept = without_unfinished(opened(source))
-    return tuple((keywords[item.option], item.id) for item in subjects_of(kept))
+    return tuple((item.keyword, item.id) for item in subjects_of(kept))

@@ -41,8 +41,9 @@ def adjust(
 def adjust_network(network: Network, *, family_level: float = 0.05) -> AdjustmentResult:
     """Adjust a network as ``network`` returns it; see ``adjust``."""
     from surveyapp.core.network import adjust as adjusted
+    from surveyapp.core.network.removals import with_removals
 
-    return adjusted(network, family_level=family_level)
+    return with_removals(network, adjusted(network, family_level=family_level))
 
 
 def compass_rule(network: Network) -> tuple[CompassResult, ...]:

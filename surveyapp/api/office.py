@@ -16,11 +16,12 @@ from surveyapp.api.judgement import diagnose, subjects
 from surveyapp.api.network import adjust, network
 from surveyapp.api.orientation import Source, compute, orient
 from surveyapp.api.project import SOFTWARE, Folder
+from surveyapp.errors import SurveyError
 
 if TYPE_CHECKING:
     from surveyapp.core.differences import Snapshot
     from surveyapp.domain.filing import ClosingResult, ComparisonResult, ExportResult
-    from surveyapp.report.blocks import Document
+    from surveyapp.report.blocks import Block, Document
     from surveyapp.report.record import Extra
     from surveyapp.report.written import ReportResult
     from surveyapp.workflows.computing import Computed
@@ -67,7 +68,6 @@ def report(
 
 def _traverses(found: Computed) -> tuple[Extra, ...]:
     """A section for every traverse; one that cannot be adjusted says why."""
-    from surveyapp.errors import SurveyError
     from surveyapp.report.blocks import Heading, Paragraph
     from surveyapp.report.record import Extra
     from surveyapp.report.sections import traverse as section
@@ -86,9 +86,45 @@ def _traverses(found: Computed) -> tuple[Extra, ...]:
     return tuple(extras)
 
 
+def _shafts(found: Computed) -> tuple[Extra, ...]:
+    """A section for the shafts; what cannot be oriented says why."""
+    from surveyapp.api.shafts import shaft
+    from surveyapp.report.record import Extra
+    from surveyapp.report.sections import shafts as section
+
+    if not found.project.tables.get("shaft"):
+        return ()
+    try:
+        made = section.blocks(shaft(found.project), unit=found.project.angle_unit)
+    except SurveyError as error:
+        made = _refused("Shafts", error)
+    return (Extra("shafts", made),)
+
+
+def _breakthrough(found: Computed) -> tuple[Extra, ...]:
+    """A section for the breakthrough; one that cannot be predicted says why."""
+    from surveyapp.api.penetration import predict
+    from surveyapp.report.record import Extra
+    from surveyapp.report.sections import penetration as section
+
+    if not found.project.tables.get("penetration"):
+        return ()
+    try:
+        made = section.blocks(predict(found))
+    except SurveyError as error:
+        made = _refused("Breakthrough", error)
+    return (Extra("breakthrough", made),)
+
+
+def _refused(title: str, error: SurveyError) -> tuple[Block, ...]:
+    """A section that says why there is nothing in it."""
+    from surveyapp.report.blocks import Heading, Paragraph
+
+    return (Heading(title), *(Paragraph(str(p), "warning") for p in error.problems))
+
+
 def _diagnoses(found: Computed) -> tuple[Extra, ...]:
     """A section for every subject that can be diagnosed; too few observations are passed over."""
-    from surveyapp.errors import SurveyError
     from surveyapp.report.record import Extra
     from surveyapp.report.sections import diagnosis as section
 
@@ -135,7 +171,7 @@ def blank_form(method: str, output: Folder, *, font: Folder | None = None) -> Re
 def _record(found: Computed, extras: tuple[Extra, ...]) -> tuple[Document, tuple[str, ...]]:
     from surveyapp.report.record import Record, SealShown, record_document
 
-    extras = (*_traverses(found), *extras)
+    extras = (*_shafts(found), *_traverses(found), *_breakthrough(found), *extras)
     closing = found.project.filing.project_closing
     seal = None if closing is None else SealShown(closing.at, closing.by, closing.seal)
     return record_document(Record(found.project, found.result, found.project.rules, seal, extras))

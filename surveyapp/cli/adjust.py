@@ -48,7 +48,7 @@ def run(options: argparse.Namespace) -> int:
         for text in (_compass(compass), _components(components)):
             if text:
                 print(f"\n{text}")
-    return 1 if result.global_test.passed is False else 0
+    return 1 if result.global_test.passed is False or result.left_out else 0
 
 
 def _compass(items: Sequence[CompassResult]) -> str:
@@ -77,10 +77,11 @@ def _components(items: Sequence[VarianceComponent]) -> str:
             number(item.sigma, 3),
             number(item.redundancy, 1),
             str(item.observations),
+            "goes to zero: stated sigmas kept" if item.vanishing else "",
         ]
         for item in items
     ]
-    head = ["group", "factor", "±", "redundancy", "observations"]
+    head = ["group", "factor", "±", "redundancy", "observations", ""]
     return "Variance components: factors of the stated sigmas\n" + table(head, rows) if rows else ""
 
 
@@ -94,6 +95,7 @@ def adjustment_text(result: AdjustmentResult, name: str) -> str:
         _observations(result),
         _closures(result),
         _suspects(result),
+        _removals(result),
         _warnings(result),
     ]
     return "\n\n".join(part for part in parts if part)
@@ -211,6 +213,23 @@ def _suspects(result: AdjustmentResult) -> str:
         f"{test.level:g} for all {test.tests} tests together; only the first is accused)\n"
     )
     return title + table(head, rows)
+
+
+def _removals(result: AdjustmentResult) -> str:
+    """What the adjustment says without each of the most suspicious observations."""
+    rows = [
+        [
+            item.description,
+            number(item.sum_of_squares, 2),
+            number(item.ratio, 3),
+            {True: "met", False: "NOT MET", None: "-"}[item.passed],
+            str(item.suspects),
+        ]
+        for item in result.removals
+    ]
+    head = ["without", "v'Pv", "ratio", "global test", "suspects"]
+    title = "The adjustment without one observation, the removal that helps most first\n"
+    return title + table(head, rows) if rows else ""
 
 
 def _warnings(result: AdjustmentResult) -> str:

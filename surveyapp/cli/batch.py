@@ -13,6 +13,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folders", metavar="DIR", nargs="+", help="project folders")
     parser.add_argument("-o", "--output", required=True, metavar="FILE.csv", help="table")
     parser.add_argument("--jobs", type=int, metavar="N", help="processes; else one a processor")
+    parser.add_argument("--cluster", metavar="ADDRESS", help="on the cluster at this address")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 
@@ -21,7 +22,10 @@ def run(options: argparse.Namespace) -> int:
     from surveyapp import api
 
     jobs = None if options.jobs is None else max(1, options.jobs)
-    result = api.batch(options.folders, options.output, jobs=jobs, progress=_progress)
+    with api.cluster_executor(options.cluster) as executor:
+        result = api.batch(
+            options.folders, options.output, executor=executor, jobs=jobs, progress=_progress
+        )
     if options.json:
         print_json(result.to_dict())
     else:

@@ -14,6 +14,7 @@ from surveyapp.cli.sensor_options import add_log_arguments
 from surveyapp.errors import Problem, SurveyError, nearest_names
 
 KINDS: Final = {
+    "compass": "calibrate_compass",
     "tilt": "calibrate_tilt",
     "rate": "calibrate_rate",
     "fog-station": "calibrate_fog_station",

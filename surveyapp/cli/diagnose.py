@@ -12,6 +12,7 @@ from surveyapp.cli.output import heading, number, print_json, table
 if TYPE_CHECKING:
     from surveyapp.diagnosis.result import Diagnosis, Estimate, ModelResult
     from surveyapp.workflows.diagnosing import Diagnosed
+    from surveyapp.workflows.pooling import InstrumentDiagnosis
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -20,6 +21,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--session", metavar="ID", help="the turning points of this session")
     parser.add_argument("--campaign", metavar="INSTRUMENT", help="its repeated determinations")
     parser.add_argument("--traverse", metavar="NAME", help="the conditions of this traverse")
+    parser.add_argument(
+        "--instrument", metavar="ID", help="all its runs and campaigns together, pooled"
+    )
+    parser.add_argument(
+        "--archive",
+        metavar="DIR",
+        nargs="+",
+        default=(),
+        help="with --instrument: further projects, or folders of projects, of the same instrument",
+    )
+    parser.add_argument(
+        "--priors",
+        metavar="FILE.toml",
+        help="with --instrument: write what the campaigns teach, for [[instrument]] priors",
+    )
     parser.add_argument(
         "--confirm",
         metavar="ID",
@@ -35,6 +51,9 @@ def run(options: argparse.Namespace) -> int:
     """Diagnose and print; 0 with any verdict reached."""
     from surveyapp import api
 
+    if options.instrument is not None:
+        return _instrument(options)
+    _refuse_archive(options)
     found = api.diagnose(
         options.folder,
         session=options.session,
@@ -55,11 +74,83 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
+def _instrument(options: argparse.Namespace) -> int:
+    """All records of an instrument together."""
+    from concurrent.futures import ProcessPoolExecutor
+    from contextlib import ExitStack
+
+    from surveyapp import api
+    from surveyapp.errors import Problem, SurveyError
+
+    others = ("session", "campaign", "traverse", "confirm", "effects")
+    named = [f"--{name}" for name in others if getattr(options, name) is not None]
+    named += ["--adopt"] if options.adopt else []
+    if named:
+        found = f"--instrument and {', '.join(named)}"
+        raise SurveyError(Problem("one subject at a time", "diagnose", found, "--instrument alone"))
+    with ExitStack() as stack:
+        pool = stack.enter_context(ProcessPoolExecutor()) if options.archive else None
+        result = api.diagnose_instrument(
+            options.folder,
+            options.instrument,
+            archive=options.archive,
+            priors=options.priors,
+            executor=pool,
+        )
+    if options.json:
+        print_json(result.to_dict())
+    else:
+        print(instrument_text(result))
+    return 0
+
+
+def _refuse_archive(options: argparse.Namespace) -> None:
+    """An archive and its priors belong to an instrument."""
+    from surveyapp.errors import Problem, SurveyError
+
+    named = [f"--{name}" for name in ("archive", "priors") if getattr(options, name)]
+    if named:
+        raise SurveyError(
+            Problem(
+                "an archive is pooled for one instrument",
+                "diagnose",
+                f"{' and '.join(named)} without --instrument",
+                "--instrument ID",
+            )
+        )
+
+
+def instrument_text(result: InstrumentDiagnosis) -> str:
+    """What all records of an instrument say, in words and tables."""
+    parts = [heading(f"instrument {result.instrument.id}: {result.verdict.replace('_', ' ')}")]
+    parts.append("\n".join(textwrap.fill(text, 79) for text in result.words()))
+    if result.pooled is not None:
+        rows = [
+            [
+                item.effect,
+                number(item.evidence, 2),
+                number(item.p, 3),
+                "" if item.coefficient is None else f"{item.coefficient:.3g}",
+                "" if item.sigma is None else f"{item.sigma:.2g}",
+                item.unit,
+                str(item.sessions),
+            ]
+            for item in result.pooled.effects
+        ]
+        head = ["effect", "evidence", "p", "coefficient", "sigma", "unit", "runs"]
+        parts.append(table(head, rows, indent=0))
+    if result.priors is not None:
+        shares = sorted(result.priors.shares.items(), key=lambda item: -item[1])
+        rows = [[unit, f"{share:.3f}"] for unit, share in shares]
+        parts.append(table(["prior of", "share"], rows, indent=0))
+    return "\n\n".join(parts)
+
+
 def subjects_text(found: Diagnosed) -> str:
     """What could be diagnosed."""
     if not found.subjects:
         return "\n".join(textwrap.fill(text, 79) for text in found.words)
-    rows = [[s.option, s.id, str(s.observations)] for s in found.subjects]
+    rows = [[f"--{s.keyword}", s.id, str(s.observations)] for s in found.subjects]
     return "Choose one:\n" + table(["option", "", "rows"], rows)
 
 

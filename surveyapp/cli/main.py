@@ -52,6 +52,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("new", "new", "make a new project folder"),
     Command("models", "models", "instrument cards and what is known of them"),
     Command("predict", "predict", "how far two headings will miss each other, and what helps"),
+    Command("shaft", "shaft", "orientation through one shaft or two, joined with the gyro"),
     Command("plan", "plan", "method, points and minutes for a wanted interval at this latitude"),
     Command("simulate", "simulate", "a simulated project with any effect, its truth apart"),
     Command("practise", "practise", "observe a simulated instrument, then see the truth"),

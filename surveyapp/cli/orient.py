@@ -24,7 +24,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     parser.add_argument("folder", metavar="DIR", help="project folder")
     parser.add_argument("--session", metavar="ID", help="one session; its line from it alone")
-    parser.add_argument("--line", metavar="STATION-TARGET", help="one line; an error if impossible")
+    parser.add_argument(
+        "--line",
+        metavar="STATION-TARGET",
+        help="one line, by every instrument; A,B if A-B is ambiguous",
+    )
     parser.add_argument("--estimator", choices=ESTIMATORS, help="instead of the method's default")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 

@@ -16,6 +16,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--plan", metavar="K", type=int, help="place K further gyro sides, and what else helps"
     )
+    parser.add_argument(
+        "--cluster", metavar="ADDRESS", help="simulate on the cluster at this address"
+    )
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 
@@ -23,7 +26,8 @@ def run(options: argparse.Namespace) -> int:
     """Predict and print; 1 if a confirmed tolerance is not met."""
     from surveyapp import api
 
-    result = api.predict(options.project, plan=options.plan)
+    with api.cluster_executor(options.cluster) as executor:
+        result = api.predict(options.project, plan=options.plan, executor=executor)
     if options.json:
         print_json(result.to_dict())
     else:
@@ -166,7 +170,7 @@ def _measured(result: Prediction) -> str:
         lines.append(paragraph(test.text))
     rows = [
         [
-            item.effect.replace("_", " "),
+            f"{item.effect.replace('_', ' ')} {item.subject}".strip(),
             item.component,
             f"{item.needed:+.4g}",
             item.unit,

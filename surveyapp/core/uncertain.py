@@ -15,6 +15,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from surveyapp.core.statistics.distributions import student_quantile
+from surveyapp.core.statistics.mixture import Mixture
 from surveyapp_models.angles import wrap_pi
 
 
@@ -44,6 +45,22 @@ class Source:
 
 
 @dataclass(frozen=True, slots=True)
+class Spread:
+    """How the contributions of some sources are spread, where that is no normal distribution.
+
+    Parameters
+    ----------
+    name : str
+        Name of the sources whose place it takes in an interval.
+    mixture : Mixture
+        [rad].
+    """
+
+    name: str
+    mixture: Mixture
+
+
+@dataclass(frozen=True, slots=True)
 class Uncertain:
     """A value [rad] with its contributions [rad].
 
@@ -53,10 +70,13 @@ class Uncertain:
         Not wrapped: wrapping is the business of whoever prints it.
     parts : mapping of Source to float
         Signed one-sigma contribution of each independent source.
+    spread : Spread or None
+        Of the one source that is not spread normally; only the interval depends on it.
     """
 
     value: float
     parts: Mapping[Source, float] = field(default_factory=dict)
+    spread: Spread | None = None
 
     @property
     def variance(self) -> float:
@@ -79,19 +99,34 @@ class Uncertain:
     @property
     def interval95(self) -> float:
         """Half-width of the 95 % interval [rad]."""
+        if self.spread is not None:
+            others = self.without(self.spread.name)
+            mixture = self.spread.mixture
+            wider = student_quantile(0.975, max(others.dof, 1.0))
+            wider /= student_quantile(0.975, max(mixture.dof, 1.0))
+            beside = others.variance * max(wider, 1.0) ** 2
+            if math.isfinite(beside):
+                return mixture.half_width(beside)
         return student_quantile(0.975, max(self.dof, 1.0)) * self.sigma
 
     def only(self, *names: str) -> Uncertain:
         """Keep the contributions of the named sources alone."""
-        return Uncertain(self.value, {s: p for s, p in self.parts.items() if s.name in names})
+        return self._with({s: p for s, p in self.parts.items() if s.name in names})
 
     def without(self, *names: str) -> Uncertain:
         """Drop the contributions of the named sources."""
-        return Uncertain(self.value, {s: p for s, p in self.parts.items() if s.name not in names})
+        return self._with({s: p for s, p in self.parts.items() if s.name not in names})
+
+    def _with(self, parts: Mapping[Source, float]) -> Uncertain:
+        """Other contributions; the spread stays while its source does."""
+        spread = self.spread
+        if spread is not None and not any(source.name == spread.name for source in parts):
+            spread = None
+        return Uncertain(self.value, parts, spread)
 
     def shifted(self, offset: float) -> Uncertain:
         """Add an exact offset [rad]."""
-        return Uncertain(self.value + offset, self.parts)
+        return Uncertain(self.value + offset, self.parts, self.spread)
 
     def with_part(self, source: Source, contribution: float) -> Uncertain:
         """Add one contribution [rad]."""
@@ -114,15 +149,32 @@ def combine(terms: Iterable[tuple[float, Uncertain]]) -> Uncertain:
     Returns
     -------
     Uncertain
-        Contributions of one source are added with their signs before anything is squared.
+        Contributions of one source are added with their signs before anything is squared. A spread
+        stays where only one is in the terms; several are taken for normal.
     """
     value = 0.0
     parts: dict[Source, float] = {}
+    spreads: dict[int, tuple[float, Spread]] = {}
     for factor, term in terms:
         value += factor * term.value
         for source, part in term.parts.items():
             parts[source] = parts.get(source, 0.0) + factor * part
-    return Uncertain(value, {s: p for s, p in parts.items() if p != 0.0})
+        if term.spread is not None:
+            known = spreads.get(id(term.spread), (0.0, term.spread))[0]
+            spreads[id(term.spread)] = (known + factor, term.spread)
+    kept = {s: p for s, p in parts.items() if p != 0.0}
+    return Uncertain(value, kept, _one_spread(list(spreads.values())))
+
+
+def _one_spread(found: list[tuple[float, Spread]]) -> Spread | None:
+    """The only spread of a combination, None where there are several or it drops out."""
+    left = [(factor, spread) for factor, spread in found if abs(factor) > 1e-12]
+    if len(left) != 1:
+        return None
+    factor, spread = left[0]
+    if abs(factor - 1.0) < 1e-12:
+        return spread
+    return Spread(spread.name, spread.mixture.scaled(factor))
 
 
 def aligned(directions: Sequence[Uncertain]) -> list[Uncertain]:

@@ -15,6 +15,7 @@ import numpy as np
 
 from surveyapp.diagnosis.action import Action
 from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.subject import Subject
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Columns, Effect, SubjectId
@@ -76,7 +77,7 @@ class Case:
     identity : str
         Session or campaign, for messages.
     labels : tuple of str
-        Name of each observation for messages.
+        Name of each observation for messages: nothing is looked up by it.
     grid_labels : mapping
         Names behind numbered columns: ``{"line": {0.0: "A-B"}}``.
     warnings : tuple of ResultWarning
@@ -88,6 +89,8 @@ class Case:
         What the result is called.
     actions : tuple of Action
         What can be observed next.
+    members : tuple of Subject
+        The session and target of each observation, where it has one.
     base_of : callable or None
         The base design of other rows; None = the mean of the record's own rows.
     """
@@ -120,6 +123,7 @@ class Case:
     title: str = ""
     value_name: str = "the result"
     actions: tuple[Action, ...] = ()
+    members: tuple[Subject, ...] = ()
     base_of: Callable[[Columns], Floats] | None = None
 
     def __post_init__(self) -> None:

@@ -88,7 +88,7 @@ def _second_set(problem: Case, confirm: Case) -> list[Problem]:
 def _no_second(confirm: Case, found: str) -> Problem:
     return Problem(
         "the second set is no second set: it would confirm whatever it chose",
-        f"--confirm, {confirm.identity}",
+        f"confirm, {confirm.identity}",
         found,
         "another record of the same instrument, observed independently",
         "Confirm with a run that had no part in the diagnosis.",

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from surveyapp.diagnosis.adoption import adoptions, p_values
 from surveyapp.diagnosis.ambiguity import ambiguities
 from surveyapp.diagnosis.battery import run_battery
@@ -13,6 +15,7 @@ from surveyapp.diagnosis.compare import Level
 from surveyapp.diagnosis.fits import Fit, unit_variance
 from surveyapp.diagnosis.gate import GATE
 from surveyapp.diagnosis.held_out import confirm_rms, forecast, leave_one_out
+from surveyapp.diagnosis.later_visits import held_out_prediction
 from surveyapp.diagnosis.ledger import ledger_entry
 from surveyapp.diagnosis.long_records.record import (
     LongRecord,
@@ -22,6 +25,7 @@ from surveyapp.diagnosis.long_records.record import (
     with_lines,
 )
 from surveyapp.diagnosis.loop import DEFAULT_DRAWS, Search, rivals_delta, search
+from surveyapp.diagnosis.next_observation import advice, worth_in_words
 from surveyapp.diagnosis.result import (
     Ambiguity,
     CandidateResult,
@@ -98,6 +102,8 @@ def _diagnosed(
     averaged = averaged_value(problem, found.levels[-1].every)
     averaged = _widened(problem, found, averaged, verdict)
     best = found.best if ambiguous else found.after
+    models = [_model(problem, fit, confirm) for fit in (base, found.after, best)]
+    outlook = advice(problem, np.random.default_rng(int(digest[:15], 16)))
     return Diagnosis(
         subject=problem.subject,
         identity=problem.identity,
@@ -109,9 +115,9 @@ def _diagnosed(
         adopted=adopted,
         ambiguous=ambiguous,
         candidates=_candidates(problem, found),
-        before=_model(problem, base, confirm),
-        after=_model(problem, found.after, confirm),
-        after_best=_model(problem, best, confirm),
+        before=models[0],
+        after=models[1],
+        after_best=models[2],
         averaged=_quantity(problem, averaged),
         remedy=_remedies(problem, found),
         warnings=(*problem.warnings, *_warnings(problem, found)),
@@ -121,6 +127,13 @@ def _diagnosed(
         residuals_best=_residuals(problem, best),
         title=problem.title or problem.subject.replace("_", " "),
         value_name=problem.value_name,
+        prediction=held_out_prediction(
+            problem, before=models[0].forecast_rms, after=models[2].forecast_rms
+        ),
+        actions=() if outlook is None else outlook.actions,
+        advice=()
+        if outlook is None
+        else tuple(worth_in_words(outlook, scale=problem.scale, unit=problem.unit)),
     )
 
 

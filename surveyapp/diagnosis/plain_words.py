@@ -10,6 +10,7 @@ from collections.abc import Mapping
 
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.long_records.lines import SpectralLine
+from surveyapp.diagnosis.outlook import PredictionErrors
 from surveyapp.diagnosis.result import Adoption, Diagnosis, Estimate, ModelResult
 from surveyapp_models.effects.effect import Effect
 
@@ -59,6 +60,8 @@ def plain_words(
     said += [_line(result, line, known) for line in result.lines]
     said += _consequence(result)
     said += _errors(result)
+    said += _predicted(result)
+    said += result.advice
     if result.verdict == "unattributed":
         said.append("Something is left that no known cause explains; it stays in the stated sigma.")
     said += [f"{text.rstrip('.')}." for text in result.remedy]
@@ -177,6 +180,25 @@ def _consequence(result: Diagnosis) -> list[str]:
                 f"{_figure(result, apart, '+')}{_unit(result)} from the average."
             )
     return said
+
+
+def _predicted(result: Diagnosis) -> list[str]:
+    """Errors of what was left out in time order, before and after, with their intervals."""
+    held = result.prediction
+    if held is None or not held.count:
+        return []
+
+    def told(item: PredictionErrors) -> str:
+        share = round((item.coverage or 0.0) * held.count)
+        return (
+            f"{_small(result, item.rms)}, {share} of {held.count} inside +-"
+            f"{_small(result, item.interval95)}"
+        )
+
+    return [
+        f"Azimuths predicted ({held.scheme}) err by {told(held.before)} with the mean, by "
+        f"{told(held.after)} with the average over what may be at work."
+    ]
 
 
 def _errors(result: Diagnosis) -> list[str]:

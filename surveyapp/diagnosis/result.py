@@ -12,6 +12,7 @@ from typing import Any, Literal
 
 from surveyapp.diagnosis.battery import BatteryTest
 from surveyapp.diagnosis.long_records.lines import SpectralLine
+from surveyapp.diagnosis.outlook import ActionResult, HeldOut
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.domain.project import ResultWarning
 from surveyapp_models.angles import wrap_two_pi
@@ -180,6 +181,12 @@ class Diagnosis:
         Of the lines.
     title, value_name : str
         Of the subject, and of its result.
+    prediction : HeldOut or None
+        None where too little was observed.
+    actions : tuple of ActionResult
+        What to observe next, best first.
+    advice : tuple of str
+        The same in sentences.
     """
 
     subject: str
@@ -206,6 +213,9 @@ class Diagnosis:
     frequency_unit: str = "Hz"
     title: str = ""
     value_name: str = "the result"
+    prediction: HeldOut | None = None
+    actions: tuple[ActionResult, ...] = ()
+    advice: tuple[str, ...] = ()
 
     @property
     def heading(self) -> str:
@@ -250,6 +260,11 @@ class Diagnosis:
                 {**line.to_dict(self.scale), "frequency_unit": self.frequency_unit}
                 for line in self.lines
             ],
+            "pooled": None,
+            "prediction": None
+            if self.prediction is None
+            else self.prediction.to_dict(unit=self.unit, scale=self.scale),
+            "actions": [item.to_dict(unit=self.unit, scale=self.scale) for item in self.actions],
             "remedy": list(self.remedy),
             "warnings": [warning.to_dict() for warning in self.warnings],
         }

@@ -7,11 +7,28 @@ azimuths of ellipses and angles are clockwise from north.
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
+from surveyapp.domain.network_tests import GlobalTest, LeftOut, Removal, Snooping, Suspect
 from surveyapp.domain.observations import ANGULAR, ObservationKind
 from surveyapp.domain.project import ResultWarning
 from surveyapp_models.angles import RHO_ARCSEC, wrap_two_pi
+
+__all__ = [
+    "SCHEMA",
+    "AdjustedObservation",
+    "AdjustedPoint",
+    "AdjustmentResult",
+    "Closure",
+    "Ellipse",
+    "GlobalTest",
+    "LeftOut",
+    "RelativeEllipse",
+    "Removal",
+    "SharedValue",
+    "Snooping",
+    "Suspect",
+]
 
 SCHEMA = "surveyapp.adjust/1"
 
@@ -104,6 +121,8 @@ class AdjustedObservation:
     group : str
         Variance component group.
     line : int
+    left_out : bool
+        Missed by more than the stated tolerance: not adjusted, its residual is against the points.
     """
 
     place: int
@@ -122,6 +141,7 @@ class AdjustedObservation:
     mdb_effect_m: float | None
     group: str = ""
     line: int = 0
+    left_out: bool = False
 
     @property
     def angular(self) -> bool:
@@ -150,43 +170,12 @@ class AdjustedObservation:
             "mdb": None if self.mdb is None else self.mdb * small,
             "mdb_effect_m": self.mdb_effect_m,
             "sigma": self.sigma * small,
-            "sigma_adjusted": self.sigma_adjusted * small,
+            "sigma_adjusted": None if self.left_out else self.sigma_adjusted * small,
+            "left_out": self.left_out,
             "unit": "deg" if self.angular else "m",
             "small_unit": "arcsec" if self.angular else "m",
             "group": self.group or str(self.kind),
         }
-
-
-@dataclass(frozen=True, slots=True)
-class GlobalTest:
-    """Chi-square test of the a-priori sigma0, two-sided.
-
-    Parameters
-    ----------
-    sum_of_squares : float
-        v'Pv with P = sigma_apriori^2 * inverse covariance.
-    sigma_apriori : float
-    ratio : float or None
-        A-posteriori over a-priori sigma0; None without degrees of freedom.
-    lower, upper : float or None
-        Bounds of the ratio.
-    probability : float
-    passed : bool or None
-    """
-
-    sum_of_squares: float
-    sigma_apriori: float
-    ratio: float | None
-    lower: float | None
-    upper: float | None
-    probability: float
-    passed: bool | None
-
-    def to_dict(self) -> dict[str, object]:
-        """Keys of the JSON."""
-        values = asdict(self)
-        values["pass"] = values.pop("passed")
-        return values
 
 
 @dataclass(frozen=True, slots=True)
@@ -247,62 +236,6 @@ class Closure:
 
 
 @dataclass(frozen=True, slots=True)
-class Suspect:
-    """An observation whose test exceeds the family's critical value."""
-
-    place: int
-    description: str
-    standardized: float
-    estimated_error: float
-    angular: bool
-
-    def to_dict(self) -> dict[str, object]:
-        """Keys of the JSON."""
-        small = RHO_ARCSEC if self.angular else 1.0
-        return {
-            "observation": self.description,
-            "standardized": self.standardized,
-            "estimated_error": self.estimated_error * small,
-            "unit": "arcsec" if self.angular else "m",
-        }
-
-
-@dataclass(frozen=True, slots=True)
-class Snooping:
-    """Test of the largest standardized residual at a level for the whole family.
-
-    Parameters
-    ----------
-    statistic : str
-        ``normal`` (sigma0 known) or ``tau`` (sigma0 estimated).
-    level : float
-        Probability of accusing anything at all where nothing is wrong.
-    tests : int
-        Distinct tests in the family.
-    critical : float or None
-        Critical value; None where nothing can be tested.
-    suspects : tuple of Suspect
-        Largest first. Only the first is accused: the others may be its shadow.
-    """
-
-    statistic: str
-    level: float
-    tests: int
-    critical: float | None
-    suspects: tuple[Suspect, ...] = ()
-
-    def to_dict(self) -> dict[str, object]:
-        """Keys of the JSON."""
-        return {
-            "statistic": self.statistic,
-            "level": self.level,
-            "tests": self.tests,
-            "critical": self.critical,
-            "suspects": [item.to_dict() for item in self.suspects],
-        }
-
-
-@dataclass(frozen=True, slots=True)
 class SharedValue:
     """An adjusted orientation or gyro constant [rad] with its sigma."""
 
@@ -357,6 +290,10 @@ class AdjustmentResult:
     relative : tuple of RelativeEllipse
     snooping : Snooping
     warnings : tuple of ResultWarning
+    left_out : tuple of LeftOut
+        What missed by more than the stated tolerance.
+    removals : tuple of Removal
+        The removal that helps most first; empty where nothing is suspected.
     """
 
     points: tuple[AdjustedPoint, ...]
@@ -373,6 +310,8 @@ class AdjustmentResult:
     relative: tuple[RelativeEllipse, ...]
     snooping: Snooping
     warnings: tuple[ResultWarning, ...] = ()
+    left_out: tuple[LeftOut, ...] = ()
+    removals: tuple[Removal, ...] = ()
 
     def point(self, name: str) -> AdjustedPoint:
         """Point by name."""
@@ -395,5 +334,7 @@ class AdjustmentResult:
             "shared": [item.to_dict() for item in self.shared],
             "relative_ellipses": [item.to_dict() for item in self.relative],
             "snooping": self.snooping.to_dict(),
+            "removals": [item.to_dict() for item in self.removals],
+            "checks": [item.to_dict() for item in self.left_out],
             "warnings": [item.to_dict() for item in self.warnings],
         }

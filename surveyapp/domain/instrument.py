@@ -8,6 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
+from surveyapp.domain.priors import Priors
+
 InstrumentKind = Literal["suspended", "automatic"]
 
 
@@ -86,10 +88,19 @@ class ValidRange:
         Largest latitude, absolute [rad].
     temperature_c : tuple of float or None
         Lowest and highest temperature [degree Celsius].
+    supply : tuple of (unit, low, high)
+        Lowest and highest supply of the spin motor by its unit (V, Hz, mA).
+    level : float or None
+        Largest level reading at which the instrument works, absolute [rad].
+    zenith : tuple of float or None
+        Smallest and largest zenith angle in face left that its telescope reaches [rad].
     """
 
     latitude_max: float | None = None
     temperature_c: tuple[float, float] | None = None
+    supply: tuple[tuple[str, float, float], ...] = ()
+    level: float | None = None
+    zenith: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,14 +206,18 @@ class Instrument:
     serial : str
     known_constant : tuple of (float, float) or None
         Instrument constant known beforehand and its sigma [rad].
-    constant_choice : str
-        pooled | interpolated | nearest | line:A-B | known.
+    constant_choice : str or None
+        predicted | pooled | interpolated | nearest | line:A-B | known; None = nobody chose:
+        predicted where there are determinations enough, else pooled.
     effects : tuple of AdoptedEffect
+    priors : Priors or None
+        How often each cause is at work in this instrument, learned from its archive.
     """
 
     id: str
     card: InstrumentCard
     serial: str = ""
     known_constant: tuple[float, float] | None = None
-    constant_choice: str = "pooled"
+    constant_choice: str | None = None
     effects: tuple[AdoptedEffect, ...] = ()
+    priors: Priors | None = None

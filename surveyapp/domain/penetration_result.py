@@ -148,6 +148,8 @@ class MissCandidate:
         Size in declared sigmas; None where none is declared.
     component : str
         lateral | longitudinal.
+    subject : str
+        Instrument or heading; empty: the whole mine.
     """
 
     effect: str
@@ -155,6 +157,7 @@ class MissCandidate:
     unit: str
     sigmas: float | None
     component: str
+    subject: str = ""
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""
@@ -164,6 +167,26 @@ class MissCandidate:
             "unit": self.unit,
             "sigmas": finite(self.sigmas),
             "component": self.component,
+            "subject": self.subject or None,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class HeadingShare:
+    """By how much the end of a heading moves when the miss is distributed: right, along, up [m]."""
+
+    heading: str
+    lateral_m: float | None
+    longitudinal_m: float | None
+    vertical_m: float | None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON."""
+        return {
+            "heading": self.heading,
+            "lateral_m": finite(self.lateral_m),
+            "longitudinal_m": finite(self.longitudinal_m),
+            "vertical_m": finite(self.vertical_m),
         }
 
 
@@ -179,6 +202,7 @@ class MissTest:
     consistent : bool
     verdict : str
     candidates : tuple of MissCandidate
+    distribution : tuple of HeadingShare
     text : str
         What it means, in the trade's words.
     """
@@ -189,6 +213,7 @@ class MissTest:
     consistent: bool
     verdict: Verdict
     candidates: tuple[MissCandidate, ...]
+    distribution: tuple[HeadingShare, ...] = ()
     text: str = ""
 
     def to_dict(self) -> dict[str, Any]:
@@ -202,6 +227,7 @@ class MissTest:
             "consistent": self.consistent,
             "verdict": self.verdict,
             "candidates": [item.to_dict() for item in self.candidates],
+            "distribution": [item.to_dict() for item in self.distribution],
             "text": self.text,
         }
 
@@ -232,6 +258,30 @@ class MeetingEllipse:
 
 
 @dataclass(frozen=True, slots=True)
+class MineDrawing:
+    """What a plan of the mine shows, east and north [m].
+
+    Parameters
+    ----------
+    names : tuple of str
+        Headings.
+    routes : tuple of tuple of (east, north)
+        Stations of each heading, carried on to the meeting point.
+    gyro : tuple of pairs
+        Ends of the gyro sides.
+    meeting : (east, north)
+    axis_azimuth : float
+        [rad].
+    """
+
+    names: tuple[str, ...]
+    routes: tuple[tuple[tuple[float, float], ...], ...]
+    gyro: tuple[tuple[tuple[float, float], tuple[float, float]], ...]
+    meeting: tuple[float, float]
+    axis_azimuth: float
+
+
+@dataclass(frozen=True, slots=True)
 class Prediction:
     """Everything that ``predict`` finds."""
 
@@ -252,9 +302,10 @@ class Prediction:
     measured: MissTest | None = None
     steps: tuple[ProcedureStep, ...] = ()
     warnings: tuple[ResultWarning, ...] = ()
+    drawing: MineDrawing | None = None
 
     def to_dict(self) -> dict[str, Any]:
-        """Keys of the JSON, schema ``surveyapp.predict/1``."""
+        """Keys of the JSON, schema ``surveyapp.predict/1``; the drawing is not in it."""
         return {
             "schema": "surveyapp.predict/1",
             "project": self.project,

@@ -30,6 +30,7 @@ class ReadingKind(StrEnum):
     TEMPERATURE = "temperature"
     NOTE = "note"
     STRIKE = "strike"
+    UNSTRIKE = "unstrike"
 
 
 class Dimension(StrEnum):
@@ -60,7 +61,11 @@ QUANTITY: dict[ReadingKind, Dimension] = {
     ReadingKind.TEMPERATURE: Dimension.TEMPERATURE,
     ReadingKind.NOTE: Dimension.NONE,
     ReadingKind.STRIKE: Dimension.NONE,
+    ReadingKind.UNSTRIKE: Dimension.NONE,
 }
+
+QUIET_KINDS = frozenset({ReadingKind.NOTE, ReadingKind.STRIKE, ReadingKind.UNSTRIKE})
+"""Rows that say something and measure nothing."""
 
 SWING_KINDS = frozenset(
     {
@@ -109,7 +114,7 @@ class Reading:
         What was read.
     value : float or None
         Angle kinds [rad], scale kinds [div], levels [rad], temperature [degree Celsius], supply in
-        ``unit``; None for ``missed``, ``note`` and ``strike``.
+        ``unit``; None for ``missed``, ``note``, ``strike`` and ``unstrike``.
     text : str
         The value exactly as it stands in the book.
     unit : str
@@ -128,7 +133,7 @@ class Reading:
     line : int
         Line of the file, counted from 1 (the header is line 1).
     strikes : int or None
-        For ``strike``: the struck row's seq.
+        For ``strike`` and ``unstrike``: the struck row's seq.
     """
 
     seq: int

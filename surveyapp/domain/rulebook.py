@@ -61,6 +61,8 @@ class RuleBook:
     id, title, source : str
     limits : tuple of Limit
     note : str
+    station_sigma_m : float or None
+        Standard deviation of a station's coordinates where the project states none [m].
     """
 
     id: str
@@ -68,3 +70,4 @@ class RuleBook:
     source: str
     limits: tuple[Limit, ...]
     note: str = ""
+    station_sigma_m: float | None = None

@@ -25,6 +25,10 @@ SubjectKind = Literal[
 """``line``: a line as one instrument oriented it; ``side``: two stations, whoever sighted them."""
 
 
+SubjectKeyword = Literal["session", "campaign", "traverse"]
+"""Under which ``diagnose`` takes the id of what is to be diagnosed."""
+
+
 @dataclass(frozen=True, slots=True)
 class Subject:
     """One thing of a project.

@@ -41,6 +41,8 @@ CARD_KEYS: Final = (
     "notes",
 )
 """Every key of a card that a project may override; ``id`` is the card's own."""
+SUPPLY_KEYS: Final = {"supply_v": "V", "supply_hz": "Hz", "supply_ma": "mA"}
+"""Ranges of the supply in [range] by their unit."""
 
 _POLAR_DEG: Final = 85.0
 """Beyond this latitude nobody measures the period or the tape zero of a suspended gyro: it finds no
@@ -304,14 +306,32 @@ def _range(card: Table) -> ValidRange:
     if table is None:
         return ValidRange()
     latitude = table.number("latitude_max_deg", high=90.0, positive=True)
-    temperature = table.get("temperature_c")
-    pair = None
-    if temperature is not None:
-        pair = number_pair(temperature)
-        if pair is None:
-            table.problem("temperature_c is no range", temperature, "[lowest, highest]")
+    supply = [
+        (unit, *pair)
+        for key, unit in SUPPLY_KEYS.items()
+        if (pair := _pair(table, key)) is not None
+    ]
+    level = table.number("level_arcsec", high=36000.0, positive=True)
+    zenith = _pair(table, "zenith_deg")
+    temperature = _pair(table, "temperature_c")
     table.warn_unknown()
-    return ValidRange(None if latitude is None else math.radians(latitude), pair)
+    return ValidRange(
+        latitude_max=None if latitude is None else math.radians(latitude),
+        temperature_c=temperature,
+        supply=tuple(supply),
+        level=None if level is None else level * ARCSEC,
+        zenith=None if zenith is None else (math.radians(zenith[0]), math.radians(zenith[1])),
+    )
+
+
+def _pair(table: Table, key: str) -> tuple[float, float] | None:
+    value = table.get(key)
+    if value is None:
+        return None
+    pair = number_pair(value)
+    if pair is None:
+        table.problem(f"{key} is no range", value, "[lowest, highest]")
+    return pair
 
 
 def number_pair(value: object) -> tuple[float, float] | None:

@@ -20,6 +20,7 @@ from surveyapp.io.cards import is_path
 from surveyapp.io.files import decode, read_bytes, shown, shown_path
 from surveyapp.io.filing.seals import changed_after_closing, read_filing
 from surveyapp.io.grid_tables import read_mine_grid, refuse_two_convergences
+from surveyapp.io.priors import with_priors
 from surveyapp.io.project_files import PROJECT_FILE, ProjectFiles, inside
 from surveyapp.io.project_tables import (
     Names,
@@ -171,9 +172,13 @@ def _read_tables(top: _Top, repair: bool | None) -> Project:
         known_constants=frozenset(str(t.get("id")) for t in cards if "constant" in t),
         unit=unit,
     )
+    instruments = [
+        with_priors(instrument, card, files)
+        for instrument, card in zip(instruments, cards, strict=True)
+    ]
     sessions = read_sessions(top.tables("orientation"), files, names, repair=repair)
     for instrument, card in zip(instruments, cards, strict=True):
-        names.check_choice(card, instrument.constant_choice, instrument.id)
+        names.check_choice(card, instrument.constant_choice or "pooled", instrument.id)
         if instrument.card.id and is_path(str(card.get("card"))):
             files.read(str(card.get("card")), card.where)
     rule_book, rules = _rules(top)
@@ -190,7 +195,7 @@ def _read_tables(top: _Top, repair: bool | None) -> Project:
         traverses=traverses,
         crs=crs,
         grid=read_mine_grid(table, unit, crs),
-        station_sigma_m=table.number("station_sigma_m", low=0.0, high=1e3),
+        station_sigma_m=_station_sigma(table, rules),
         angle_unit=unit,
         angle_typing=table.choice("angle_typing", ANGLE_TYPING) or ANGLE_TYPING[0],
         rule_book=rule_book,
@@ -224,6 +229,12 @@ def _rules(top: _Top) -> tuple[str | None, RuleBook | None]:
         else:
             files.findings.absorb(error)
         return name, None
+
+
+def _station_sigma(table: Table, rules: RuleBook | None) -> float | None:
+    """The project's own, else the rule book's [m]."""
+    own = table.number("station_sigma_m", low=0.0, high=1e3)
+    return own if own is not None or rules is None else rules.station_sigma_m
 
 
 def _filing(files: ProjectFiles) -> Filing:

@@ -35,7 +35,7 @@ from surveyapp_models.angles import ARCSEC, AngleUnit
 
 METHODS: Final = ("tracking", "amplitude", "transit", "automatic")
 PURPOSES: Final = ("calibration", "survey")
-CHOICES: Final = ("pooled", "interpolated", "nearest", "known")
+CHOICES: Final = ("predicted", "pooled", "interpolated", "nearest", "known")
 
 _GRID_LIMIT_M: Final = 1e8
 _HEIGHT_LIMITS_M: Final = (-12000.0, 12000.0)
@@ -220,11 +220,11 @@ def read_instrument(table: Table, folder: Path) -> Instrument:
         card=card or InstrumentCard("", "", "suspended", ""),
         serial=_serial(table),
         known_constant=known,
-        constant_choice=table.text("constant_choice") or "pooled",
+        constant_choice=table.text("constant_choice") or None,
         effects=tuple(read_effect(t) for t in table.tables("effect")),
     )
     table.get("note")
-    table.warn_unknown(*CARD_KEYS)
+    table.warn_unknown(*CARD_KEYS, "priors")
     return instrument
 
 

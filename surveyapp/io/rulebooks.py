@@ -82,13 +82,14 @@ def read_rule_book(name_or_path: str, *, base: Path) -> RuleBook:
         source=table.text("source", required=True, multiline=True) or "",
         limits=limits,
         note=table.text("note", multiline=True) or "",
+        station_sigma_m=table.number("station_sigma_m", low=0.0, high=1e3),
     )
     unread = table.unread()
     if unread:
         table.problem(
             f"{shown(unread[0])} is not known in a rule book",
             "",
-            "id, title, source, note and [[limit]] tables",
+            "id, title, source, note, station_sigma_m and [[limit]] tables",
         )
     findings.raise_if_any()
     return book

@@ -32,7 +32,7 @@ angle_unit = {angle_unit}    # dms | gon | deg: how angles are written here and 
 # card = "wild-gak1"
 # serial = "3139"
 # constant = {{ arcsec = -9.7, sigma_arcsec = 3.0 }}    # if it is known beforehand
-# constant_choice = "pooled"    # pooled | interpolated | nearest | line:A-B | known
+# constant_choice = "predicted" # predicted | pooled | interpolated | nearest | line:A-B | known
 
 # One table for each station, targets included. Position: e and n in metres of the grid, or y_west
 # and x_south, or lat and lon in degrees. Every position is optional.

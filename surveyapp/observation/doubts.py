@@ -6,6 +6,7 @@ The rules stand in ``surveyapp.core.observing.doubts``; here stands what of the 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Final
 
 from surveyapp.core.observing.doubts import (
@@ -20,45 +21,117 @@ from surveyapp.core.observing.doubts import (
     doubt_zenith,
 )
 from surveyapp.core.observing.progress import Progress
+from surveyapp.core.observing.range_doubts import (
+    doubt_half_swing,
+    doubt_level,
+    doubt_moment,
+    doubt_supply,
+    doubt_temperature,
+    doubt_zenith_range,
+)
+from surveyapp.core.observing.retyped import Placed, seconds_between
 from surveyapp.core.observing.steps import Expected
 from surveyapp.core.observing.zero_forecast import forecast_zero
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.readings import Reading, ReadingKind
+from surveyapp.io.fieldbook.clock import Stamp
 from surveyapp.observation.session import SessionDesk
-from surveyapp_models.angles import wrap_two_pi
+from surveyapp_models.angles import ARCSEC, wrap_two_pi
 
 TURNING: Final = (ReadingKind.REVERSAL, ReadingKind.SCALE_REVERSAL)
+STAMP_STEP_S: Final = 0.001
+"""Elapsed seconds stand in the book to the millisecond."""
 ROUNDS: Final = (ReadingKind.AZIMUTH, ReadingKind.NORTH)
 
 
+@dataclass(frozen=True, slots=True)
+class Typed:
+    """A reading as it would be written.
+
+    Parameters
+    ----------
+    value : float
+        [rad], on the scale [div], or in ``unit``.
+    unit : str
+    stamp : Stamp or None
+        None where it is written without a moment.
+    placed : Placed or None
+        Of a turning point or passage: where in the swing it would stand.
+    """
+
+    value: float
+    unit: str = ""
+    stamp: Stamp | None = None
+    placed: Placed | None = None
+
+
 def questions_about(
-    observation: SessionDesk, value: float, what: Expected, progress: Progress | None
+    observation: SessionDesk, typed: Typed, what: Expected, progress: Progress | None
 ) -> tuple[Question, ...]:
-    """Doubts about a reading.
+    """Doubts about a reading and its moment.
 
     Parameters
     ----------
     observation : SessionDesk
-    value : float
-        [rad], on the scale [div].
+    typed : Typed
     what : Expected
     progress : Progress or None
         As computed last; used where it is of the book as it stands.
     """
-    kind = what.kind
+    return (
+        *_about_value(observation, typed, what, progress),
+        *_about_moment(observation, typed, what.kind),
+    )
+
+
+def _about_value(
+    observation: SessionDesk, typed: Typed, what: Expected, progress: Progress | None
+) -> tuple[Question, ...]:
+    kind, value = what.kind, typed.value
     if kind in TURNING:
+        if typed.placed is not None and typed.placed.struck is not None:
+            return ()  # what it says was judged when its side gave it the struck one's place
         return _about_point(observation, value, what, progress)
     if what.face is not None:
         return _about_sight(observation, value, what)
+    valid = _card(observation).valid
+    if kind is ReadingKind.TEMPERATURE:
+        return doubt_temperature(value, valid)
+    if kind in (ReadingKind.LEVEL_ALONG, ReadingKind.LEVEL_ACROSS):
+        return doubt_level(value * ARCSEC, valid)
     rows = [row for row in observation.rows(what.step) if row.kind is kind]
     if kind is ReadingKind.TAPE_ZERO:
         return _about_zero(value, rows, _card(observation))
+    if kind is ReadingKind.SUPPLY:
+        same = [row for row in rows if row.unit == typed.unit]
+        return doubt_supply(value, typed.unit, _values(same), valid)
     earlier = _values(rows)
     if kind is ReadingKind.CLAMP:
         return doubt_clamp(value, earlier)
     if kind in ROUNDS:
         return doubt_round(value, earlier, card_sigma=_card(observation).sigma.azimuth)
     return doubt_passage(value, earlier) if kind is ReadingKind.TRANSIT else ()
+
+
+def _about_moment(
+    observation: SessionDesk, typed: Typed, kind: ReadingKind
+) -> tuple[Question, ...]:
+    """Doubt a moment before the last row; of a turning point, one that no half swing explains."""
+    if typed.stamp is None:
+        return ()
+    placed = typed.placed
+    if kind not in TURNING or placed is None:
+        if kind is ReadingKind.TRANSIT:
+            return ()  # their order and their moments are judged by the forecast of the passages
+        latest = observation.latest_elapsed_s()
+        return () if latest is None else doubt_moment(latest - typed.stamp.elapsed_s - STAMP_STEP_S)
+    if placed.before is None:
+        return ()
+    new = replace(placed.before, time=typed.stamp.time, elapsed_s=round(typed.stamp.elapsed_s, 3))
+    apart = seconds_between(placed.before, new)
+    if apart is None or apart <= 0.0:
+        return ()  # refused in words when it is written
+    return doubt_half_swing(apart, placed.turns, half_swing_s=observation.half_swing_s())
 
 
 def _card(observation: SessionDesk) -> InstrumentCard:
@@ -74,7 +147,8 @@ def _about_sight(observation: SessionDesk, value: float, what: Expected) -> tupl
     assert what.face is not None
     if what.kind is ReadingKind.ZENITH:
         sights = sights_of(observation, what.target, ReadingKind.ZENITH)
-        return doubt_zenith(value, what.face, [row for row in sights if row in here])
+        apart = doubt_zenith(value, what.face, [row for row in sights if row in here])
+        return apart or doubt_zenith_range(value, what.face, _card(observation).valid)
     sights = sights_of(observation, what.target)
     return doubt_sight(
         value,

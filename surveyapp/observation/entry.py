@@ -14,11 +14,20 @@ from typing import Final
 
 from surveyapp.core.observing.doubts import Question
 from surveyapp.core.observing.progress import Progress
+from surveyapp.core.observing.retyped import Placed, open_strike, place_in_swing, seconds_between
 from surveyapp.core.observing.steps import Expected, Step, kinds_of, next_sight
 from surveyapp.core.observing.typed_rows import EntryError, complete_angle, complete_number
-from surveyapp.domain.readings import QUANTITY, Dimension, Face, Reading, ReadingKind, Side
+from surveyapp.domain.readings import (
+    QUANTITY,
+    Dimension,
+    Face,
+    FieldBook,
+    Reading,
+    ReadingKind,
+    Side,
+)
 from surveyapp.io.fieldbook.clock import Stamp
-from surveyapp.observation.doubts import TURNING, of_this_book, questions_about, sights_of
+from surveyapp.observation.doubts import TURNING, Typed, of_this_book, questions_about, sights_of
 from surveyapp.observation.session import NewRow, SessionDesk
 from surveyapp_models.angles import wrap_two_pi
 
@@ -32,6 +41,10 @@ LARGEST: Final = {
 """Unit and largest possible magnitude of what is no angle."""
 _SUPPLY: Final = re.compile(r"(.*?)\s*(mA|Hz|V)?", re.IGNORECASE)
 _SUPPLY_UNITS: Final = {"ma": "mA", "hz": "Hz", "v": "V"}
+SWINGS: Final = (*TURNING, ReadingKind.TRANSIT)
+SHORTEST_HALF_SWING_S: Final = 60.0
+TYPED_UP_S: Final = 5.0
+"""Nobody reads two turning points within this time: such a row is typed up, its moment unknown."""
 _AGO: Final = re.compile(r"-\s*(\d+(?:\.\d*)?)\s*s?")
 _TIME: Final = re.compile(r"(\d{1,2}):(\d{2})(?::(\d{2}(?:\.\d*)?))?")
 
@@ -50,6 +63,8 @@ class Understood:
     questions : tuple of Question
         To be asked once before it is written.
     stamp : Stamp
+    timed : bool
+        Whether the moment is written.
     """
 
     row: NewRow
@@ -57,6 +72,7 @@ class Understood:
     completed: bool
     questions: tuple[Question, ...]
     stamp: Stamp
+    timed: bool = True
 
 
 def expected(
@@ -86,10 +102,10 @@ def expected(
         near = _near_sight(observation, target, face) if chosen is ReadingKind.BACKSIGHT else None
         return Expected(step, chosen, face, target, near=near, number=number)
     if chosen in TURNING:
-        return _expected_point(step, rows, progress, chosen)
+        return _expected_point(step, rows, progress, chosen, observation.book)
     same = [row for row in rows if row.kind is chosen]
     near = same[-1].value if same and QUANTITY[chosen] is Dimension.ANGLE else None
-    side = _alternate(same[-1]) if same else None
+    side = _alternate(same[-1]) if len(same) > 1 else None
     return Expected(step, chosen, side=side, near=near, number=number)
 
 
@@ -110,19 +126,38 @@ def _alternate(row: Reading) -> Side | None:
     return Side.LEFT if row.side is Side.RIGHT else Side.RIGHT
 
 
+def _struck_side(points: list[Reading], swing: list[Reading]) -> Side | None:
+    """Side of the last row of a swing, which is struck, from the points before it."""
+    if len(points) < 2 or points[-1].side is None:
+        return None
+    turns = len(swing) - 1 - swing.index(points[-1])
+    return points[-1].side if turns % 2 == 0 else _alternate(points[-1])
+
+
 def _expected_point(
-    step: Step, rows: tuple[Reading, ...], progress: Progress | None, kind: ReadingKind
+    step: Step,
+    rows: tuple[Reading, ...],
+    progress: Progress | None,
+    kind: ReadingKind,
+    book: FieldBook,
 ) -> Expected:
     """The next turning point: its side and the leading part of its reading from the forecast."""
     swing = [r for r in rows if r.kind in (kind, ReadingKind.MISSED)]
     points = [row for row in swing if row.kind is kind]
+    again = open_strike(book, kind)
+    if again is not None:
+        near = swing[-3].value if len(swing) > 2 else again.value
+        circle_near = near if kind is ReadingKind.REVERSAL else None
+        return Expected(
+            step, kind, side=_struck_side(points, swing), near=circle_near, number=len(swing)
+        )
     number = len(swing) + 1
     circle = kind is ReadingKind.REVERSAL
     progress = of_this_book(progress, points)
     forecast = progress.next if progress is not None else None
     if progress is None or forecast is None:
         near = swing[-2].value if circle and len(swing) > 1 else None
-        side = None if circle or not points else _alternate(swing[-1])
+        side = None if circle or len(points) < 2 else _alternate(swing[-1])
         return Expected(step, kind, side=side, near=near, number=number)
     side = Side(forecast.side) if len(points) > 1 else None
     near = progress.next_reading if circle else None
@@ -145,6 +180,7 @@ def understand(
     *,
     progress: Progress | None,
     stamp: Stamp,
+    timed: bool = True,
 ) -> Understood:
     """Understand a typed text.
 
@@ -157,6 +193,8 @@ def understand(
     progress : Progress or None
     stamp : Stamp
         When typing began.
+    timed : bool
+        False for a book that is typed up afterwards: only a moment behind an ``@`` is written.
 
     Raises
     ------
@@ -164,11 +202,14 @@ def understand(
         If the text is impossible; it says what would be accepted.
     """
     reading, _, moment = text.partition("@")
-    if moment.strip():
+    stated = bool(moment.strip())
+    if stated:
         stamp = _corrected(observation, stamp, moment.strip())
+    if reading.count(",") == 1 and "." not in reading:
+        reading = reading.replace(",", ".")  # the book keeps points
     quantity = QUANTITY[what.kind]
     if quantity is Dimension.NONE:
-        return _note(reading, what, stamp)
+        return _note(text, what, stamp)
     if quantity is Dimension.ANGLE:
         packed = observation.project.angle_typing == PACKED
         near = what.near
@@ -189,8 +230,39 @@ def understand(
         face="" if what.face is None else str(what.face),
         target="" if what.target == (observation.session.target or "") else what.target,
     )
-    questions = questions_about(observation, entry.value, what, progress)
-    return Understood(row, entry.value, entry.completed, questions, stamp)
+    placed = None
+    if what.kind in SWINGS:
+        placed = place_in_swing(observation.book, _as_reading(row, entry.value, stamp))
+        if not stated and what.kind in TURNING:
+            stamp = _struck_moment(observation, placed, stamp)
+    timed = stated or (timed and not _typed_up(placed, what.kind, stamp))
+    typed = Typed(entry.value, entry.unit, stamp if timed else None, placed)
+    questions = questions_about(observation, typed, what, progress)
+    return Understood(row, entry.value, entry.completed, questions, stamp, timed)
+
+
+def _typed_up(placed: Placed | None, kind: ReadingKind, stamp: Stamp) -> bool:
+    """Whether a turning point follows so fast that it is typed up and was not read just now."""
+    if placed is None or placed.before is None or kind not in TURNING:
+        return False
+    new = replace(placed.before, time=stamp.time, elapsed_s=round(stamp.elapsed_s, 3))
+    apart = seconds_between(placed.before, new)
+    return apart is not None and abs(apart) < TYPED_UP_S * placed.turns
+
+
+def _as_reading(row: NewRow, value: float, stamp: Stamp) -> Reading:
+    return Reading(0, row.kind, value, row.value, row.unit, stamp.time, round(stamp.elapsed_s, 3))
+
+
+def _struck_moment(observation: SessionDesk, placed: Placed, stamp: Stamp) -> Stamp:
+    """Moment of a struck point that is typed anew: its own, unless it is another turn by now."""
+    struck = placed.struck
+    if struck is None or struck.time is None or struck.elapsed_s is None:
+        return stamp
+    half = observation.half_swing_s() or SHORTEST_HALF_SWING_S
+    if placed.after is None and stamp.elapsed_s - struck.elapsed_s > half:
+        return stamp
+    return Stamp(struck.time, struck.elapsed_s)
 
 
 def _note(text: str, what: Expected, stamp: Stamp) -> Understood:

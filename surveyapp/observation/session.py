@@ -23,38 +23,22 @@ from surveyapp.core.observing.steps import (
     step_states,
     swing_begun,
 )
-from surveyapp.core.observing.target import Target, target_of
+from surveyapp.core.observing.target import target_of
 from surveyapp.domain.project import OrientationSession, Project
-from surveyapp.domain.readings import FieldBook, Reading, ReadingKind
+from surveyapp.domain.readings import QUIET_KINDS, FieldBook, Reading, ReadingKind
 from surveyapp.domain.results import OrientationResult
-from surveyapp.errors import Problem, SurveyError
+from surveyapp.errors import SurveyError
 from surveyapp.io.fieldbook import append_row, book_columns, read_field_book
 from surveyapp.io.fieldbook.clock import SessionClock, Stamp, local_now, steady_seconds
-from surveyapp.io.fieldbook.problems import edited_problem, read_only_problem
+from surveyapp.io.fieldbook.problems import edited_problem, moment_problems, read_only_problem
 from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.io.filing.seals import is_closed
 from surveyapp.io.project import read_project
+from surveyapp.observation.aim import Aim
+from surveyapp.observation.half_swing import half_swing_of
 
 FARTHEST: Final = 10.0
 """Periods beyond which a countdown is none: its moments stand on another clock than the session."""
-
-
-@dataclass(frozen=True, slots=True)
-class Aim:
-    """What a session is observed for.
-
-    Parameters
-    ----------
-    target : Target or None
-    book : str
-        Id of the project's rule book, empty without one: tells why there is no target.
-    problem : str
-        Why the rule book cannot be used, empty if it can.
-    """
-
-    target: Target | None
-    book: str = ""
-    problem: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,6 +102,7 @@ class SessionDesk:
         try:
             self.project = read_project(self.folder, observing=True)
             self._step: Step | None = None
+            self._half_swing: tuple[float | None] | None = None
             self._clocks = now, steady
             self._begin_behind_the_book()
         except BaseException:
@@ -208,14 +193,25 @@ class SessionDesk:
         """Whether what is read now can no longer stand before the observation."""
         return swing_begun(self.book, self.session.method)
 
-    def record(self, row: NewRow, stamp: Stamp | None = None) -> int:
+    def latest_elapsed_s(self) -> float | None:
+        """Latest elapsed time that stands in the book [s], None where there is none."""
+        found = [row.elapsed_s for row in self.book.rows if row.elapsed_s is not None]
+        return max(found, default=None)
+
+    def record(self, row: NewRow, stamp: Stamp | None = None, *, timed: bool = True) -> int:
         """Append one row; it is on the disk when this returns.
+
+        A turning point of the very moment of another one is written without a moment. Elapsed
+        seconds never go back in a book: a reading of an earlier moment than a row above it carries
+        its time alone, and so do strikes and remarks, which measure nothing.
 
         Parameters
         ----------
         row : NewRow
         stamp : Stamp or None
             When the reading was taken; this moment if None.
+        timed : bool
+            False writes no moment at all: a book that is typed up afterwards.
 
         Returns
         -------
@@ -234,11 +230,13 @@ class SessionDesk:
             self.read_again()
             raise SurveyError(edited_problem(self.path))
         moment = stamp or self.clock.stamp()
-        latest = max((r.elapsed_s for r in self.book.rows if r.elapsed_s is not None), default=0.0)
-        elapsed = max(moment.elapsed_s, latest)
+        latest = self.latest_elapsed_s()
+        timed = timed and not self._twice(row.kind, moment)
+        quiet = row.kind in QUIET_KINDS and not row.note.startswith(STEP_NOTE)
+        back = latest is not None and round(moment.elapsed_s, 3) < latest
         cells = {
-            "time": moment.time.isoformat(timespec="milliseconds"),
-            "elapsed_s": f"{elapsed:.3f}",
+            "time": moment.time.isoformat(timespec="milliseconds") if timed else "",
+            "elapsed_s": "" if quiet or back or not timed else f"{moment.elapsed_s:.3f}",
             "kind": str(row.kind),
             "value": row.value,
             "unit": row.unit,
@@ -248,13 +246,24 @@ class SessionDesk:
             "note": row.note,
         }
         try:
-            seq = append_row(self.path, self._fitting(cells), angle_unit=self.project.angle_unit)
+            seq = append_row(
+                self.path,
+                self._fitting(cells),
+                angle_unit=self.project.angle_unit,
+                also=moment_problems,
+            )
         finally:
             self._mark = self._file_mark()
         self._read_again(self.path)
-        if row.kind is not ReadingKind.STRIKE:
+        if row.kind not in QUIET_KINDS or row.note.startswith(STEP_NOTE):
             self._step = None
         return seq
+
+    def _twice(self, kind: ReadingKind, moment: Stamp) -> bool:
+        """Whether a turning point of this very moment stands in the book: not both are right."""
+        elapsed = round(moment.elapsed_s, 3)
+        turning = kind in (ReadingKind.REVERSAL, ReadingKind.SCALE_REVERSAL)
+        return turning and any(row.elapsed_s == elapsed for row in self.book.of_kind(kind))
 
     def _fitting(self, cells: dict[str, str]) -> dict[str, str]:
         """Cells without the moment where an older book has no column for it."""
@@ -278,12 +287,15 @@ class SessionDesk:
         """Strike a row; it stays in the book, and the next of its kind takes its place."""
         return self.record(NewRow(ReadingKind.STRIKE, value=str(seq), note=reason))
 
+    def unstrike(self, seq: int, reason: str) -> int:
+        """Take a strike back: the row counts again where it stands, and both stay in the book."""
+        return self.record(NewRow(ReadingKind.UNSTRIKE, value=str(seq), note=reason))
+
     def last_live(self) -> Reading | None:
         """The latest reading that counts: what undo strikes."""
         struck = set(self.book.struck)
-        quiet = (ReadingKind.STRIKE, ReadingKind.NOTE)
         for row in reversed(self.book.rows):
-            if row.kind not in quiet and row.seq not in struck:
+            if row.kind not in QUIET_KINDS and row.seq not in struck:
                 return row
         return None
 
@@ -306,6 +318,15 @@ class SessionDesk:
             return Aim(None, self.project.rule_book or "", unusable[0])
         book = self.project.rules
         return Aim(target_of(self.session, book), "" if book is None else book.id)
+
+    def half_swing_s(self) -> float | None:
+        """Half swing that the card tells for this method and latitude [s], None where it does not.
+
+        Computed once: card and position do not change while a session is observed.
+        """
+        if self._half_swing is None:
+            self._half_swing = (half_swing_of(self.project, self.session),)
+        return self._half_swing[0]
 
     def remaining_s(self, progress: Progress) -> float | None:
         """Seconds to the next passage or turning point; None where not known or long past."""
@@ -357,23 +378,6 @@ def orient_observed(project: Project) -> OrientationResult:
 
     found = oriented(project, all_if_none=False)
     return judged(found, software=api.SOFTWARE).result
-
-
-def write_record(folder: api.Folder) -> str:
-    """Write the record of a project as PDF to its results folder, and return the path.
-
-    Raises
-    ------
-    SurveyError
-        If the project cannot be used or the folder cannot be written to.
-    """
-    path = Path(folder) / "results"
-    try:
-        path.mkdir(exist_ok=True)
-    except OSError as error:
-        what = f"the record cannot be written ({error.strerror or error})"
-        raise SurveyError(Problem(what, str(path))) from None
-    return str(api.report(folder, path / "record.pdf").path)
 
 
 def unfinished_session(project: Project) -> str | None:

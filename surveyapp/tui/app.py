@@ -20,6 +20,7 @@ from surveyapp.observation import practice as api_practice
 from surveyapp.observation.practice import Practice
 from surveyapp.observation.session import SessionDesk
 from surveyapp.tui import texts
+from surveyapp.tui.entry_desk import Pending
 from surveyapp.tui.messages import ResultWanted, SessionLeft
 from surveyapp.tui.screens.help import HelpScreen
 from surveyapp.tui.screens.home import HomeScreen
@@ -70,7 +71,7 @@ class SurveyApp(App[int]):
         self.clocks = now, steady
         self.now, self.steady = now, steady
         self.practice = practice
-        self.drafts: dict[str, str] = {}
+        self.drafts: dict[str, Pending] = {}
         self.settings = read_settings()
 
     def on_mount(self) -> None:
@@ -135,7 +136,7 @@ class SurveyApp(App[int]):
         except SurveyError as error:
             self.notify(str(error), severity="error", markup=False)
             return
-        draft = self.drafts.pop(session, "")
+        draft = self.drafts.pop(session, None)
         self.push_screen(SessionScreen(observation, draft, self.practice))
 
     def on_project_screen_session_chosen(self, message: ProjectScreen.SessionChosen) -> None:
@@ -144,7 +145,7 @@ class SurveyApp(App[int]):
 
     async def on_session_left(self, message: SessionLeft) -> None:
         """Back to the project; what was half typed waits for the next opening."""
-        if message.draft:
+        if message.draft is not None:
             self.drafts[message.session] = message.draft
         await self.action_pop_screen()
         if isinstance(self.screen, ProjectScreen):

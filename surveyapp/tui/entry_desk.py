@@ -6,15 +6,16 @@ computes nothing.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from surveyapp.core.observing.doubts import Question
 from surveyapp.core.observing.progress import Progress
 from surveyapp.core.observing.steps import BEFORE, Expected, Step, kinds_of, steps_of
 from surveyapp.core.observing.typed_rows import EntryError
-from surveyapp.domain.readings import QUANTITY, Dimension, Face, Reading, ReadingKind
+from surveyapp.domain.readings import QUANTITY, QUIET_KINDS, Dimension, Face, Reading, ReadingKind
 from surveyapp.errors import SurveyError
 from surveyapp.io.fieldbook.clock import NOTICED_S, Stamp
+from surveyapp.io.fieldbook.problems import read_only_problem
 from surveyapp.observation.entry import (
     Understood,
     expected,
@@ -32,6 +33,25 @@ class NotWrittenError(Exception):
     """A reading that was not written; the text says why and what to do."""
 
 
+@dataclass(frozen=True, slots=True)
+class Pending:
+    """A text that stands in the line: what it was typed for, and when.
+
+    Parameters
+    ----------
+    text : str
+    step : Step
+    kind : ReadingKind
+    stamp : Stamp
+        When its first character was typed.
+    """
+
+    text: str
+    step: Step
+    kind: ReadingKind
+    stamp: Stamp
+
+
 class Desk:
     """One observation and the choices of the surveyor.
 
@@ -46,7 +66,9 @@ class Desk:
         self.kind: ReadingKind | None = None
         self.face: Face | None = None
         self.target: str | None = None
-        self.stamp: Stamp | None = None
+        self.pending: Pending | None = None
+        self.tried = False
+        self.timed = True
         self.asked: str | None = None
         self.clock_off_s = -observation.clock.set_back_s
 
@@ -106,12 +128,9 @@ class Desk:
 
     def typing(self, text: str) -> str:
         """Stamp the beginning of an entry, and say how the text is understood so far."""
-        if not text:
-            self.stamp = None
-            self.asked = None
+        self._keep_pending(text)
+        if not text or self._strayed():
             return ""
-        if self.stamp is None:
-            self.stamp = self.observation.clock.stamp()
         if text != self.asked:
             self.asked = None
         try:
@@ -122,15 +141,81 @@ class Desk:
         pattern = texts.UNDERSTOOD_COMPLETED if found.completed else texts.UNDERSTOOD
         return pattern.format(value=value)
 
+    def _keep_pending(self, text: str) -> None:
+        """A text keeps the moment and the kind of its first character until it is changed.
+
+        Typing on and taking back are the same text; a text that Enter did not write, or that is
+        replaced, is another one as soon as it is changed.
+        """
+        was = self.pending
+        if not text:
+            self.pending = self.asked = None
+            self.tried = False
+            return
+        if was is not None and text == was.text:
+            return
+        grown = was is not None and (text.startswith(was.text) or was.text.startswith(text))
+        if was is None or self.tried or not grown:
+            self.tried = False
+            stamp = self.observation.clock.stamp()
+            self.pending = Pending(text, self.step, self.what().kind, stamp)
+        else:
+            self.pending = replace(was, text=text)
+
+    def take_up(self, draft: Pending) -> None:
+        """Go on with a text that was left half typed."""
+        self.pending = draft
+        self.tried = True
+
+    def _strayed(self) -> bool:
+        """Whether the text in the line was typed for something else than is asked for now."""
+        was = self.pending
+        return was is not None and (was.step, was.kind) != (self.step, self.what().kind)
+
+    def obstacle(self, key: str) -> str:
+        """Why a key does nothing while a text stands in the line, and what helps."""
+        was = self.pending
+        if was is None:
+            return ""
+        reason = ""
+        try:
+            self._check_place()
+            self._understand(was.text)
+        except (NotWrittenError, EntryError) as error:
+            reason = str(error).removeprefix(texts.NOT_WRITTEN_YET)
+        pattern = texts.PENDING_REFUSED if reason else texts.PENDING
+        kind = texts.KIND_NAMES[was.kind].split(",")[0]
+        return pattern.format(text=was.text, kind=kind, key=key, reason=reason)
+
+    def _check_place(self) -> None:
+        """Refuse a text where its kind is not taken, before it is understood."""
+        if not self.observation.writable:
+            problem = read_only_problem(self.observation.folder, closed=self.observation.closed)
+            raise NotWrittenError(problem_text(SurveyError(problem)))
+        was = self.pending
+        if was is not None and self._strayed():
+            kind = texts.KIND_NAMES[was.kind].split(",")[0]
+            now = texts.KIND_NAMES[self.what().kind].split(",")[0]
+            raise NotWrittenError(texts.STRAYED.format(kind=kind, now=now))
+        if self.closed():
+            raise NotWrittenError(texts.CLOSED_REFUSED)
+
     def _understand(self, text: str) -> Understood:
-        stamp = self.stamp or self.observation.clock.stamp()
-        return understand(self.observation, text, self.what(), progress=self.progress, stamp=stamp)
+        stamp = self.pending.stamp if self.pending else self.observation.clock.stamp()
+        return understand(
+            self.observation,
+            text,
+            self.what(),
+            progress=self.progress,
+            stamp=stamp,
+            timed=self.timed,
+        )
 
     def value_text(self, found: Understood) -> str:
         """A reading as understood."""
         if QUANTITY[found.row.kind] is Dimension.ANGLE:
             shown = format_angle(found.value, self.unit)
-            moment = f"{found.stamp.time:%H:%M:%S}"
+            moment = f"{found.stamp.time:%H:%M:%S}" if found.timed else texts.NO_MOMENT
             return f"{shown}  {moment}"
         return f"{found.row.value or found.row.note} {found.row.unit}".strip()
 
@@ -147,8 +232,9 @@ class Desk:
         NotWrittenError
             If nothing was written; the text stays typed.
         """
-        if self.closed():
-            raise NotWrittenError(texts.CLOSED_BEFORE)
+        self._keep_pending(text)
+        self.tried = True
+        self._check_place()
         try:
             found = self._understand(text)
         except EntryError as error:
@@ -158,10 +244,12 @@ class Desk:
             self.asked = text
             question = " ".join(question_text(item) for item in found.questions)
             raise NotWrittenError(texts.ASK_AGAIN.format(question=question))
-        seq = self.write(found.row, found.stamp)
+        seq = self.write(found.row, found.stamp, timed=found.timed)
         kind = texts.KIND_NAMES[found.row.kind].split(",")[0]
         value = found.row.value or found.row.note
         told = texts.RECORDED.format(seq=seq, kind=kind, value=value)
+        if not found.timed and self.timed:
+            told += texts.RECORDED_UNTIMED
         return f"{told}{texts.STEP_COMPLETE if self.complete() else ''}"
 
     def clock_note(self) -> str:
@@ -178,13 +266,14 @@ class Desk:
             return False
         return any(s.step is self.step and s.complete for s in self.observation.steps())
 
-    def write(self, row: NewRow, stamp: Stamp | None = None) -> int:
+    def write(self, row: NewRow, stamp: Stamp | None = None, *, timed: bool = True) -> int:
         """Write one row; what was chosen for it is done with."""
         try:
-            seq = self.observation.record(row, stamp)
+            seq = self.observation.record(row, stamp, timed=timed)
         except SurveyError as error:
             raise NotWrittenError(problem_text(error)) from None
-        self.face = self.target = self.stamp = self.asked = None
+        self.face = self.target = self.pending = self.asked = None
+        self.tried = False
         if self.kind is not ReadingKind.TRANSIT:
             self.kind = None
         return seq
@@ -197,7 +286,8 @@ class Desk:
 
     def missed(self) -> str:
         """Note a turning point that was not read."""
-        return texts.MISSED_NOTED.format(seq=self.write(NewRow(ReadingKind.MISSED)))
+        seq = self.write(NewRow(ReadingKind.MISSED), timed=self.timed)
+        return texts.MISSED_NOTED.format(seq=seq)
 
     def strike(self, seq: int, reason: str) -> str:
         """Strike a row with a reason."""
@@ -206,6 +296,14 @@ class Desk:
         except SurveyError as error:
             raise NotWrittenError(problem_text(error)) from None
         return texts.STRUCK.format(seq=seq, reason=reason)
+
+    def unstrike(self, seq: int, reason: str) -> str:
+        """Take a strike back, with a reason."""
+        try:
+            self.observation.unstrike(seq, reason)
+        except SurveyError as error:
+            raise NotWrittenError(problem_text(error)) from None
+        return texts.UNSTRUCK.format(seq=seq, reason=reason)
 
     def undo(self) -> str:
         """Strike the latest reading that counts."""
@@ -256,13 +354,23 @@ class Desk:
     def strikable(self) -> tuple[Reading, ...]:
         """Rows that may be struck, the latest first."""
         struck = set(self.observation.book.struck)
-        quiet = (ReadingKind.STRIKE, ReadingKind.NOTE)
-        rows = self.observation.book.rows
-        return tuple(r for r in reversed(rows) if r.kind not in quiet and r.seq not in struck)
+        rows = [r for r in self.observation.book.rows if r.kind not in QUIET_KINDS]
+        return tuple(r for r in reversed(rows) if r.seq not in struck)
+
+    def struck(self) -> tuple[Reading, ...]:
+        """Struck rows whose strike may be taken back, the latest first."""
+        struck = set(self.observation.book.struck)
+        return tuple(r for r in reversed(self.observation.book.rows) if r.seq in struck)
 
 
 def question_text(item: Question) -> str:
     """A doubt in words."""
+    if item.unit:
+        return texts.QUESTIONS[item.doubt].format(
+            difference=_with_unit(item.difference, item.unit),
+            low="" if item.low is None else _with_unit(item.low, item.unit),
+            limit=_with_unit(item.limit, item.unit),
+        )
     if item.scale:
         return texts.QUESTIONS[item.doubt].format(
             difference=texts.DIVISIONS.format(value=number_text(item.difference, 2, sign=True)),
@@ -271,6 +379,12 @@ def question_text(item: Question) -> str:
     return texts.QUESTIONS[item.doubt].format(
         difference=small_text(item.difference), limit=small_text(item.limit).lstrip("+")
     )
+
+
+def _with_unit(value: float, unit: str) -> str:
+    names = {"C": "°C", "deg": "°", "arcsec": '"'}
+    gap = "" if unit in ("deg", "arcsec") else " "
+    return f"{value:.10g}{gap}{names.get(unit, unit)}" if unit != "s" else f"{value:.0f} s"
 
 
 def problem_text(error: SurveyError) -> str:

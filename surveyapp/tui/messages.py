@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from textual.message import Message
 
+from surveyapp.tui.entry_desk import Pending
+
 
 class SessionLeft(Message):
     """A session is left; what was half typed goes with it."""
 
-    def __init__(self, session: str, draft: str) -> None:
+    def __init__(self, session: str, draft: Pending | None) -> None:
         super().__init__()
         self.session = session
         self.draft = draft

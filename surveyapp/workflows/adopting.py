@@ -183,15 +183,11 @@ def effect_table(item: Adoption, problem: Case, project: Project) -> dict[str, o
 
 
 def _sessions_of(problem: Case, project: Project) -> list[str]:
-    """Sessions whose data a problem is made of: a run itself, or those of a campaign by label."""
+    """Sessions whose data a case is made of: a run itself, or those of a campaign."""
     if problem.subject == "reversal_run":
         return [problem.identity]
-    labels = set(problem.labels)
-    return [
-        session.id
-        for session in project.sessions
-        if session.id in labels or any(label.startswith(f"{session.id} (") for label in labels)
-    ]
+    named = {member.id for member in problem.members}
+    return [session.id for session in project.sessions if session.id in named]
 
 
 def _need_writable(lock: ProjectLock, folder: Path) -> None:

@@ -21,6 +21,7 @@ from surveyapp.diagnosis.subjects.choice import (
 )
 from surveyapp.diagnosis.subjects.traverse import traverse as traverse_problem
 from surveyapp.domain.project import Project
+from surveyapp.domain.subject import SubjectKeyword
 from surveyapp.domain.traverse import Network
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp_models.effects.effect import Effect
@@ -30,38 +31,38 @@ Networks = Callable[[str], Network]
 
 
 @dataclass(frozen=True, slots=True)
-class Subject:
+class Diagnosable:
     """Something in a project that can be diagnosed.
 
     Parameters
     ----------
-    option : str
-        ``--session``, ``--campaign`` or ``--traverse``.
+    keyword : str
+        ``session``, ``campaign`` or ``traverse``: under which ``diagnose`` takes its id.
     id : str
     observations : int
     """
 
-    option: str
+    keyword: SubjectKeyword
     id: str
     observations: int
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""
-        return {"option": self.option, "id": self.id, "observations": self.observations}
+        return {"option": f"--{self.keyword}", "id": self.id, "observations": self.observations}
 
 
-def subjects_of(project: Project) -> tuple[Subject, ...]:
+def subjects_of(project: Project) -> tuple[Diagnosable, ...]:
     """Everything in a project that can be diagnosed by itself."""
     found = [
-        Subject("--session", session.id, len(session.book.live))
+        Diagnosable("session", session.id, len(session.book.live))
         for session in project.sessions
         if is_run(session)
     ]
     for instrument in project.instruments:
         count = sum(session.instrument == instrument.id for session in project.sessions)
         if count >= LEAST_CAMPAIGN:
-            found.append(Subject("--campaign", instrument.id, count))
-    found += [Subject("--traverse", item.name, len(item.rows)) for item in project.traverses]
+            found.append(Diagnosable("campaign", instrument.id, count))
+    found += [Diagnosable("traverse", item.name, len(item.rows)) for item in project.traverses]
     return tuple(found)
 
 
@@ -98,7 +99,7 @@ class Chosen:
 
     problem: Case | None
     confirm: Case | None = None
-    subjects: tuple[Subject, ...] = ()
+    subjects: tuple[Diagnosable, ...] = ()
 
 
 def choose(orientation: Orientation, request: Request, networks: Networks | None = None) -> Chosen:
@@ -111,18 +112,18 @@ def choose(orientation: Orientation, request: Request, networks: Networks | None
         only = subjects[0]
         request = replace(
             request,
-            session=only.id if only.option == "--session" else None,
-            campaign=only.id if only.option == "--campaign" else None,
-            traverse=only.id if only.option == "--traverse" else None,
+            session=only.id if only.keyword == "session" else None,
+            campaign=only.id if only.keyword == "campaign" else None,
+            traverse=only.id if only.keyword == "traverse" else None,
         )
     if request.subjects > 1:
-        found = "several of --session, --campaign and --traverse"
+        found = "several of session, campaign and traverse"
         raise SurveyError(Problem("one subject at a time", "diagnose", found, "one"))
     if request.traverse is not None:
         return _chosen_traverse(project, request, networks)
     if request.campaign is not None:
         names = [instrument.id for instrument in project.instruments]
-        _require(request.campaign, names, "--campaign", "instrument")
+        _require(request.campaign, names, "campaign", "instrument")
         return Chosen(
             *campaign_problem(
                 orientation,
@@ -131,10 +132,10 @@ def choose(orientation: Orientation, request: Request, networks: Networks | None
                 confirm_from=request.confirm,
             )
         )
-    problem = _run(orientation, request.session or "", "--session", request.effects)
+    problem = _run(orientation, request.session or "", "session", request.effects)
     if request.confirm is None:
         return Chosen(problem)
-    return Chosen(problem, _run(orientation, request.confirm, "--confirm", request.effects))
+    return Chosen(problem, _run(orientation, request.confirm, "confirm", request.effects))
 
 
 def _chosen_traverse(project: Project, request: Request, networks: Networks | None) -> Chosen:
@@ -151,10 +152,10 @@ def _chosen_traverse(project: Project, request: Request, networks: Networks | No
             extra=request.effects,
         )
 
-    first = problem(request.traverse or "", "--traverse")
+    first = problem(request.traverse or "", "traverse")
     if request.confirm is None:
         return Chosen(first)
-    return Chosen(first, problem(request.confirm, "--confirm"))
+    return Chosen(first, problem(request.confirm, "confirm"))
 
 
 def _run(orientation: Orientation, identity: str, option: str, effects: tuple[Effect, ...]) -> Case:

@@ -28,7 +28,7 @@ from surveyapp.workflows.adopting import (
     record,
     tables_to_adopt,
 )
-from surveyapp.workflows.choosing import Networks, Request, Subject, choose
+from surveyapp.workflows.choosing import Diagnosable, Networks, Request, choose
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,7 @@ class Diagnosed:
     ----------
     diagnosis : Diagnosis or None
         None where a subject must be chosen first.
-    subjects : tuple of Subject
+    subjects : tuple of Diagnosable
     written : tuple of str
         Where adopted effects were written.
     not_written : tuple of NotWritten
@@ -52,7 +52,7 @@ class Diagnosed:
     """
 
     diagnosis: Diagnosis | None
-    subjects: tuple[Subject, ...] = ()
+    subjects: tuple[Diagnosable, ...] = ()
     written: tuple[str, ...] = ()
     not_written: tuple[NotWritten, ...] = ()
     words: tuple[str, ...] = ()
@@ -146,18 +146,18 @@ NO_SUBJECTS = (
 )
 
 
-def _no_one_subject(subjects: Sequence[Subject]) -> Problem:
+def _no_one_subject(subjects: Sequence[Diagnosable]) -> Problem:
     if not subjects:
         return Problem(
             "there is nothing to diagnose, and so nothing to adopt",
-            "diagnose --adopt",
+            "diagnose, adopt",
             "no subject",
             "a session with turning points, an instrument with three sessions, or a traverse",
         )
     return Problem(
         "adopting needs one subject",
-        "diagnose --adopt",
-        "no --session or --campaign",
+        "diagnose, adopt",
+        "no session, campaign or traverse",
         "one subject",
         "Name it.",
     )
@@ -167,8 +167,8 @@ def _refuse_adoption(identity: str) -> None:
     raise SurveyError(
         Problem(
             "an effect of a traverse is mended at its source, not adopted",
-            f"diagnose --adopt, {identity}",
-            "--adopt with --traverse",
+            f"diagnose, adopt, {identity}",
+            "adopting for a traverse",
             "a corrected book, constant or setting",
             "Follow the remedy, enter the corrected values, adjust and diagnose again.",
         )

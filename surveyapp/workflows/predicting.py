@@ -19,23 +19,31 @@ from surveyapp.core.penetration.refusals import (
     refusals,
 )
 from surveyapp.core.penetration.rows import RowKind
-from surveyapp.domain.penetration import Penetration
+from surveyapp.domain.penetration import Heading, Penetration
 from surveyapp.domain.project import Project, ResultWarning, Station
 from surveyapp.domain.results import OrientationResult
 from surveyapp.domain.rulebook import RuleBook
+from surveyapp.domain.shaft_result import ShaftOrientation
 from surveyapp.domain.traverse_book import Traverse
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.penetration.measured import header_sigmas, measured_rows
 from surveyapp.io.penetration.table import read_penetration
+from surveyapp.io.shafts.table import shaft_tables
 from surveyapp.io.tables import Findings, Table
+from surveyapp.workflows.plumbing import orient_shafts
 
 
 @dataclass(frozen=True, slots=True)
 class ReadyMine:
-    """A mine ready for prediction, with its rule book and what its reader must know."""
+    """A mine ready for prediction, with its rule book and what its reader must know.
+
+    ``defaults`` holds the instrument and the sigma [rad] of a further gyro side in a heading that
+    has none.
+    """
 
     mine: Mine
     rule_book: RuleBook | None
+    defaults: dict[str, tuple[str, float]]
     warnings: tuple[ResultWarning, ...]
 
 
@@ -97,17 +105,21 @@ def ready_mine(
     plan = penetration_plan(project, gathered.findings)
     stations = {station.name: station for station in project.stations}
     plan = _with_latitude(project, plan, stations)
+    plan, fed = _with_shafts(project, plan, gathered.findings)
     headers = {item.name: item for item in project.traverses}
     lost = _measure(gathered, plan, headers, orientation)
-    constants, unknown = _constants(project, plan, gathered.measured, orientation)
+    defaults = _defaults(project, plan)
+    used = _used(plan, gathered.measured, defaults)
+    constants, unknown = _constants(project, used, orientation)
     problems = gathered.findings.problems
     problems += refusals(plan, _known(project, plan, headers, gathered.measured))
     problems += _angle_problems(plan, gathered.measured)
     problems += _plan_problems(plan, gathered.measured, plan_sides)
     gathered.findings.raise_if_any()
     mine = build_mine(plan, stations, constants, gathered.measured)
-    warnings = (*project.warnings, *gathered.findings.warnings, *unknown, *lost)
-    return ReadyMine(mine, project.rules, (*warnings, *carried(plan, stations)))
+    warnings = (*project.warnings, *gathered.findings.warnings, *unknown, *lost, *fed)
+    warnings = (*warnings, *carried(plan, stations))
+    return ReadyMine(mine, project.rules, defaults, warnings)
 
 
 def _measure(
@@ -147,27 +159,24 @@ def _measure(
 
 
 def _constants(
-    project: Project,
-    plan: Penetration,
-    measured: Mapping[str, MeasuredRows],
-    orientation: OrientationResult | None,
+    project: Project, used: Mapping[str, bool], orientation: OrientationResult | None
 ) -> tuple[dict[str, float], list[ResultWarning]]:
-    """Sigma of the constant of every gyro in use [rad]: calibrations win over what is known."""
-    used = [side.instrument for side in plan.gyro]
-    for rows in measured.values():
-        used += [row.instrument for row in rows.rows if row.kind is RowKind.GYRO]
+    """Sigma of the constant of every gyro [rad]: calibrations win over what is known.
+
+    ``used`` tells whether a gyro observes already; one that only may be planned is not warned of.
+    """
     calibrated = {} if orientation is None else {c.instrument: c for c in orientation.constants}
     known = {item.id: item for item in project.instruments}
     found: dict[str, float] = {}
     warnings = []
-    for name in dict.fromkeys(used):
+    for name, observes in used.items():
         if name not in known:
             continue
         result, stated = calibrated.get(name), known[name].known_constant
         sigma = None if result is None or result.value is None else result.sigma
         if sigma is None or not math.isfinite(sigma):
             sigma = None if stated is None else stated[1]
-        if sigma is None:
+        if sigma is None and observes:
             text = (
                 f"instrument {name}: no constant is known, so its shared error counts as 0; "
                 "calibrate it, or give constant = { arcsec, sigma_arcsec }"
@@ -175,6 +184,37 @@ def _constants(
             warnings.append(ResultWarning("constant_sigma_unknown", text))
         found[name] = sigma or 0.0
     return found, warnings
+
+
+def _used(
+    plan: Penetration,
+    measured: Mapping[str, MeasuredRows],
+    defaults: Mapping[str, tuple[str, float]],
+) -> dict[str, bool]:
+    """Gyros of the mine, and whether they observe already or may only be planned."""
+    used = [side.instrument for side in plan.gyro]
+    for rows in measured.values():
+        used += [row.instrument for row in rows.rows if row.kind is RowKind.GYRO]
+    planned = [name for name, _ in defaults.values()]
+    return {**dict.fromkeys(planned, False), **dict.fromkeys(used, True)}
+
+
+def _defaults(project: Project, plan: Penetration) -> dict[str, tuple[str, float]]:
+    """Instrument and sigma of a further side in each heading: its first one, else the card's."""
+    found: dict[str, tuple[str, float]] = {}
+    cards = {item.id: item.card.sigma.azimuth for item in project.instruments}
+    for heading in plan.headings:
+        sides = {frozenset(side) for side in heading.sides}
+        own = [side for side in plan.gyro if frozenset((side.at, side.to)) in sides]
+        if own:
+            found[heading.name] = (own[0].instrument, own[0].sigma)
+            continue
+        # a heading without a gyro takes the one that the mine uses elsewhere, else any with a card
+        names = [*(side.instrument for side in plan.gyro), *cards]
+        sigma = next(((n, s) for n in names if (s := cards.get(n)) is not None), None)
+        if sigma is not None:
+            found[heading.name] = sigma
+    return found
 
 
 def _known(
@@ -243,11 +283,50 @@ def _plan_problems(
     return [
         Problem(
             "more gyro sides are asked for than sides are free" if sides > 0 else "no sides asked",
-            "--plan",
+            "plan",
             str(sides),
             f"1 to {free}",
         )
     ]
+
+
+def _with_shafts(
+    project: Project, plan: Penetration, findings: Findings
+) -> tuple[Penetration, list[ResultWarning]]:
+    """Starts of headings from the shafts through which they begin: azimuth and depth."""
+    named = {heading.shaft for heading in plan.headings if heading.shaft}
+    if not named or not shaft_tables(project):
+        return plan, []
+    try:
+        shafts = {item.id: item for item in orient_shafts(project, software="").shafts}
+    except SurveyError as refused:
+        findings.absorb(refused)
+        return plan, []
+    headings, warnings = [], []
+    for heading in plan.headings:
+        shaft = shafts.get(heading.shaft)
+        if shaft is not None:
+            heading, told = _fed(heading, shaft)
+            warnings += told
+        headings.append(heading)
+    return replace(plan, headings=tuple(headings)), warnings
+
+
+def _fed(heading: Heading, shaft: ShaftOrientation) -> tuple[Heading, list[ResultWarning]]:
+    """A heading with the start that its shaft gives; what the project states wins."""
+    if heading.height_transfer_m is None:
+        heading = replace(heading, height_transfer_m=shaft.depth.m)
+    if heading.start.azimuth_sigma is not None:
+        return heading, []
+    where = f"heading {heading.name}, shaft {shaft.id}"
+    if shaft.combined.azimuth is None:
+        text = f"{where}: wires and gyro contradict each other, no start azimuth is taken from them"
+        return heading, [ResultWarning("shaft_contradicts", text)]
+    if heading.sides and set(heading.sides[0]) != {shaft.at, shaft.to}:
+        text = f"{where}: it orients {shaft.at}-{shaft.to}, which is not the first side"
+        return heading, [ResultWarning("shaft_side_not_first", text)]
+    start = replace(heading.start, azimuth_sigma=shaft.combined.azimuth.sigma)
+    return replace(heading, start=start), []
 
 
 def _with_latitude(

@@ -237,7 +237,12 @@ def test_good_project_is_good(tmp_path: Path) -> None:
         (["orient", "DIR", "--session", "rum"], "--session", "rum", "Did you mean run"),
         (["orient", "DIR", "--line", "A-C"], "--line", "A-C", "Did you mean A-B"),
         (["orient", "DIR", "--estimator", "shuler"], "--estimator", "shuler", "mean schuler"),
-        (["orient", "DIR", "--estimator", "transit"], "session run", "transit", "--session"),
+        (
+            ["orient", "DIR", "--estimator", "transit"],
+            "session run",
+            "transit",
+            "one session alone",
+        ),
         (["orient", "DIR", "--sesion", "run"], "surveyapp orient", "--sesion", "mean --session"),
         (["orient", "DIR", "more"], "surveyapp orient", "more", ""),
         (["orient"], "surveyapp orient", "", "--help"),

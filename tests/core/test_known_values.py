@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from surveyapp.core.network.approximate import _three_spheres
+from surveyapp.core.network.spheres import three_spheres
 from surveyapp.core.observing.by_method import progress_of
 from surveyapp.core.swing.card_physics import card_at
 from surveyapp.core.swing.clamped import circle_resolution
@@ -121,11 +121,15 @@ def test_one_clamp_reading_is_as_fine_as_its_last_digit(
 def test_three_distances_place_a_point_above_and_a_fourth_decides(height: float) -> None:
     truth = np.array([3.0, 2.0, height])
     centres = np.array([[0.0, 0, 0], [10, 0, 0], [0, 10, 0]])
-    three = _three_spheres(centres, np.linalg.norm(centres - truth, axis=1))
-    assert three == pytest.approx([3.0, 2.0, 4.0], abs=1e-9)
+    three = three_spheres(centres, np.linalg.norm(centres - truth, axis=1))
+    assert three is not None
+    assert three[0] == pytest.approx([3.0, 2.0, 4.0], abs=1e-9)
+    assert three[1] == pytest.approx([3.0, 2.0, -4.0], abs=1e-9)
     four = np.vstack([centres, [5.0, 5.0, 1.0]])
-    found = _three_spheres(four, np.linalg.norm(four - truth, axis=1))
-    assert found == pytest.approx(truth, abs=1e-9)
+    found = three_spheres(four, np.linalg.norm(four - truth, axis=1))
+    assert found is not None
+    assert found[0] == pytest.approx(truth, abs=1e-9)
+    assert found[1] is None
 
 
 def test_blocks_share_each_stretch_in_equal_times() -> None:

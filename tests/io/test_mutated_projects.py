@@ -63,6 +63,8 @@ deflection = { xi_arcsec = 1.0, eta_arcsec = 2.0 }
 name = "B"
 e = 1.0
 n = 2.0
+[[station]]
+name = "C"
 [[orientation]]
 id = "r"
 station = "A"
@@ -84,10 +86,10 @@ file = "r.csv"
 """
 TRAVERSE = """\
 kind,at,from,to,value,unit,sigma,sigma_unit,set,hi,ht,note
-angle,A,B,B,90-00-00,dms,7,arcsec,1,,,
+angle,A,C,B,90-00-00,dms,7,arcsec,1,,,
 distance,A,,B,100.0,,2+2,mm+ppm,,,,
 zenith,A,,B,91-00-00,,10,arcsec,,1.5,1.6,steep
-gyro,A,,B,,,,,,,,
+azimuth,A,,B,45-00-00,,10,arcsec,,,,
 """
 CARD = """\
 id = "own"

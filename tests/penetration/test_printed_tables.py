@@ -151,9 +151,13 @@ def test_budget_adds_in_squares() -> None:
 
 
 @pytest.mark.parametrize(
-    ("first", "lever_km2", "printed"), [(20.0, 2950.0, 0.1387), (5.0, 353.0, 0.0010)]
+    ("angle", "levers", "printed"), [(20.0, 2950e4, 0.1387), (5.0, 353e4, 0.0010)]
 )
-def test_soviet_instruction_1985(first: float, lever_km2: float, printed: float) -> None:
-    """Appendix 29: m^2/rho^2 times the sum of squared levers, halved by two surveys."""
-    variance = (first * ARCSEC) ** 2 * lever_km2 * 1e4 / 2.0
-    assert variance == pytest.approx(printed, abs=0.5e-4)
+def test_soviet_instruction_1985(angle: float, levers: float, printed: float) -> None:
+    """Appendix 29: m^2/rho^2 times the sum of the squared levers, halved by two surveys.
+
+    A drive of 20 sides of 100 m has 2470e4 m^2; its angles are scaled to the printed sum.
+    """
+    mine = straight(20, (), angle=angle, surveys=2, start=HeadingStart(0.0))
+    (part,) = [p for p in contributions(mine) if p.source == "angles"]
+    assert part.sigmas[0] ** 2 * levers / 2470e4 == pytest.approx(printed, abs=0.5e-4)

@@ -23,8 +23,12 @@ EXPECTED = {
     "gyromat-5000",
     "hgg05",
     "er-gt-02",
+    "sokkia-gp3130r3",
+    "gyromax-ak-2m",
+    "gyro-x-ii",
+    "gat-05",
 }
-# One azimuth [arcsec] as the sources print it: 1 c, 80 cc, 0.8 mgon, 3.6", 5".
+# One azimuth [arcsec] as the sources print it: 1 c, 80 cc, 0.8 mgon, 3.6", 5", 20".
 AZIMUTH = {
     "wild-gak1": 32.4,
     "fennel-kt1": 80 * 0.324,
@@ -33,6 +37,7 @@ AZIMUTH = {
     "gyromat-5000": 0.8 * 3.24,
     "er-gt-02": 3.6,
     "hgg05": 5.0,
+    "sokkia-gp3130r3": 20.0,
 }
 
 

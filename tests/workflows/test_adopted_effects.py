@@ -113,10 +113,12 @@ def test_pooled_and_known_constants_are_those_at_the_reference(
     project = api.open_project(folder)
     (effect,) = project.instruments[0].effects
     assert effect.reference == (("temperature_c", 12.0),)  # reference_temperature_c of the sessions
+    edit(folder, lambda text: text.replace("serial =", 'constant_choice = "pooled"\nserial =', 1))
     pooled = api.orient(folder).constants[0]
     assert pooled.value is not None
     pooled_line = azimuths(folder)["later-01"]
     value = math.degrees(pooled.value) * 3600.0
+    edit(folder, lambda text: text.replace('constant_choice = "pooled"\n', "", 1))
     edit(folder, with_known_constant)
     edit(folder, lambda text: text.replace("arcsec = 40.0", f"arcsec = {value!r}"))
     assert azimuths(folder)["later-01"] == pytest.approx(pooled_line, abs=1e-5)

@@ -188,6 +188,9 @@ class Effect:
     reference : callable or None
         State at which an adopted effect corrects nothing and to which it reduces everything else;
         None = where the basis is zero, and then each row of the basis depends on itself alone.
+    event : bool
+        Whether it happens once (a step, a slip): it does not recur in a second record, has no
+        coefficient that records share, and is not pooled.
     """
 
     id: str
@@ -210,6 +213,7 @@ class Effect:
     at_datum: DatumRows | None = None
     midpoint: Basis | None = None
     reference: ReferenceState | None = None
+    event: bool = False
 
     def __post_init__(self) -> None:
         if self.law is not None and len(self.coefficients) != 1:

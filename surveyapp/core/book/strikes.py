@@ -18,6 +18,7 @@ from surveyapp.errors import Problem
 _PLACED: Final = frozenset({ReadingKind.BACKSIGHT, ReadingKind.ZENITH, ReadingKind.TAPE_ZERO})
 _WINDOW: Final = 60
 """Rows before the struck one and after the candidate that are looked at to see left and right."""
+_STRIKING: Final = frozenset({ReadingKind.STRIKE, ReadingKind.UNSTRIKE})
 _SWING_TURNS: Final = frozenset({ReadingKind.REVERSAL, ReadingKind.SCALE_REVERSAL})
 
 
@@ -30,25 +31,34 @@ class Struck:
 
 
 def find_strikes(rows: Sequence[Reading], where: str) -> tuple[list[Struck], list[Problem]]:
-    """Match every strike with its row, in the order of the book."""
+    """Match every strike that is in force with its row, in the order of the book.
+
+    An ``unstrike`` names a struck row and ends its strike: the row counts again where it stands.
+    """
     position = {row.seq: index for index, row in reversed(list(enumerate(rows)))}
     found: dict[int, Struck] = {}
     problems = []
     for index, row in enumerate(rows):
-        if row.kind is not ReadingKind.STRIKE or row.strikes is None:
+        if row.kind not in _STRIKING or row.strikes is None:
             continue
         struck = position.get(row.strikes)
+        back = row.kind is ReadingKind.UNSTRIKE
         what = ""
         if struck is None or struck >= index:
             what = "a strike names a row that does not stand above it"
-        elif rows[struck].kind is ReadingKind.STRIKE:
-            what = "a strike cannot be struck"
-        elif struck in found:
+        elif rows[struck].kind in _STRIKING:
+            what = "a strike cannot be struck; an unstrike with the seq of the struck row ends it"
+        elif back and struck not in found:
+            what = "the row is not struck: there is no strike to take back"
+        elif struck in found and not back:
             what = "the row is struck already"
         if struck is None or what:
             place = f"{where}, line {row.line} (seq {row.seq})"
-            expected = "the seq of an earlier row that still counts"
+            counts = "is struck" if back else "still counts"
+            expected = f"the seq of an earlier row that {counts}"
             problems.append(Problem(what, place, row.text, expected))
+        elif back:
+            del found[struck]
         else:
             found[struck] = Struck(struck, index)
     return list(found.values()), problems
@@ -164,11 +174,21 @@ class _Book:
             return False
         if struck.target and heir.target and struck.target != heir.target:
             return False
+        if struck.kind is ReadingKind.TRANSIT and self._timed_behind(strike, index):
+            return False
         if struck.kind not in _PLACED:
             return True
         if struck.face is not None and heir.face is not None and struck.face is not heir.face:
             return False
         return self.section(strike.row) == self.section(index)
+
+    def _timed_behind(self, strike: Struck, index: int) -> bool:
+        """Whether a passage was timed after another that counts below the struck one."""
+        heir = self.rows[index]
+        return any(
+            row.kind is ReadingKind.TRANSIT and i not in self.by_row and _later(heir, row)
+            for i, row in enumerate(self.rows[strike.row + 1 : index], start=strike.row + 1)
+        )
 
     def _contradicts(self, strike: Struck, index: int) -> bool:
         """Whether the turning points alternate with the struck row missed, but not replaced."""
@@ -209,11 +229,34 @@ class _Book:
         """Rows that count, by place."""
         placed: list[tuple[int, Reading]] = []
         for index, row in enumerate(self.rows):
-            if row.kind is ReadingKind.STRIKE:
+            if row.kind in _STRIKING:
                 continue
             if index not in self.by_row:
                 placed.append((self.place(index), row))
             elif row.kind in TURNING_KINDS and index not in self.heirs:
                 missed = replace(row, kind=ReadingKind.MISSED, value=None)
                 placed.append((self.place(index), missed))
-        return tuple(row for _, row in sorted(placed, key=lambda item: item[0]))
+        ordered = [row for _, row in sorted(placed, key=lambda item: item[0])]
+        return tuple(_without_late_moments(ordered))
+
+
+def _later(row: Reading, other: Reading) -> bool:
+    """Whether a row was read after another, as far as both have a moment."""
+    if row.elapsed_s is not None and other.elapsed_s is not None:
+        return row.elapsed_s > other.elapsed_s
+    return row.time is not None and other.time is not None and row.time > other.time
+
+
+def _without_late_moments(rows: Sequence[Reading]) -> list[Reading]:
+    """A turning point typed anew behind later ones has no moment: it was read before that."""
+    kept = list(rows)
+    following: Reading | None = None
+    for index in range(len(kept) - 1, -1, -1):
+        row = kept[index]
+        if row.kind not in _SWING_TURNS:
+            continue
+        if following is not None and row.seq > following.seq and _later(row, following):
+            kept[index] = replace(row, time=None, elapsed_s=None)
+        else:
+            following = row
+    return kept

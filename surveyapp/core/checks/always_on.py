@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from surveyapp.core.checks.coordinate_checks import coordinate_checks
 from surveyapp.core.checks.grid_checks import grid_checks
+from surveyapp.core.checks.session_blunders import session_blunder_checks
 from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.domain.results import Check
 
 
 def always_on_checks(orientation: Orientation) -> list[Check]:
     """All of them, for every project."""
-    return [*grid_checks(orientation)]
+    return [
+        *grid_checks(orientation),
+        *session_blunder_checks(orientation),
+        *coordinate_checks(orientation),
+    ]

@@ -23,6 +23,8 @@ from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, wrap_pi
 MAX_COLLIMATION: Final = math.radians(0.2)
 """No theodolite is as badly adjusted; a slip of one degree in one of four sights makes 0.25. A
 bound of reason: no source states one."""
+LARGEST_TWIST: Final = math.radians(1.0)
+"""No tripod turns further during one observation and is still read."""
 SHORTEST_LINE_M: Final = 1.0
 """Below it lies the shortest focusing distance: two stations at one place."""
 LARGEST_CONSTANT: Final = math.radians(1.0)
@@ -44,6 +46,7 @@ def refuse_wrong_faces(session: OrientationSession, sights: SightSet) -> None:
         If the collimation would be above ``MAX_COLLIMATION``.
     """
     if sights.collimation is None or abs(sights.collimation) <= MAX_COLLIMATION:
+        refuse_other_sights(session, sights)
         return
     apart = 180.0 - 2.0 * math.degrees(sights.collimation)
     raise SurveyError(
@@ -53,6 +56,33 @@ def refuse_wrong_faces(session: OrientationSession, sights: SightSet) -> None:
             found=f"{apart % 360.0:.4f} degrees apart",
             expected=f"180 degrees, within {2.0 * math.degrees(MAX_COLLIMATION):g}",
             hint="A face (L, R) or a reading is typed wrongly: strike it and enter it anew.",
+        )
+    )
+
+
+def refuse_other_sights(session: OrientationSession, sights: SightSet) -> None:
+    """Refuse sights of one target that cannot be of one direction.
+
+    Raises
+    ------
+    SurveyError
+        If sights of one face lie further apart than any pointing error, or if the sights before
+        and after do so by more than a tripod can turn.
+    """
+    turned = 0.0 if sights.drift is None else abs(sights.drift)
+    if sights.largest_residual <= MAX_COLLIMATION and turned <= LARGEST_TWIST:
+        return
+    apart = math.degrees(max(2.0 * sights.largest_residual, turned))
+    hint = "A reading is typed wrongly, or another target was sighted: strike it and enter it anew."
+    if not sights.faces_known:
+        hint = "Are they of two faces? Write L or R beside each sight. Else " + hint.lower()
+    raise SurveyError(
+        Problem(
+            what=f"the sights of {sights.target} do not belong to one direction",
+            where=f"session {session.id}, {session.book_path}",
+            found=f"{apart:.4f} degrees apart in one face",
+            expected=f"within {2.0 * math.degrees(MAX_COLLIMATION):g} degrees",
+            hint=hint,
         )
     )
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.core.statistics.distributions import normal_quantile
+from surveyapp.core.statistics.levels import LOUD
 from surveyapp.core.swing.card_physics import card_at
 from surveyapp.core.swing.session import ReducedSession
 from surveyapp.core.swing.sights import moments
@@ -33,7 +34,6 @@ SPIN_PER_PERIOD = 1.0 / 0.48
 """Relative change of the spin per relative change of T1 (physics.md 1.2)."""
 SUPPLY_LIMIT_PERCENT = 1.0
 """One per cent of spin moves T1 by 2 s of 425 s (physics.md 1.2)."""
-SIGNIFICANCE = 0.01
 LEAST_CLAMPINGS_APART = math.radians(5.0 / 60.0)
 """Nearer clampings say nothing of the torsion ratio."""
 
@@ -94,7 +94,7 @@ def _period_limit(item: ReducedSession, predicted: Estimate, expected: float) ->
         return PERIOD_LIMIT * expected
     rows = item.session.book.of_kind(ReadingKind.REVERSAL)
     own = _slope_sigma(rows)
-    quantile = normal_quantile(1.0 - 0.5 * SIGNIFICANCE)
+    quantile = normal_quantile(1.0 - 0.5 * LOUD)
     return quantile * math.hypot(predicted.sigma, own)
 
 
@@ -159,7 +159,7 @@ def _tilt_check(orientation: Orientation, item: ReducedSession) -> list[Check]:
         zero.before.weight_norm, zero.after.weight_norm
     )
     rest = measured - factor * tilt
-    limit = normal_quantile(1.0 - 0.5 * SIGNIFICANCE) * sigma
+    limit = normal_quantile(1.0 - 0.5 * LOUD) * sigma
     return [
         Check(
             rule="tape_zero.tilt",
@@ -235,7 +235,7 @@ def _clamping_checks(orientation: Orientation) -> list[Check]:
         except ValueError as error:
             text, value, limit, passed = str(error), None, None, False
         else:
-            quantile = normal_quantile(1.0 - 0.5 * SIGNIFICANCE)
+            quantile = normal_quantile(1.0 - 0.5 * LOUD)
             limit = quantile * math.hypot(found.sigma, here.sigma)
             value = abs(found.value - here.value)
             passed = value <= limit

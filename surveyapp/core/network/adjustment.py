@@ -13,12 +13,13 @@ import numpy as np
 
 from surveyapp.core.network import quality as q
 from surveyapp.core.network.angle_pairs import fold
-from surveyapp.core.network.approximate import approximate
 from surveyapp.core.network.closures import network_closures
 from surveyapp.core.network.collector import paused_collection
-from surveyapp.core.network.gaussnewton import Converged, NotConverged, iterate, refuse
+from surveyapp.core.network.gaussnewton import Converged
+from surveyapp.core.network.gross import without_gross
+from surveyapp.core.network.level_distances import with_level_distances
 from surveyapp.core.network.model import Model, compile_network
-from surveyapp.core.network.undetermined import refuse_undetermined
+from surveyapp.core.network.solving import mirror_warning, solutions
 from surveyapp.domain.adjustment import (
     AdjustedObservation,
     AdjustedPoint,
@@ -31,7 +32,6 @@ from surveyapp.domain.adjustment import (
 )
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network, Status
-from surveyapp.errors import SurveyError
 from surveyapp_models.arrays import Floats
 
 SOUND = 1e-3
@@ -64,108 +64,37 @@ def adjust(
         No datum, undetermined points (named), no approximate coordinates, no convergence.
     """
     with paused_collection():
+        network, projected = with_level_distances(network)
         model = compile_network(network)
-        state = solve_network(network, model)
-        warnings = list(network.warnings) + _skipped_warning(network, model)
-        outcome = _without_gross(network, model, state)
-        if outcome is not None:
-            model, state, dropped = outcome
-            warnings.append(dropped)
-        return _result(network, model, state, tuple(warnings), (family_level, relative))
+        found = solutions(network, model)
+        state = found.state
+        warnings = [*network.warnings, *_skipped_warning(network, model, projected)]
+        cleaned = without_gross(network, model, state)
+        if cleaned is None:
+            warnings += mirror_warning(network, found)
+            return _result(network, model, state, tuple(warnings), (family_level, relative))
+        warnings.append(cleaned.warning)
+        result = _result(
+            network, cleaned.model, cleaned.state, tuple(warnings), (family_level, relative)
+        )
+        rows = (*result.observations, *cleaned.rows)
+        return replace(result, observations=rows, left_out=cleaned.left_out)
 
 
-def solve_network(network: Network, model: Model) -> Converged:
-    """Iterate from the given, then if need be from freshly found approximate coordinates."""
-    names = tuple(point.name for point in network.points)
-    try:
-        state = iterate(model, approximate(network, model))
-    except NotConverged as failure:
-        try:
-            state = iterate(model, approximate(network, model, fresh=True))
-        except (NotConverged, SurveyError):
-            raise refuse(names, failure) from None
-    if len(state.solved.undetermined):
-        raise refuse_undetermined(network, state)
-    return state
-
-
-def _skipped_warning(network: Network, model: Model) -> list[ResultWarning]:
-    if not model.skipped:
+def _skipped_warning(
+    network: Network, model: Model, projected: frozenset[int]
+) -> list[ResultWarning]:
+    """Observations that could not be used; those that became horizontal distances were."""
+    skipped = [i for i in model.skipped if i not in projected]
+    if not skipped:
         return []
-    first = ", ".join(network.observations[i].where for i in model.skipped[:5])
-    more = f" and {len(model.skipped) - 5} more" if len(model.skipped) > 5 else ""
+    first = ", ".join(network.observations[i].where for i in skipped[:5])
+    more = f" and {len(skipped) - 5} more" if len(skipped) > 5 else ""
     text = (
-        f"{len(model.skipped)} observations touch a coordinate that is neither fixed nor adjusted "
+        f"{len(skipped)} observations touch a coordinate that is neither fixed nor adjusted "
         f"and were not used: {first}{more}"
     )
     return [ResultWarning("observations_not_used", text)]
-
-
-def _gross_misfit(network: Network, model: Model, state: Converged) -> Floats:
-    """Misclosure of each observation across its sight [m]; a constant has no sight."""
-    misfit = np.abs(state.misclosure)
-    points = state.values[: 3 * len(network.points)].reshape(-1, 3)[:, :2]
-    slots = model.slots[model.angular]
-    real = np.logical_and(slots >= 0, slots < model.coordinate_slots)
-    owner = np.where(real, slots, slots[:, :1]) // 3
-    owner = np.where(np.any(real, axis=1, keepdims=True), owner, 0)
-    reach = np.linalg.norm(points[owner] - points[owner[:, :1]], axis=2).max(axis=1)
-    misfit[model.angular] *= reach
-    return misfit
-
-
-def _without_gross(
-    network: Network, model: Model, state: Converged
-) -> tuple[Model, Converged, ResultWarning] | None:
-    """Leave out what misses by more than the stated tolerance, one worst at a time."""
-    if network.tolerance_m is None:
-        return None
-    names: list[str] = []
-    reduced = network
-    while True:
-        if float(np.abs(state.misclosure).max()) == 0.0:
-            break
-        misfit = _gross_misfit(reduced, model, state)
-        candidates = np.flatnonzero((misfit > network.tolerance_m) & (model.used >= 0))
-        if not len(candidates):
-            break
-        weighted = np.abs(state.misclosure[candidates]) / model.sigma[candidates]
-        worst = int(candidates[np.argmax(weighted)])
-        names.append(model.observations[worst].where)
-        reduced = without(reduced, {int(model.used[worst])})
-        model = compile_network(reduced)
-        state = solve_network(reduced, model)
-    if not names:
-        return None
-    text = (
-        f"{len(names)} observations miss by more than {network.tolerance_m:g} m and were left "
-        f"out: {'; '.join(names)}"
-    )
-    place = {id(obs): i for i, obs in enumerate(network.observations)}
-    used = np.array([place.get(id(obs), -1) for obs in model.observations], dtype=np.int64)
-    return replace(model, used=used), state, ResultWarning("gross_errors_left_out", text)
-
-
-def without(network: Network, places: set[int]) -> Network:
-    """The network without some observations, blocks reduced accordingly."""
-    keep = [i for i in range(len(network.observations)) if i not in places]
-    moved = {old: new for new, old in enumerate(keep)}
-    blocks = []
-    for block in network.blocks:
-        left = [i for i, member in enumerate(block.members) if member in moved]
-        if left:
-            blocks.append(
-                replace(
-                    block,
-                    members=tuple(moved[block.members[i]] for i in left),
-                    covariance=tuple(tuple(block.covariance[i][j] for j in left) for i in left),
-                )
-            )
-    return replace(
-        network,
-        observations=tuple(network.observations[i] for i in keep),
-        blocks=tuple(blocks),
-    )
 
 
 def _result(

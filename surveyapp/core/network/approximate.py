@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict, deque
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
 from surveyapp.core.network.linearise import azimuth
 from surveyapp.core.network.model import Model
-from surveyapp.core.network.sketch import Pencil, Positions, Sights, sketch_positions
+from surveyapp.core.network.sketch import Pencil, Positions, Sights, sketch_variants
+from surveyapp.core.network.spheres import on_spheres
 from surveyapp.domain.observations import Observation, ObservationKind
 from surveyapp.domain.traverse import Network, NetworkPoint, Status
 from surveyapp.errors import Problem, SurveyError
@@ -149,19 +150,20 @@ def _needs_plane(point: NetworkPoint) -> bool:
     )
 
 
-def _plane(network: Network, model: Model, *, fresh: bool) -> Positions:
+def _planes(network: Network, model: Model, *, fresh: bool) -> list[Positions]:
+    """Positions in the plane; several where points lie on either side of a line alike."""
     observed = _observed_coordinates(model.observations)
     known = _known_plane(network, observed, fresh=fresh)
     if all(point.name in known for point in network.points if _needs_plane(point)):
-        return known
+        return [known]
     distances = _horizontal(model.observations)
     heights = _heights(network, model, known, distances)
     _reduce_slopes(model.observations, heights, distances)
     sights = Sights(_pencils(network, model.observations), distances, _vectors(model.observations))
     used = {p.station for p in sights.pencils} | {t for p in sights.pencils for t in p.rays}
     used |= set(distances) | set(sights.vectors)
-    found = sketch_positions(sights, {name: at for name, at in known.items() if name in used})
-    return {**known, **found}
+    found = sketch_variants(sights, {name: at for name, at in known.items() if name in used})
+    return [{**known, **positions} for positions in found]
 
 
 def _reduce_slopes(
@@ -233,56 +235,6 @@ def _heights(
     return heights
 
 
-def _spheres(
-    network: Network, model: Model, plane: Positions, heights: dict[str, float]
-) -> tuple[Positions, dict[str, float]]:
-    """Place points that only slope distances reach, from at least three known points."""
-    reach: dict[str, dict[str, float]] = defaultdict(dict)
-    for obs in model.observations:
-        if obs.kind is K.SLOPE_DISTANCE:
-            reach[obs.at][obs.to] = obs.value
-            reach[obs.to][obs.at] = obs.value
-    plane, heights = dict(plane), dict(heights)
-    for _ in network.points:
-        placed = False
-        for point in network.points:
-            name = point.name
-            spatial = point.status_h in (Status.FREE, Status.CONSTRAINED)
-            if not spatial or (name in plane and name in heights):
-                continue
-            near = [o for o in reach.get(name, {}) if o in plane and o in heights]
-            fix = _three_spheres(
-                np.array([[plane[o].real, plane[o].imag, heights[o]] for o in near]),
-                np.array([reach[name][o] for o in near]),
-            )
-            if fix is not None:
-                plane.setdefault(name, complex(fix[0], fix[1]))
-                heights.setdefault(name, float(fix[2]))
-                placed = True
-        if not placed:
-            break
-    return plane, heights
-
-
-def _three_spheres(centres: Floats, radii: Floats) -> Floats | None:
-    """Point at the given distances from three or more points; of two, the better or the upper."""
-    if len(centres) < 3:
-        return None
-    base = centres[0]
-    gaps = centres[1:] - base
-    right = 0.5 * (radii[0] ** 2 - radii[1:] ** 2 + np.einsum("ni,ni->n", gaps, gaps))
-    _, singular, axes = np.linalg.svd(gaps)
-    if len(singular) < 2 or singular[1] < 1e-6 * singular[0]:
-        return None
-    flat = axes[:2]
-    foot = np.linalg.lstsq(gaps @ flat.T, right, rcond=None)[0] @ flat
-    up = axes[2] if axes[2][2] >= 0.0 else -axes[2]
-    rise = math.sqrt(max(radii[0] ** 2 - float(foot @ foot), 0.0))
-    choices = (base + foot + rise * up, base + foot - rise * up)
-    misfit = [float(np.abs(np.linalg.norm(c - centres, axis=1) - radii).sum()) for c in choices]
-    return np.asarray(choices[1] if misfit[1] < 0.5 * misfit[0] else choices[0])
-
-
 def _shared_values(model: Model, values: Floats, network: Network) -> None:
     """Orientations and constants from the positions, medians against gross errors; in place."""
     first = model.coordinate_slots
@@ -307,7 +259,12 @@ def _shared_values(model: Model, values: Floats, network: Network) -> None:
 
 
 def approximate(network: Network, model: Model, *, fresh: bool = False) -> Floats:
-    """Starting values of all slots.
+    """Starting values of all slots: the best of ``approximations``."""
+    return next(approximations(network, model, fresh=fresh))
+
+
+def approximations(network: Network, model: Model, *, fresh: bool = False) -> Iterator[Floats]:
+    """Starting values of all slots, the best fitting first.
 
     Parameters
     ----------
@@ -316,21 +273,31 @@ def approximate(network: Network, model: Model, *, fresh: bool = False) -> Float
     fresh : bool
         Ignore the given coordinates of free points: they proved too far off.
 
-    Returns
-    -------
+    Yields
+    ------
     float array
-        One value a slot; nan only where a slot is not used.
+        One value a slot; nan only where a slot is not used. Several where the observations so far
+        leave a point on either side of a line, or above and below three others.
 
     Raises
     ------
     SurveyError
         Naming the points that nothing leads to.
     """
-    plane = _plane(network, model, fresh=fresh)
-    distances = _horizontal(model.observations)
-    heights = _heights(network, model, plane, distances, fresh=fresh)
-    if any(kind is K.SLOPE_DISTANCE for kind, _ in model.by_kind):
-        plane, heights = _spheres(network, model, plane, heights)
+    spatial = any(kind is K.SLOPE_DISTANCE for kind, _ in model.by_kind)
+    for plane in _planes(network, model, fresh=fresh):
+        distances = _horizontal(model.observations)
+        heights = _heights(network, model, plane, distances, fresh=fresh)
+        for lower in (False, True):
+            places, levels, doubtful = plane, heights, False
+            if spatial:
+                places, levels, doubtful = on_spheres(network, model, plane, heights, lower=lower)
+            yield _values(network, model, places, levels)
+            if not doubtful:
+                break
+
+
+def _values(network: Network, model: Model, plane: Positions, heights: dict[str, float]) -> Floats:
     values = np.full(len(model.unknown_of) - 1, np.nan)
     for i, point in enumerate(network.points):
         at = plane.get(point.name)

@@ -28,6 +28,22 @@ def _own_sigma(line: LineResult) -> float:
     return math.sqrt(max(total.sigma**2 - line.constant_sigma**2, own**2))
 
 
+def _shared(lines: Sequence[LineResult]) -> dict[str, tuple[float, float]]:
+    """The constant that all lines of one name share: value of the surest, and its sigma.
+
+    Constants that are predicted for each line differ; the difference is part of the reduction of
+    the line, and what its sigma has beyond the common one belongs to the line.
+    """
+    found: dict[str, tuple[float, float]] = {}
+    for line in lines:
+        if line.constant is None or line.constant_sigma is None:
+            continue
+        known = found.get(_name(line))
+        if known is None or line.constant_sigma < known[1]:
+            found[_name(line)] = (line.constant, line.constant_sigma)
+    return found
+
+
 def oriented_lines(
     lines: Sequence[LineResult],
 ) -> tuple[tuple[OrientedLine, ...], tuple[GyroConstant, ...], tuple[ResultWarning, ...]]:
@@ -46,6 +62,7 @@ def oriented_lines(
     sides: list[OrientedLine] = []
     constants: dict[str, GyroConstant] = {}
     warnings: list[ResultWarning] = []
+    shared = _shared(lines)
     for line in lines:
         name, sight = _name(line), f"{line.station}-{line.target}"
         sigma = _own_sigma(line)
@@ -57,12 +74,13 @@ def oriented_lines(
             text = f"gyro line {sight}: without a CRS its convergence is taken as 0"
             warnings.append(ResultWarning("convergence_unknown", text))
         reduction = (line.convergence or 0.0) + line.deflection + (line.arc_to_chord or 0.0)
+        value, common = shared.get(name, (line.constant or 0.0, line.constant_sigma))
+        if line.constant is not None and line.constant_sigma is not None and common is not None:
+            reduction -= line.constant - value
+            sigma = math.sqrt(sigma**2 + max(line.constant_sigma**2 - common**2, 0.0))
         sides.append(
             OrientedLine(line.station, line.target, line.gyro_azimuth.value, sigma, name, reduction)
         )
-        known = line.constant is not None and line.constant_sigma is not None
-        usable = known and 0.0 < (line.constant_sigma or 0.0) < math.inf
-        constants[name] = GyroConstant(
-            name, line.constant or 0.0, line.constant_sigma if usable else None
-        )
+        usable = common is not None and 0.0 < common < math.inf
+        constants[name] = GyroConstant(name, value, common if usable else None)
     return tuple(sides), tuple(constants.values()), tuple(warnings)

@@ -302,7 +302,7 @@ def _absolute_turn(sketch: Sketch, frame: Sketch) -> float | None:
     return None
 
 
-def sketch_positions(sights: Sights, known: Positions) -> Positions:
+def sketch_variants(sights: Sights, known: Positions) -> list[Positions]:
     """Find approximate positions of everything that the sights join to the known points.
 
     Parameters
@@ -313,19 +313,21 @@ def sketch_positions(sights: Sights, known: Positions) -> Positions:
 
     Returns
     -------
-    dict
-        The known and all further positions that could be found.
+    list of dict
+        The known and all further positions that could be found, the best fitting first; further
+        ones where points had to be guessed of two that serve as well.
     """
     best = _attempt(sights, known, 0)
-    least = _misfit(sights, best)
+    found = [(-len(best.positions), _misfit(sights, best), best.positions)]
     variant = 1
     while variant < min(2 ** min(best.guesses, 5), MOST_VARIANTS):
         other = _attempt(sights, known, variant)
-        misfit = _misfit(sights, other)
-        if (len(other.positions), -misfit) > (len(best.positions), -least):
-            best, least = other, misfit
+        found.append((-len(other.positions), _misfit(sights, other), other.positions))
+        if -found[-1][0] > len(best.positions):
+            best = other
         variant += 1
-    return best.positions
+    found.sort(key=lambda item: item[:2])
+    return [positions for count, _, positions in found if count == found[0][0]]
 
 
 MOST_VARIANTS = 32

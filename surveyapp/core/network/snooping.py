@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from surveyapp.core.network.adjustment import FAMILY_LEVEL, adjust, without
+from surveyapp.core.network.adjustment import FAMILY_LEVEL, adjust
+from surveyapp.core.network.gross import without
 from surveyapp.domain.adjustment import AdjustmentResult, Suspect
 from surveyapp.domain.traverse import Network
 from surveyapp.errors import SurveyError

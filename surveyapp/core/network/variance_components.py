@@ -19,6 +19,8 @@ from surveyapp.errors import Problem, SurveyError
 MOST_ITERATIONS = 60
 TOLERANCE = 1e-4
 """Relative change of every factor at which the iteration stops: far below its own sigma."""
+VANISHING = 0.02
+"""A factor below this is on its way to zero: no sigma is stated fifty times too large."""
 LEAST_REDUNDANCY = 0.5
 """A group with less redundancy says nothing about its own variance and keeps its factor."""
 
@@ -36,6 +38,8 @@ class VarianceComponent:
         Of the factor; None where the group keeps its stated sigmas.
     redundancy : float
     observations : int
+    vanishing : bool
+        The component goes to zero: nothing can be said of it, the stated sigmas were kept.
     """
 
     group: str
@@ -43,6 +47,7 @@ class VarianceComponent:
     sigma: float | None
     redundancy: float
     observations: int
+    vanishing: bool = False
 
     def to_dict(self) -> dict[str, object]:
         """Keys of the JSON."""
@@ -52,6 +57,7 @@ class VarianceComponent:
             "sigma": self.sigma,
             "redundancy": self.redundancy,
             "observations": self.observations,
+            "vanishing": self.vanishing,
         }
 
 
@@ -119,20 +125,34 @@ def variance_components(
     Raises
     ------
     SurveyError
-        If the components do not settle (a group whose residuals vanish, for example).
+        If the components do not settle.
+
+    Notes
+    -----
+    A component that goes to zero (the other groups explain its residuals entirely) keeps its stated
+    sigmas, is told by ``vanishing`` and does not hold up the rest.
     """
     factors: dict[str, float] = {}
+    vanished: set[str] = set()
     for _ in range(MOST_ITERATIONS):
         scaled = _scaled(network, factors)
         result = adjust(scaled, relative=False)
         shares = _shares(scaled, result)
         change = 0.0
         for group, (squares, redundancy, _) in shares.items():
-            if redundancy < LEAST_REDUNDANCY or squares <= 0.0:
+            if group in vanished or redundancy < LEAST_REDUNDANCY:
+                continue
+            if squares <= VANISHING**4 * redundancy:  # residuals of rounding only
+                vanished.add(group)
+                factors.pop(group, None)
                 continue
             step = math.sqrt(squares / redundancy)
             factors[group] = factors.get(group, 1.0) * step
             change = max(change, abs(step - 1.0))
+            if factors[group] < VANISHING:
+                vanished.add(group)
+                del factors[group]
+                continue
             if not 1e-4 < factors[group] < 1e4:
                 raise _unsettled(group, factors[group])
         if change < TOLERANCE:
@@ -143,6 +163,7 @@ def variance_components(
                     factors[group] / math.sqrt(2.0 * redundancy) if group in factors else None,
                     redundancy,
                     count,
+                    group in vanished,
                 )
                 for group, (_, redundancy, count) in shares.items()
             )

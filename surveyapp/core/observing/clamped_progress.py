@@ -33,6 +33,7 @@ from surveyapp.core.observing.passage_forecast import (
 from surveyapp.core.observing.progress import Progress
 from surveyapp.core.observing.run_alert import Alert
 from surveyapp.core.observing.swing_shown import residual_channel, shown_curve, shown_points
+from surveyapp.core.statistics.distributions import NORMAL_95
 from surveyapp.core.swing.card_physics import card_at
 from surveyapp.core.swing.clamped import (
     NOMINAL_SIGMA_DIV,
@@ -254,7 +255,7 @@ def _next(
         reading=reading,
         half_width=half_width,
         moment_s=moment,
-        moment_half_width_s=None if spread is None else 1.96 * spread,
+        moment_half_width_s=None if spread is None else NORMAL_95 * spread,
     )
 
 

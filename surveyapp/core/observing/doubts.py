@@ -44,6 +44,11 @@ class Doubt(StrEnum):
     OUTSIDE_ROUNDS = "outside_rounds"
     OFF_SCALE = "off_scale"
     OTHER_DIVISION = "other_division"
+    OUTSIDE_RANGE = "outside_range"
+    SUPPLY_JUMP = "supply_jump"
+    ZENITH_FACE = "zenith_face"
+    BEFORE_LAST_ROW = "before_last_row"
+    HALF_SWING = "half_swing"
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,12 +64,18 @@ class Question:
         In the same unit.
     scale : bool
         Whether it is a reading of the gyro scale.
+    unit : str
+        s, C, V, Hz, mA or deg where it is no angle to be shown in arc-seconds, and no division.
+    low : float or None
+        Lower end of a range whose upper end is ``limit``; ``difference`` is the reading itself.
     """
 
     doubt: Doubt
     difference: float
     limit: float
     scale: bool = False
+    unit: str = ""
+    low: float | None = None
 
 
 def doubt_turning_point(

@@ -35,6 +35,12 @@ AMPLITUDE_DIV: Final = 7.5
 AMPLITUDE_SIGMA_DIV: Final = 4.0
 """Amplitude before a reading tells it: the scale ends at 15 div (physics.md 2.6)."""
 ITERATIONS: Final = 40
+CROSSING = 1.1
+"""Least amplitude of a first guess in units of the middle: the swing crosses the line."""
+LEAST_AMPLITUDE_DIV = 0.1
+"""Least amplitude of a first guess [div]."""
+MOST_DECREMENT_STEP = 0.1
+"""Largest change of the logarithmic decrement in one iteration."""
 SMALLEST_DOF: Final = 2
 """Degrees of freedom from which the residuals speak, as in the reduction."""
 LEVEL: Final = 0.002
@@ -200,7 +206,7 @@ def _start(swing: ClampedSwing, period: float) -> Floats:
         amplitude = 0.5 * float(right.mean() - left.mean())
     elif swing.readings.size:
         amplitude = float(np.abs(swing.readings).mean())
-    amplitude = max(amplitude, 1.1 * abs(middle), 0.1)
+    amplitude = max(amplitude, CROSSING * abs(middle), LEAST_AMPLITUDE_DIV)
     guess = np.array([middle, amplitude, LOG_DECREMENT, 0.0, period])
     guess[3] = float(np.mean(swing.passages_s - modelled(swing, guess)[1]))
     return guess
@@ -225,7 +231,7 @@ def _converged(swing: ClampedSwing, start: Floats, prior: tuple[Floats, Floats])
         step = np.linalg.lstsq(jacobian, misfit, rcond=None)[0]
         largest = 0.5 * parameters[1]
         step[:2] = np.clip(step[:2], -largest, largest)
-        step[2] = min(max(float(step[2]), -0.1), 0.1)
+        step[2] = float(np.clip(step[2], -MOST_DECREMENT_STEP, MOST_DECREMENT_STEP))
         parameters = np.asarray(parameters + step, dtype=np.float64)
         if not np.all(np.isfinite(parameters)) or min(parameters[1], parameters[4]) <= 0.0:
             return None

@@ -17,12 +17,12 @@ from typing import Final
 
 import numpy as np
 
+from surveyapp.core.statistics.levels import LOUD
 from surveyapp.core.swing.gyrofit import DampedFit
 from surveyapp_models.arrays import Floats
 
 MIN_POINTS: Final = 6
 """N, A, damping and one more leave two degrees of freedom."""
-SIGNIFICANCE: Final = 0.01
 DRAWS: Final = 2000
 SEPARATE_FROM: Final = 12
 """Points from which step and decay separate: below, the advice is to go on (design of issue 6)."""
@@ -147,7 +147,7 @@ def search(
     null = _shares(noise, columns).max(axis=0)
     best = int(np.argmax(shares))
     p = float((1.0 + np.count_nonzero(null >= shares[best])) / (DRAWS + 1.0))
-    if p > SIGNIFICANCE:
+    if p > LOUD:
         return None
     trouble, place = names[best]
     rivals = [

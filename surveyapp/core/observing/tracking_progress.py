@@ -22,6 +22,7 @@ from surveyapp.core.observing.progress import Progress
 from surveyapp.core.observing.run_alert import Alert, find_trouble
 from surveyapp.core.observing.swing_shown import residual_channel, shown_curve, shown_points
 from surveyapp.core.orientation.unfinished import lacking
+from surveyapp.core.statistics.distributions import NORMAL_95
 from surveyapp.core.swing.card_physics import card_at
 from surveyapp.core.swing.goodness import Judge
 from surveyapp.core.swing.gyrofit import (
@@ -164,7 +165,7 @@ def _forecast(
         reading=reading,
         half_width=half_width,
         moment_s=moment,
-        moment_half_width_s=None if spread is None else 1.96 * spread,
+        moment_half_width_s=None if spread is None else NORMAL_95 * spread,
     )
     return forecast, timing
 

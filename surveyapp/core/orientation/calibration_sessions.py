@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from surveyapp.core.orientation.instrument_constant import Calibration
+from surveyapp.core.orientation.known_azimuth import KnownError, known_error
 from surveyapp.core.orientation.lines import LineGeometry, known_astronomic
 from surveyapp.core.orientation.sequence import phase_of, session_moments, surveys_before
 from surveyapp.core.statistics.repeated import RunScatter
@@ -17,7 +18,7 @@ from surveyapp.domain.project import (
     ResultWarning,
     grid_bearing,
 )
-from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, wrap_pi
+from surveyapp_models.angles import RHO_ARCSEC, wrap_pi
 
 LARGEST_SHIFT_M = 0.1
 """Coordinates of mine stations are wrong by less [m]: beyond, one of the two is mistyped."""
@@ -54,10 +55,12 @@ def calibrations_of(
             if grid_azimuth is None or target.gyro_azimuth is None:
                 warnings.append(_unusable(session, target.target, "its azimuth is not known"))
                 continue
-            true = known_astronomic(line, grid_azimuth, known_azimuth_sigma(session))
+            known = known_error(project, session, line)
+            true = known_astronomic(line, grid_azimuth, known.error)
             if true is None:
                 warnings.append(_unusable(session, target.target, "no crs gives its convergence"))
                 continue
+            warnings += _assumed(session, target.target, known)
             if own is not None and bearing is not None:
                 warnings += _contradiction(session, line, wrap_pi(own - bearing))
             gyro = scatter.applied(target.gyro_azimuth, session.id)
@@ -99,17 +102,23 @@ def _contradiction(
     return [ResultWarning("azimuth_known_differs", text)]
 
 
+def _assumed(session: OrientationSession, target: str, known: KnownError) -> list[ResultWarning]:
+    """Ask for the sigma of a known azimuth that nobody states."""
+    if known.origin != "default":
+        return []
+    text = (
+        f"session {session.id}: nobody states how well the azimuth of {session.station}-{target} "
+        f'is known: +-{known.error.sigma * RHO_ARCSEC:.1f}" is assumed; state '
+        "azimuth_known_sigma_arcsec, sigma_m of its stations, or station_sigma_m of the project"
+    )
+    return [ResultWarning("known_azimuth_sigma_assumed", text)]
+
+
 def rounds_of(item: ReducedSession) -> int:
     """Rounds that a session stands for: delivered rounds, else the run itself."""
     if item.session.method != "automatic":
         return 1
     return stated_rounds(item.session) or item.reduction.points_used
-
-
-def known_azimuth_sigma(session: OrientationSession) -> float:
-    """Sigma [rad] of the known azimuth, 0 where the project states none."""
-    value = dict(session.override).get("azimuth_known_sigma_arcsec")
-    return float(value) * ARCSEC if isinstance(value, int | float) else 0.0
 
 
 def centring_of(project: Project, session: OrientationSession) -> Centring:

@@ -7,12 +7,14 @@ the orientation that applies it: both must mean the same by a temperature, a lin
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from datetime import date
 from typing import Literal
 
 import numpy as np
 
+from surveyapp.core.geodesy import Position
 from surveyapp.core.orientation.sequence import session_timestamp
 from surveyapp.core.swing.session import ReducedSession, TargetReduction
 from surveyapp.domain.project import OrientationSession
@@ -20,6 +22,7 @@ from surveyapp.domain.readings import SWING_KINDS, ReadingKind
 from surveyapp_models.arrays import Floats
 
 SECONDS_PER_DAY = 86400.0
+EPOCH_ORDINAL = date(1970, 1, 1).toordinal()
 BLOCK_GAP_DAYS = 0.25
 """A pause of six hours ends a block: a shift is one block, also over midnight of any zone."""
 LABELLED = frozenset({"line", "block"})
@@ -69,7 +72,7 @@ def circumstances(
     session = item.session
     stamp = session_timestamp(session)
     if stamp is None and session.date is not None:
-        stamp = (session.date.toordinal() - 719163) * SECONDS_PER_DAY + 0.5 * SECONDS_PER_DAY
+        stamp = (session.date.toordinal() - EPOCH_ORDINAL) * SECONDS_PER_DAY + 0.5 * SECONDS_PER_DAY
     days = None if stamp is None else stamp / SECONDS_PER_DAY
     north = item.reduction.north
     return Circumstances(
@@ -83,6 +86,28 @@ def circumstances(
         north_reading=None if north is None else north.value,
         running_s=_running(session),
     )
+
+
+def facts_of(
+    reduced: Sequence[ReducedSession], instrument: str, positions: Mapping[str, Position]
+) -> dict[tuple[str, str], Circumstances]:
+    """Circumstances of every gyro azimuth of one instrument, by session and target."""
+    places = [
+        (item, target)
+        for item in reduced
+        if item.session.instrument == instrument
+        for target in item.targets
+    ]
+    facts = in_blocks(
+        [
+            circumstances(item, target, latitude=positions[item.session.station].latitude)
+            for item, target in places
+        ]
+    )
+    return {
+        (item.session.id, target.target): fact
+        for (item, target), fact in zip(places, facts, strict=True)
+    }
 
 
 def block_names(days: Sequence[float | None]) -> list[str]:

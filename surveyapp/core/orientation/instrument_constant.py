@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from surveyapp.core.statistics.distributions import f_tail, student_quantile
+from surveyapp.core.statistics.levels import CONSISTENT
 from surveyapp.core.statistics.repeated import SHARED, weighted_mean
 from surveyapp.core.uncertain import Source, Uncertain, combine
 from surveyapp.domain.instrument import Instrument
@@ -23,9 +24,6 @@ from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.angles import RHO_ARCSEC
 
 Phase = Literal["before", "between", "after"]
-
-SIGNIFICANCE = 0.05
-"""Of the stability tests: a constant that may have moved must be looked at."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +95,21 @@ class Agreement:
 
 @dataclass(frozen=True, slots=True)
 class InstrumentConstant:
-    """Everything known of the constant of one instrument."""
+    """Everything known of the constant of one instrument.
+
+    Parameters
+    ----------
+    instrument : Instrument
+    calibrations : tuple of Calibration
+    lines : tuple of (name, Uncertain)
+        Mean of each line.
+    line_agreement, phase_agreement : Agreement or None
+    known : Uncertain or None
+        Known beforehand.
+    average : Uncertain or None
+        Constant over the campaign, averaged over the base model and its rivals; None where there
+        are too few determinations to predict from.
+    """
 
     instrument: Instrument
     calibrations: tuple[Calibration, ...]
@@ -105,6 +117,14 @@ class InstrumentConstant:
     line_agreement: Agreement | None
     phase_agreement: Agreement | None
     known: Uncertain | None
+    average: Uncertain | None = None
+
+    @property
+    def choice(self) -> str:
+        """What its sessions use if they say nothing else."""
+        if self.instrument.constant_choice is not None:
+            return self.instrument.constant_choice
+        return "pooled" if self.average is None else "predicted"
 
     @property
     def stable(self) -> bool | None:
@@ -155,8 +175,8 @@ def compare_groups(groups: Sequence[tuple[str, Uncertain]]) -> Agreement | None:
     spread = usable[widest][1] - usable[lowest][1]
     return Agreement(
         difference=spread.value,
-        limit=student_quantile(1.0 - 0.5 * SIGNIFICANCE / dof, max(spread.dof, 1.0)) * spread.sigma,
-        agree=probability >= SIGNIFICANCE,
+        limit=student_quantile(1.0 - 0.5 * CONSISTENT / dof, max(spread.dof, 1.0)) * spread.sigma,
+        agree=probability >= CONSISTENT,
         scatter=math.sqrt(max(external - 1.0 / total, 0.0)),
         dof=dof,
         probability=probability,
@@ -222,7 +242,8 @@ def choose(
     ----------
     constant : InstrumentConstant
     choice : str
-        pooled | interpolated | nearest | line:A-B | known.
+        predicted | pooled | interpolated | nearest | line:A-B | known. What is predicted for each
+        line is made elsewhere; who asks for it here has too few determinations.
     moment : float or None
         When the survey session took place.
     block : int
@@ -243,6 +264,8 @@ def choose(
         if constant.known is None:
             raise SurveyError(_unknown_choice(constant, choice, where))
         return Chosen(constant.known, "known")
+    if choice == "predicted":
+        return _not_predicted(constant, where)
     if choice not in ("pooled", "interpolated", "nearest"):
         raise SurveyError(_unknown_choice(constant, choice, where))
     if not constant.calibrations:
@@ -252,6 +275,17 @@ def choose(
     if choice == "nearest":
         return _nearest(constant, distance_to, where)
     return Chosen(constant.pooled, "pooled")
+
+
+def _not_predicted(constant: InstrumentConstant, where: str) -> Chosen:
+    count = len(constant.calibrations)
+    if not count:
+        return Chosen(None, None)
+    text = (
+        f"{where}: the constant of {constant.instrument.id} cannot be predicted from {count} "
+        f"determination{'s' if count > 1 else ''}: all are pooled with their stated sigmas"
+    )
+    return Chosen(constant.pooled, "pooled", (ResultWarning("prediction_impossible", text),))
 
 
 def _named_line(constant: InstrumentConstant, choice: str, where: str) -> Uncertain:
@@ -269,7 +303,7 @@ def _unknown_choice(constant: InstrumentConstant, choice: str, where: str) -> Pr
         what="the constant asked for does not exist",
         where=f"{where}, instrument {constant.instrument.id}, constant_choice",
         found=choice,
-        expected=", ".join(["pooled", "interpolated", "nearest", *known]),
+        expected=", ".join(["predicted", "pooled", "interpolated", "nearest", *known]),
         hint="Name a line with a calibration session, written station-target.",
     )
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from surveyapp.core.geodesy import (
     Azimuth,
@@ -139,16 +139,18 @@ def line_geometry(
     )
 
 
-def known_astronomic(geometry: LineGeometry, grid_azimuth: float, sigma: float) -> Uncertain | None:
-    """Astronomic azimuth [rad] of a line of known grid azimuth, None without a convergence."""
+def known_astronomic(
+    geometry: LineGeometry, grid_azimuth: float, error: Uncertain
+) -> Uncertain | None:
+    """Astronomic azimuth [rad] of a line of known grid azimuth, None without a convergence.
+
+    ``error`` is zero with the error of the known azimuth.
+    """
     if geometry.convergence is None:
         return None
     geodetic = grid_azimuth + geometry.convergence + (geometry.arc_to_chord or 0.0)
-    value = Uncertain(geodetic) + geometry.deflection_parts(geodetic) + geometry.convergence_error
-    if sigma > 0.0:
-        line = f"{geometry.start.name}-{geometry.end.name}"
-        value = value.with_part(Source("known azimuth", line), sigma)
-    return value
+    deflection = geometry.deflection_parts(geodetic)
+    return Uncertain(geodetic) + deflection + geometry.convergence_error + error
 
 
 @dataclass(frozen=True, slots=True)
@@ -258,7 +260,7 @@ def _on_grid(
         .without_deflection(deflection.value)
         .to_grid(convergence=geometry.convergence, arc_to_chord=geometry.arc_to_chord or 0.0)
     )
-    return Uncertain(moved.value, (true - deflection - geometry.convergence_error).parts)
+    return replace(true - deflection - geometry.convergence_error, value=moved.value)
 
 
 def budget(item: Uncertain, calibration_sessions: frozenset[str]) -> tuple[BudgetLine, ...]:

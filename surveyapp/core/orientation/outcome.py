@@ -47,7 +47,10 @@ def outcome(
     warnings = [*orientation.warnings]
     for item in shown:
         warnings += item.warnings
-    warnings += _loud(checks)
+    predicted = frozenset(
+        c.instrument.id for c in orientation.constants if c.choice == "predicted" and c.average
+    )
+    warnings += _loud(checks, predicted)
     return OrientationResult(
         project=orientation.project.name,
         software=software,
@@ -60,7 +63,17 @@ def outcome(
     )
 
 
-def _loud(checks: Sequence[Check]) -> list[ResultWarning]:
+_CHOOSE = (
+    "; nothing is averaged silently: the pooled sigma contains the disagreement; "
+    "choose with constant_choice = pooled, nearest, interpolated or line:A-B"
+)
+_INSTEAD = (
+    "; the constant is predicted for each line, averaged over what may be behind it, and the "
+    "interval contains that"
+)
+
+
+def _loud(checks: Sequence[Check], predicted: frozenset[str]) -> list[ResultWarning]:
     """A run that the model does not fit, a constant that moved: said again as a warning."""
     codes = {"fit": "lack_of_fit", "constant": "constant_unstable", "line": "rounds_disagree"}
     found: dict[tuple[str, Subject], list[str]] = {}
@@ -71,10 +84,7 @@ def _loud(checks: Sequence[Check]) -> list[ResultWarning]:
         if check.passed is False and family in codes:
             text = check.text
             if check.rule == "constant.lines":
-                text += (
-                    "; nothing is averaged silently: the pooled sigma contains the disagreement; "
-                    "choose with constant_choice = pooled, nearest, interpolated or line:A-B"
-                )
+                text += _INSTEAD if check.subject.instrument in predicted else _CHOOSE
             found.setdefault((codes[family], check.subject), []).append(text)
     return [
         ResultWarning(code, f"{subject.text}: " + "; ".join(texts), subject)
@@ -148,6 +158,8 @@ def target_result(item: TargetReduction) -> TargetResult:
 def constant_result(orientation: Orientation, constant: InstrumentConstant) -> ConstantResult:
     """The result of one instrument's constant."""
     value = constant.pooled if constant.pooled is not None else constant.known
+    if constant.choice == "predicted" and constant.average is not None:
+        value = constant.average
     calibrations = constant.calibrations
     keys = session_moments(orientation.project, constant.instrument.id)
     lines = []
@@ -172,7 +184,7 @@ def constant_result(orientation: Orientation, constant: InstrumentConstant) -> C
         interval95=value.interval95 if value is not None and finite else None,
         count=len(calibrations),
         stable=constant.stable,
-        choice=constant.instrument.constant_choice if calibrations or value is None else "known",
+        choice=constant.choice if calibrations or value is None else "known",
         by_line=tuple(lines),
         determinations=tuple(
             Determination(

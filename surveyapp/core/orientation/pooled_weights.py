@@ -17,11 +17,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from surveyapp.core.statistics.distributions import f_tail
+from surveyapp.core.statistics.levels import LOUD
 from surveyapp.core.swing.session import ReducedSession
 from surveyapp.core.uncertain import Source, Uncertain
-
-SIGNIFICANCE = 0.01
-"""Two-sided: a run whose readings scatter otherwise keeps its own weight."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +57,7 @@ def _ratio(own: _Scatter, group: Sequence[_Scatter]) -> float:
     numerator, denominator = (own.dof, dof) if larger else (dof, own.dof)
     quotient = own.variance / rest if larger else rest / own.variance
     tail = f_tail(quotient, dof_numerator=numerator, dof_denominator=denominator)
-    if tail < 0.5 * SIGNIFICANCE:
+    if tail < 0.5 * LOUD:
         return 1.0
     pooled = (rest * dof + own.variance * own.dof) / (dof + own.dof)
     return math.sqrt(pooled / own.variance)

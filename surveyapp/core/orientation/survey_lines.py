@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from surveyapp.core.checks.blunders import azimuth_warnings
 from surveyapp.core.orientation.calibration_sessions import centring_of, rounds_of
 from surveyapp.core.orientation.instrument_constant import Chosen, InstrumentConstant, choose
 from surveyapp.core.orientation.lines import LineGeometry, OrientedLine, Round, orient_line
+from surveyapp.core.orientation.predicted_constant import leaves_out
+from surveyapp.core.orientation.predicted_lines import Key, PredictedLine, survey_groups
 from surveyapp.core.orientation.sequence import SessionOrder, session_moments
 from surveyapp.core.statistics.repeated import RunScatter
 from surveyapp.core.swing.session import ReducedSession
@@ -42,12 +44,14 @@ class SurveyedLines:
     stations: Mapping[str, Station]
 
     def oriented(
-        self, only: str | None = None
+        self, predicted: Mapping[Key, PredictedLine], only: str | None = None
     ) -> tuple[tuple[OrientedLine, ...], list[ResultWarning]]:
         """Orient every line of the survey sessions; A-B and B-A are two lines.
 
         Parameters
         ----------
+        predicted : mapping of line to PredictedLine
+            Of ``predicted_lines``, for the same sessions.
         only : str or None
             Use this session alone.
 
@@ -68,10 +72,17 @@ class SurveyedLines:
         lines: list[OrientedLine] = []
         warnings: list[ResultWarning] = []
         problems: list[Problem] = []
-        for (_, target, instrument), members in self._groups(only).items():
+        for key, members in survey_groups(self.reduced, only).items():
+            _, target, instrument = key
             try:
                 rounds = [
-                    _round(item, azimuth, known[instrument], stations=self.stations)
+                    _round(
+                        item,
+                        azimuth,
+                        known[instrument],
+                        predicted.get(key),
+                        stations=self.stations,
+                    )
                     for item, azimuth in members
                 ]
             except SurveyError as error:
@@ -94,21 +105,6 @@ class SurveyedLines:
             raise SurveyError(problems)
         return tuple(lines), warnings
 
-    def _groups(
-        self, only: str | None
-    ) -> dict[tuple[str, str, str], list[tuple[ReducedSession, Uncertain]]]:
-        """Survey sessions with their gyro azimuth, by station, target and instrument."""
-        groups: dict[tuple[str, str, str], list[tuple[ReducedSession, Uncertain]]] = {}
-        for item in self.reduced:
-            session = item.session
-            if session.purpose != "survey" or (only is not None and session.id != only):
-                continue
-            for target in item.targets:
-                if target.gyro_azimuth is not None:
-                    key = (session.station, target.target, session.instrument)
-                    groups.setdefault(key, []).append((item, target.gyro_azimuth))
-        return groups
-
 
 def _order(project: Project, instrument: str) -> SessionOrder:
     surveys = [
@@ -121,23 +117,32 @@ def _round(
     item: ReducedSession,
     azimuth: Uncertain,
     known: tuple[InstrumentConstant, RunScatter, SessionOrder],
+    predicted: PredictedLine | None,
     *,
     stations: Mapping[str, Station],
 ) -> Round:
     session = item.session
     constant, scatter, order = known
+    choice = session.constant_choice or constant.choice
+    if choice == "predicted" and predicted is not None:
+        chosen = Chosen(predicted.constant, "predicted")
+        own = predicted.scatter.applied(azimuth, session.id)
+        return Round(session.id, own, chosen, rounds_of(item))
 
     def distance_to(name: str) -> float | None:
         return grid_distance_m(stations[session.station], stations[name])
 
-    chosen: Chosen = choose(
+    chosen = choose(
         constant,
-        session.constant_choice or constant.instrument.constant_choice,
+        choice,
         moment=order.moment(session.id),
         block=order.block(session.id),
         distance_to=distance_to,
         where=f"session {session.id}",
     )
+    if predicted is not None and chosen.value is not None and choice != "known":
+        told = leaves_out(choice, chosen.value, predicted.constant, f"session {session.id}")
+        chosen = replace(chosen, warnings=(*chosen.warnings, told))
     return Round(session.id, scatter.applied(azimuth, session.id), chosen, rounds_of(item))
 
 

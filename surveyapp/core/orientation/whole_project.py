@@ -39,6 +39,7 @@ from surveyapp.core.orientation.lines import (
     line_geometry,
 )
 from surveyapp.core.orientation.pooled_weights import with_pooled_weights
+from surveyapp.core.orientation.predicted_lines import predicted_lines
 from surveyapp.core.orientation.sequence import session_moments, surveys_before
 from surveyapp.core.orientation.survey_lines import SurveyedLines
 from surveyapp.core.statistics.repeated import RunScatter, run_scatter
@@ -122,7 +123,7 @@ def orient_project(
     }
     warnings = [*project.warnings, *check_adopted(project)]
     tested = sum(session.method != "automatic" for session in project.sessions)
-    judge = Judge(rng, tested)
+    judge = Judge(sessions=tested)
     setting = _Setting(project, positions, stations, judge, estimator, run_model)
     reduced, sigmas = _reduce_all(setting)
     measured = reduced = with_pooled_weights(reduced)
@@ -144,11 +145,14 @@ def orient_project(
         )
         warnings += more
         constants.append(determine(instrument, calibrations))
-    surveyed = SurveyedLines(project, reduced, tuple(constants), geometry, scatters, stations)
-    lines, more = surveyed.oriented()
+    known, predicted, more = predicted_lines(reduced, constants, positions, None)
+    warnings += more
+    surveyed = SurveyedLines(project, reduced, known, geometry, scatters, stations)
+    lines, more = surveyed.oriented(predicted)
     shown = lines
     if only is not None:
-        shown, more = surveyed.oriented(only)
+        predicted = predicted_lines(reduced, constants, positions, only)[1]
+        shown, more = surveyed.oriented(predicted, only)
     warnings += more
     return Orientation(
         project,
@@ -157,7 +161,7 @@ def orient_project(
         measured,
         sigmas,
         scatters,
-        tuple(constants),
+        known,
         lines,
         shown,
         tuple(warnings),

@@ -147,7 +147,7 @@ def _random(mine: Mine, found: Estimator) -> list[Contribution]:
     for number, heading in enumerate(mine.headings):
         mine_rows = rows.heading == number
         plane = squares(found.gain[mine_rows] * rows.centring[mine_rows, None])
-        along = heading.route.along @ mine.axes
+        along = heading.route.sign * heading.route.along @ mine.axes
         plane = plane + squares(along * heading.length_centring[:, None])
         parts.append(Contribution("centring", heading.route.heading.name, plane / surveys))
     return parts
@@ -266,7 +266,7 @@ def scale_column(mine: Mine) -> Floats:
 def _lengths(mine: Mine) -> list[Contribution]:
     parts = []
     for heading in mine.headings:
-        along = heading.route.along @ mine.axes
+        along = heading.route.sign * heading.route.along @ mine.axes
         plane = squares(along * heading.length_sigma[:, None]) / mine.plan.independent_surveys
         parts.append(Contribution("distances", heading.route.heading.name, plane))
     column = (mine.plan.sigmas.scale_ppm or 0.0) * PPM * scale_column(mine)
@@ -281,6 +281,7 @@ def _heights(mine: Mine) -> list[Contribution]:
     transfers: dict[str, list[tuple[int, float]]] = {}
     for number, heading in enumerate(mine.headings):
         source, variance = _carried(mine, number)
+        variance *= heading.route.sign**2
         name = heading.route.heading.name
         parts.append(Contribution(source, name, nothing, variance / surveys))
         depth = heading.route.heading.height_transfer_m

@@ -169,7 +169,7 @@ def _heading_rows(plan: Penetration, route: Route, found: MeasuredRows | None) -
             centring = angle_centring_sigma(route, side, **both)
             rows.append(Row(RowKind.ANGLE, side, sigmas.angle or 0.0, centring))
     start = route.heading.start.azimuth_sigma
-    if start is not None:
+    if start is not None and (RowKind.AZIMUTH, 0) not in done:
         rows.append(Row(RowKind.AZIMUTH, 0, start))
     rows += _gyro_rows(plan.gyro, route, done, both)
     length = np.hypot(
@@ -181,7 +181,8 @@ def _heading_rows(plan: Penetration, route: Route, found: MeasuredRows | None) -
     heights = np.full(route.sides, np.nan)
     for side, sigma in ({} if found is None else found.heights).items():
         heights[side] = sigma
-    return HeadingRows(route, tuple(rows), length, centring_m, heights)
+    marks = (both["instrument_m"], both["target_m"])
+    return HeadingRows(route, tuple(rows), length, centring_m, heights, marks)
 
 
 def _gyro_rows(

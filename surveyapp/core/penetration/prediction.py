@@ -14,10 +14,13 @@ from surveyapp.core.penetration.covariance import (
     heights_known,
     total,
 )
+from surveyapp.core.penetration.evaluation import evaluate_miss
 from surveyapp.core.penetration.mine import Mine
+from surveyapp.core.penetration.rows import RowKind
 from surveyapp.core.penetration.sections import sectioned
 from surveyapp.domain.penetration_result import (
     MeetingEllipse,
+    MineDrawing,
     MissCause,
     MissSigma,
     Prediction,
@@ -72,6 +75,7 @@ def prediction(
     factor, source, told = factor_of(mine.plan, book)
     tolerance, more = tolerance_of(mine.plan, book, drive_length_km(mine))
     passed, failed, open_ones = judge(sigma, factor, tolerance)
+    miss = mine.plan.measured
     own = [*warnings, *told, *more, *open_ones, *_not_stated(mine)]
     return Prediction(
         project=project,
@@ -87,9 +91,28 @@ def prediction(
         simulated=None,
         budget=budget(parts),
         ellipse=ellipse(mine, total(parts)[0]),
+        measured=None if miss is None else evaluate_miss(mine, miss),
         steps=mine.plan.steps,
         warnings=tuple(own),
+        drawing=drawing(mine),
     )
+
+
+def drawing(mine: Mine) -> MineDrawing:
+    """What a plan of the mine shows."""
+    routes, gyro = [], []
+    for heading in mine.headings:
+        places = list(zip(heading.route.e.tolist(), heading.route.n.tolist(), strict=True))
+        sides = {row.side for row in heading.rows if row.kind is RowKind.GYRO}
+        gyro += [(places[side], places[side + 1]) for side in sorted(sides)]
+        ahead = heading.route.carried_m * heading.route.along[-1]
+        if heading.route.carried_m > 0.0:
+            e, n = places[-1]
+            places.append((e + float(ahead[0]), n + float(ahead[1])))
+        routes.append(tuple(places))
+    meeting = (mine.plan.meeting.e, mine.plan.meeting.n)
+    names = tuple(heading.name for heading in mine.plan.headings)
+    return MineDrawing(names, tuple(routes), tuple(gyro), meeting, mine.plan.axis_azimuth)
 
 
 def _not_stated(mine: Mine) -> list[ResultWarning]:

@@ -74,6 +74,8 @@ class HeadingRows:
     height_sigma : ndarray, shape (sides,)
         1 sigma of each measured height difference [m]; NaN: not measured, the method of the
         project counts.
+    marks : tuple of float
+        Centring of instrument and of targets, each component [m].
     """
 
     route: Route
@@ -81,6 +83,7 @@ class HeadingRows:
     length_sigma: Floats
     length_centring: Floats
     height_sigma: Floats
+    marks: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)

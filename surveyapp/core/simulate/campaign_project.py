@@ -101,7 +101,7 @@ def _orientation(campaign: SimulatedCampaign, index: int) -> str:
     known = ""
     if not survey:
         text = format_angle(wrap_two_pi(float(campaign.azimuth_known[index])), AngleUnit.DMS, 3)
-        known = f'azimuth_known = "{text}"\n'
+        known = f'azimuth_known = "{text}"\nazimuth_known_sigma_arcsec = 0.0\n'
     identity = _identity(campaign, index)
     reference = campaign.spec.reference_temperature_c
     return (

@@ -255,7 +255,7 @@ def _orientation(session: ProjectSession) -> str:
     known = ""
     if session.purpose == "calibration":
         azimuth = format_angle(wrap_two_pi(spec.line_azimuth), AngleUnit.DMS, 3)
-        known = f'azimuth_known = "{azimuth}"\n'
+        known = f'azimuth_known = "{azimuth}"\nazimuth_known_sigma_arcsec = 0.0\n'
     temperature = ""
     if spec.temperature_span_c > 0.0:
         temperature = f"reference_temperature_c = {spec.temperature_c}\n"

@@ -157,7 +157,7 @@ def parse_effect(text: str, kinds: Iterable[EffectKind] = RUN_EFFECTS) -> Effect
     known = {kind.id: kind for kind in kinds}
     identity, _, rest = text.partition("=")
     kind = known.get(identity.strip())
-    where = f"--effect {text}"
+    where = f"effect {text}"
     if kind is None:
         hint = nearest_names(identity.strip(), known)
         raise SurveyError(Problem("unknown effect", where, identity, "the id of an effect", hint))

@@ -166,3 +166,7 @@ def chi_square_quantile(probability: float, dof: float) -> float:
 def normal_quantile(probability: float) -> float:
     """Quantile of the standard normal distribution."""
     return _NORMAL.inv_cdf(probability)
+
+
+NORMAL_95 = normal_quantile(0.975)
+"""Half-width of a two-sided 95 % interval in standard deviations."""

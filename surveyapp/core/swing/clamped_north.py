@@ -34,6 +34,11 @@ from surveyapp.domain.readings import ReadingKind
 from surveyapp.domain.results import PointResult
 from surveyapp_models.arrays import Floats
 
+LARGEST_SCALE_SIGMA_DIV = 0.3
+"""Of one scale reading where the card states none: scales are read to tenths of a division."""
+LARGEST_IN_SIGMA = 5.0
+"""Of readings and passages by the sigmas that are assumed where the card states none."""
+
 
 @dataclass(frozen=True, slots=True)
 class _Constants:
@@ -146,6 +151,7 @@ def _tape_zero_part(
         coefficient,
         scale_sigma=card.sigma.scale_div,
         scale_resolution=reading_resolution(rows),
+        limit_div=card.tape_zero.limit_div,
     )
 
 
@@ -266,7 +272,13 @@ def _tests(
         )
         known = card.sigma.scale_div is not None and card.sigma.time_s is not None
         return goodness_of_fit(
-            whitened, fit.jacobian, judge, sigma=1.0 if known else None, resolution=0.0
+            whitened,
+            fit.jacobian,
+            judge,
+            sigma=1.0 if known else None,
+            resolution=0.0,
+            readings=np.concatenate([swing.readings, swing.divisions]),
+            bound=LARGEST_IN_SIGMA,
         )
     if swing.readings.size < 4:
         return ()
@@ -277,4 +289,6 @@ def _tests(
         judge,
         sigma=card.sigma.scale_div,
         resolution=reading_resolution(observed.readings),
+        readings=swing.readings,
+        bound=LARGEST_SCALE_SIGMA_DIV,
     )

@@ -1,25 +1,32 @@
-"""Does the model fit the run? Three loud tests that need no hypothesis about the cause.
+"""Does the model fit the run? Loud tests that need no hypothesis about the cause.
 
 The null distributions of the lag-1 correlation and of the number of runs are simulated through the
 projector of the fit and with the reading resolution in it, because residuals of a fit with three
-parameters are correlated even where the readings are not. Which effect is missing is the business
-of ``surveyapp.diagnosis``.
+parameters are correlated even where the readings are not. The draws are seeded from the readings
+alone: the same readings have the same verdict, whatever else stands in the project. Which effect
+is missing is the business of ``surveyapp.diagnosis``.
 """
 
 from __future__ import annotations
 
+import hashlib
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from surveyapp.core.statistics.distributions import chi_square_quantile
+from surveyapp.core.statistics.distributions import (
+    chi_square_quantile,
+    normal_quantile,
+    student_quantile,
+)
+from surveyapp.core.statistics.levels import FIT_KIND
 from surveyapp_models.arrays import Floats
 
-SIGNIFICANCE = 0.01
-"""Of each kind of test over ALL sessions of a project together: a clean project of ten sessions
-alarms as rarely as one of a single session (at most 3 % with the three kinds)."""
-DRAWS = 2000
-MOST_DRAWS = 40_000
+DRAWS = 10_000
+MOST_DRAWS = 100_000
+LEAST_REDUNDANCY = 1e-6
+"""Of a reading: one that the fit follows wherever it goes cannot be tested."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,23 +35,31 @@ class Judge:
 
     Parameters
     ----------
-    rng : numpy.random.Generator
+    rng : numpy.random.Generator or None
+        For the null distributions; None: seeded from the readings of each fit.
     sessions : int
         Sessions that are tested; the level of each test is divided by it (Bonferroni).
     """
 
-    rng: np.random.Generator
+    rng: np.random.Generator | None = None
     sessions: int = 1
 
     @property
     def significance(self) -> float:
         """Level of one test of one session."""
-        return SIGNIFICANCE / max(self.sessions, 1)
+        return FIT_KIND / max(self.sessions, 1)
+
+    def generator(self, readings: Floats) -> np.random.Generator:
+        """Random numbers for the test of these readings."""
+        if self.rng is not None:
+            return self.rng
+        digest = hashlib.sha256(np.ascontiguousarray(readings, dtype="<f8").tobytes()).digest()
+        return np.random.default_rng(int.from_bytes(digest[:16], "little"))
 
     @property
     def draws(self) -> int:
         """Draws that resolve the level: ten beyond each critical value, if that is affordable."""
-        return min(max(DRAWS, round(20.0 / self.significance)), MOST_DRAWS)
+        return min(max(DRAWS, round(80.0 / self.significance)), MOST_DRAWS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,12 +69,16 @@ class FitTest:
     Parameters
     ----------
     name : str
-        ``chi_square``, ``lag1_correlation`` or ``runs``.
+        ``chi_square``, ``size``, ``largest_residual``, ``lag1_correlation`` or ``runs``.
     value : float
         The statistic.
     low, high : float or None
         Critical values; the test passes within.
     passed : bool
+    point : int or None
+        Place of the reading with the largest residual.
+    at_limit : bool
+        Whether the draws cannot tell on which side of its critical value the statistic lies.
     """
 
     name: str
@@ -67,6 +86,8 @@ class FitTest:
     low: float | None
     high: float | None
     passed: bool
+    point: int | None = None
+    at_limit: bool = False
 
 
 def lag1_correlation(residuals: Floats) -> Floats:
@@ -89,6 +110,8 @@ def goodness_of_fit(
     *,
     sigma: float | None,
     resolution: float,
+    readings: Floats | None = None,
+    bound: float | None = None,
 ) -> tuple[FitTest, ...]:
     """Test the residuals of one fit.
 
@@ -104,6 +127,10 @@ def goodness_of_fit(
         chi-square test.
     resolution : float
         Reading resolution, same unit, 0 if unknown.
+    readings : ndarray, shape (n,)
+        What the draws are seeded from; the residuals where absent.
+    bound : float or None
+        Standard deviation that no reading of the kind exceeds: tested where ``sigma`` is unknown.
 
     Returns
     -------
@@ -116,22 +143,63 @@ def goodness_of_fit(
     if dof < 1:
         return ()
     squares = float(residuals @ residuals)
-    if sigma is not None and sigma > 0.0:
-        variance = sigma**2 + resolution**2 / 12.0
+    known = sigma is not None and sigma > 0.0
+    apriori = sigma if known else bound
+    if apriori is not None and apriori > 0.0:
+        variance = apriori**2 + resolution**2 / 12.0
         limit = chi_square_quantile(1.0 - judge.significance, dof)
         value = squares / variance
-        tests.append(FitTest("chi_square", value, None, limit, value <= limit))
+        name = "chi_square" if known else "size"
+        tests.append(FitTest(name, value, None, limit, value <= limit))
+    spread = math.hypot(sigma or 0.0, resolution / math.sqrt(12.0)) if known else None
+    floor = max(resolution / math.sqrt(12.0), 1e-12 * math.sqrt(squares))
+    tests.extend(_largest_residual(residuals, jacobian, judge, sigma=spread, floor=floor))
     if dof >= 3:
-        tests.extend(_serial_tests(residuals, jacobian, judge, resolution))
+        rng = judge.generator(residuals if readings is None else readings)
+        tests.extend(_serial_tests(residuals, jacobian, judge, resolution, rng))
     return tuple(tests)
 
 
+def _largest_residual(
+    residuals: Floats, jacobian: Floats, judge: Judge, *, sigma: float | None, floor: float
+) -> list[FitTest]:
+    """The largest studentized residual: by the sigma that is known, else by the other readings.
+
+    Source: Baarda (1968) w-test; Cook & Weisberg (1982), Residuals and influence in regression,
+    2.2.10 (externally studentized). The level is divided by the number of readings.
+    """
+    count, parameters = jacobian.shape
+    dof = count - parameters
+    q = np.linalg.qr(jacobian)[0]
+    redundancy = 1.0 - np.sum(q * q, axis=1)
+    testable = redundancy > LEAST_REDUNDANCY
+    if not np.any(testable) or (sigma is None and dof < 2):
+        return []
+    level = 0.5 * judge.significance / int(np.sum(testable))
+    safe = np.where(testable, redundancy, 1.0)
+    if sigma is not None:
+        spread = np.full(count, sigma)
+        limit = normal_quantile(1.0 - level)
+    else:
+        rest = np.maximum(residuals @ residuals - residuals**2 / safe, 0.0) / (dof - 1)
+        spread = np.sqrt(np.maximum(rest, floor**2))
+        limit = student_quantile(1.0 - level, float(dof - 1))
+    ratios = np.where(testable, np.abs(residuals) / (spread * np.sqrt(safe)), 0.0)
+    point = int(np.argmax(ratios))
+    value = float(ratios[point])
+    return [FitTest("largest_residual", value, None, limit, value <= limit, point)]
+
+
 def _serial_tests(
-    residuals: Floats, jacobian: Floats, judge: Judge, resolution: float
+    residuals: Floats,
+    jacobian: Floats,
+    judge: Judge,
+    resolution: float,
+    rng: np.random.Generator,
 ) -> list[FitTest]:
     count, parameters = jacobian.shape
     scale = float(np.sqrt(residuals @ residuals / (count - parameters)))
-    draws = judge.rng.standard_normal((judge.draws, count)) * max(
+    draws = rng.standard_normal((judge.draws, count)) * max(
         scale, resolution / np.sqrt(12.0), 1e-300
     )
     if resolution > 0.0:
@@ -141,8 +209,17 @@ def _serial_tests(
     tests = []
     for name, statistic in (("lag1_correlation", lag1_correlation), ("runs", run_count)):
         value = float(statistic(residuals))
-        low, high = np.quantile(
-            statistic(draws), [0.5 * judge.significance, 1.0 - 0.5 * judge.significance]
-        ).tolist()
-        tests.append(FitTest(name, value, low, high, low <= value <= high))
+        drawn = statistic(draws)
+        tail = 0.5 * judge.significance
+        low, high = np.quantile(drawn, [tail, 1.0 - tail]).tolist()
+        passed = low <= value <= high
+        tests.append(
+            FitTest(name, value, low, high, passed, at_limit=_at_limit(drawn, value, tail))
+        )
     return tests
+
+
+def _at_limit(drawn: Floats, value: float, tail: float) -> bool:
+    """Whether the draws beyond a value could as well lie on the other side of the level."""
+    beyond = min(float(np.mean(drawn >= value)), float(np.mean(drawn <= value)))
+    return abs(beyond - tail) < 2.0 * math.sqrt(tail / drawn.size)

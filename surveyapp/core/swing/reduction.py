@@ -195,8 +195,12 @@ def tape_zero_parts(
     *,
     scale_sigma: float | None,
     scale_resolution: float,
+    limit_div: float | None = None,
 ) -> Uncertain:
-    """The tape-zero correction -lambda mu d with its error [rad]."""
+    """The tape-zero correction -lambda mu d with its error [rad].
+
+    ``limit_div`` is the card's limit of a tape zero, for how far a change can be a drift.
+    """
     correction = Uncertain(coefficient.value * zero.value_div)
     for name, rest, factor in (
         ("before", zero.before, zero.factor_before),
@@ -216,6 +220,10 @@ def tape_zero_parts(
         correction = correction.with_part(
             source, coefficient.value * factor * rest.weight_norm * value
         )
+    change = zero.unexplained_change_div(limit_div)
+    if change > 0.0:
+        source = Source("tape zero change", session.id)
+        correction = correction.with_part(source, coefficient.value * change)
     if coefficient.sigma > 0.0:
         source = Source("torsion ratio", session.instrument)
         sign = -1.0 if coefficient.value < 0.0 else 1.0

@@ -100,7 +100,7 @@ def estimator_for(session: OrientationSession, estimator: str | None) -> str | N
             where=f"session {session.id}",
             found=estimator,
             expected=" or ".join(allowed),
-            hint="Choose another estimator, or name the session with --session.",
+            hint="Choose another estimator, or orient one session alone.",
         )
     )
 

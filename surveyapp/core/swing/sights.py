@@ -76,6 +76,10 @@ class SightSet:
         None where not every row is timed.
     collimation_cofactor : float
         As ``cofactor``, for the collimation.
+    largest_residual : float
+        Of the pointings, absolute [rad].
+    faces_known : bool
+        Whether every pointing says in which face it was read.
     """
 
     target: str
@@ -91,6 +95,8 @@ class SightSet:
     pointings: int
     clock: Clock | None = None
     collimation_cofactor: float = 0.0
+    largest_residual: float = 0.0
+    faces_known: bool = True
 
 
 def moments(rows: Sequence[Reading]) -> Floats | None:
@@ -171,7 +177,9 @@ def reduce_sights(book: FieldBook, target: str, *, default_target: str | None) -
     faces = np.array([-1.0 if row.face is Face.RIGHT else 1.0 for row in rows])
     origin = _as_face_left(rows[0])
     values = np.array([wrap_pi(_as_face_left(row) - origin) for row in rows])
-    return replace(_solve(target, origin, values, faces=faces, epochs=epochs), clock=clock)
+    found = _solve(target, origin, values, faces=faces, epochs=epochs)
+    known = all(row.face is not None for row in rows)
+    return replace(found, clock=clock, faces_known=known)
 
 
 def _as_face_left(row: Reading) -> float:
@@ -212,6 +220,7 @@ def _solve(
         dof=int(values.size - basis.shape[1]),
         pointings=int(values.size),
         collimation_cofactor=float(inverse[1] @ inverse[1]) if both_faces else 0.0,
+        largest_residual=float(np.max(np.abs(residuals))),
     )
 
 

@@ -20,6 +20,9 @@ from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.readings import FieldBook, Place, Reading, ReadingKind
 from surveyapp_models.arrays import Floats
 
+LIMIT_DIV = 0.5
+"""Of a tape zero where the card states none. Source: Coal Mine Surveying Regulations (China, 1989),
+article 62."""
 MIN_POINTS_FOR_RESIDUALS = 5
 """Below this number the reading sigma is the card's (physics.md 2.1)."""
 
@@ -73,6 +76,20 @@ class TapeZero:
     factor_after: float
     interpolation: Literal["time", "mean", "single", "tilt"]
     drift_div_per_s: float = 0.0
+
+    def unexplained_change_div(self, limit_div: float | None) -> float:
+        """Standard deviation [div] of the zero in force for how it went from before to after.
+
+        A small change is a drift, and the zero in force lies on the straight line. A large one may
+        have come at once, at any moment of the run: then every value between the two is as likely,
+        and their standard deviation is the change over sqrt(12). Between the two the share grows
+        with the square of the change over the limit of a tape zero.
+        """
+        if self.before is None or self.after is None:
+            return 0.0
+        change = abs(self.after.value_div - self.before.value_div)
+        share = min((change / (limit_div or LIMIT_DIV)) ** 2, 1.0)
+        return share * change / math.sqrt(12.0)
 
     def drift_at(self, times: Floats) -> Floats:
         """Zero at the moments of the run's rows minus the zero in force, which is their mean."""

@@ -50,10 +50,15 @@ from surveyapp.domain.project import OrientationSession, ResultWarning
 from surveyapp.domain.readings import Reading, ReadingKind
 from surveyapp.domain.results import PointResult
 from surveyapp.errors import Problem, SurveyError
-from surveyapp_models.angles import RHO_ARCSEC, wrap_pi, wrap_two_pi
+from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, wrap_pi, wrap_two_pi
 from surveyapp_models.arrays import Floats
 
 MIN_POINTS = 3
+
+
+LARGEST_READING_SIGMA = 60.0 * ARCSEC
+"""Of one turning point where the card states none: the coarsest circles are read to 20" to 30", and
+a follow-up lag of one minute is a fault. A bound of reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -325,6 +330,7 @@ def tape_zero_of(
         coefficient,
         scale_sigma=card.sigma.scale_div,
         scale_resolution=reading_resolution(rows),
+        limit_div=card.tape_zero.limit_div,
     )
     return zero, coefficient, correction, warnings
 
@@ -344,6 +350,8 @@ def _tests(
         judge,
         sigma=card.sigma.reversal,
         resolution=points.resolution,
+        readings=points.values,
+        bound=LARGEST_READING_SIGMA,
     )
 
 

@@ -15,6 +15,7 @@ from surveyapp.core.swing.session import ReducedSession, TargetReduction
 from surveyapp.core.tolerance.evaluate import Measured
 from surveyapp.core.tolerance.independent import independent_difference, independent_mean_sigma
 from surveyapp.core.tolerance.quantities import quantity
+from surveyapp.core.tolerance.side_measures import gyro_side_length, gyro_side_sigma
 from surveyapp.domain.readings import SWING_KINDS, Place, ReadingKind
 from surveyapp.domain.subject import Subject
 from surveyapp_models.angles import RHO_ARCSEC, circular_mean, wrap_pi
@@ -263,15 +264,22 @@ def rotor_rest(orientation: Orientation) -> list[Measured]:
     return found
 
 
+def _circle_place(item: ReducedSession) -> float | None:
+    """Where on the circle a round was observed [rad]."""
+    north = item.reduction.north
+    return item.session.circle_shift if north is None else north.value
+
+
 def circle_spacing(orientation: Orientation) -> list[Measured]:
     """Smallest distance of the circle readings of north of the rounds at one station.
 
-    The circle is divided anew after half a turn: two faces read opposite sides of it.
+    Where a method reads no north on the circle, the stated ``circle_shift`` of its rounds stands
+    in. The circle is divided anew after half a turn: two faces read opposite sides of it.
     """
     name = "circle_spacing"
     found = []
     for (station, _), items in _occupations(orientation).items():
-        norths = [item.reduction.north.value for item in items if item.reduction.north is not None]
+        norths = [place for item in items if (place := _circle_place(item)) is not None]
         subject = Subject.of("station", station)
         if len(norths) < len(items):
             found.append(_missing(name, subject))
@@ -370,6 +378,8 @@ MEASURES: Final[Mapping[str, Measure]] = {
     "rounds_before": rounds_before,
     "rounds_after": rounds_after,
     "rounds_on_side": rounds_on_side,
+    "gyro_side_length": gyro_side_length,
+    "gyro_side_sigma": gyro_side_sigma,
     "observers": observers,
     "level_excursion": level_excursion,
 }

@@ -126,7 +126,7 @@ QUANTITIES: Final[tuple[Quantity, ...]] = (
         "circle_spacing",
         "smallest distance of the circle readings of north of two rounds",
         "angle",
-        "two rounds at one station, with circle readings of north",
+        "two rounds at one station, with circle readings of north or a stated circle_shift",
     ),
     Quantity(
         "rounds_before",
@@ -141,6 +141,18 @@ QUANTITIES: Final[tuple[Quantity, ...]] = (
         "calibration sessions and a survey session",
     ),
     Quantity("rounds_on_side", "rounds on the side to be oriented", "count", "survey sessions"),
+    Quantity(
+        "gyro_side_length",
+        "length of a side that a gyro orients",
+        "length",
+        "survey sessions and the positions of both ends of the side",
+    ),
+    Quantity(
+        "gyro_side_sigma",
+        "mean square error of the direction of a side that a gyro orients",
+        "angle",
+        "survey sessions, a constant, and a sigma of both",
+    ),
     Quantity(
         "observers",
         "observers of one instrument above and below",
@@ -191,6 +203,13 @@ QUANTITIES: Final[tuple[Quantity, ...]] = (
         _TRAVERSE,
     ),
     Quantity(
+        "repeated_length",
+        "difference of two measurements of one length, L the length in metres",
+        "length",
+        "a length measured twice",
+        _TRAVERSE,
+    ),
+    Quantity(
         "last_angle_again",
         "last angle measured again before a traverse is extended",
         "angle",
@@ -216,6 +235,20 @@ QUANTITIES: Final[tuple[Quantity, ...]] = (
         "two orientations through two shafts",
         "angle",
         "two plumbings of two shafts",
+        _PLUMBING,
+    ),
+    Quantity(
+        "plumbed_direction",
+        "mean square error of a direction carried below by plumbing",
+        "angle",
+        "a shaft with its wires",
+        _PLUMBING,
+    ),
+    Quantity(
+        "plumbed_point",
+        "mean square error of the position of a point below the plumbing",
+        "length",
+        "a shaft with its wires and points below",
         _PLUMBING,
     ),
     Quantity(

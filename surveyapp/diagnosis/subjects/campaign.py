@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from surveyapp.core.orientation.campaign_columns import block_names
+from surveyapp.core.orientation.campaign_columns import BLOCK_GAP_DAYS, block_names
+from surveyapp.diagnosis.action import POSITION, Action, last_rows
 from surveyapp.diagnosis.case import Case
 from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.subject import Subject
 from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
@@ -37,6 +39,8 @@ class Determination:
         Degrees Celsius, rad, rad, rad, seconds since spin-up.
     label : str
         For messages.
+    subject : Subject or None
+        The session and target that it comes from.
     """
 
     value: float
@@ -51,6 +55,74 @@ class Determination:
     north_reading: float | None = None
     running_s: float | None = None
     label: str = ""
+    subject: Subject | None = None
+
+
+TEMPERATURE_STEP_K = 8.0
+
+
+def _after(columns: Mapping[str, Floats], days: float) -> dict[str, Floats]:
+    """The last determination again, some days later, in a block of work of its own."""
+    row = last_rows(columns)
+    row[POSITION] = row[POSITION] + days
+    if "elapsed_days" in row:
+        row["elapsed_days"] = row["elapsed_days"] + days
+    if "block" in row and days >= BLOCK_GAP_DAYS:
+        row["block"] = np.array([columns["block"].max() + 1.0])
+    return row
+
+
+def _now(columns: Mapping[str, Floats], /) -> dict[str, Floats]:
+    return _after(columns, 0.04)
+
+
+def _tomorrow(columns: Mapping[str, Floats], /) -> dict[str, Floats]:
+    return _after(columns, 1.0)
+
+
+def _in_a_month(columns: Mapping[str, Floats], /) -> dict[str, Floats]:
+    return _after(columns, 30.0)
+
+
+def _heated(columns: Mapping[str, Floats], step: float) -> dict[str, Floats] | None:
+    theta = columns.get("temperature_c")
+    if theta is None or not np.isfinite(theta).all():
+        return None
+    return {**_after(columns, 1.0), "temperature_c": theta[-1:] + step}
+
+
+def _warmer(columns: Mapping[str, Floats], /) -> dict[str, Floats] | None:
+    return _heated(columns, TEMPERATURE_STEP_K)
+
+
+def _colder(columns: Mapping[str, Floats], /) -> dict[str, Floats] | None:
+    return _heated(columns, -TEMPERATURE_STEP_K)
+
+
+def _other_line(columns: Mapping[str, Floats], /) -> dict[str, Floats] | None:
+    """A known line that is not the last one: the one that was used least, else a new one."""
+    line = columns.get("line")
+    if line is None:
+        return None
+    row = _after(columns, 0.04)
+    names, counts = np.unique(line[line != line[-1]], return_counts=True)
+    chosen = float(names[np.argmin(counts)]) if names.size else float(line.max()) + 1.0
+    row["line"] = np.array([chosen])
+    there = np.flatnonzero(line == chosen)
+    for name in ("latitude", "line_reading", "north_reading"):
+        if there.size and name in columns:
+            row[name] = columns[name][there[-1:]]
+    return row
+
+
+ACTIONS = (
+    Action("repeat", "repeat the determination now", _now),
+    Action("tomorrow", "repeat it tomorrow", _tomorrow),
+    Action("warmer", "determine it 8 K warmer", _warmer),
+    Action("colder", "determine it 8 K colder", _colder),
+    Action("other_line", "determine it on another known line", _other_line),
+    Action("month", "determine it in 30 days", _in_a_month),
+)
 
 
 def campaign(
@@ -106,6 +178,7 @@ def campaign(
         subject="campaign",
         title="campaign",
         value_name="the constant",
+        actions=ACTIONS,
         observations=values - offset,
         base=np.ones((n, 1)),
         base_names=("constant",),
@@ -121,6 +194,7 @@ def campaign(
         offset=offset,
         instrument=instrument,
         identity=f"campaign of {instrument}" if instrument else "campaign",
+        members=tuple(d.subject for d in determinations if d.subject is not None),
         labels=tuple(d.label or f"determination {i + 1}" for i, d in enumerate(determinations)),
         grid_labels=labels,
         warnings=tuple(warnings),

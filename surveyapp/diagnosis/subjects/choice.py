@@ -14,7 +14,7 @@ import numpy as np
 
 from surveyapp.core.checks.adopted_checks import occurrences
 from surveyapp.core.orientation.adopted import SOURCE
-from surveyapp.core.orientation.campaign_columns import Circumstances, circumstances, in_blocks
+from surveyapp.core.orientation.campaign_columns import Circumstances, facts_of
 from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.core.statistics.repeated import SHARED
 from surveyapp.core.swing.run_model import ModelledNorth
@@ -35,6 +35,7 @@ from surveyapp.diagnosis.subjects.reversal_run import TurningPoints, reversal_ru
 from surveyapp.domain.instrument import AdoptedEffect, InstrumentCard
 from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import ReadingKind
+from surveyapp.domain.subject import Subject
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp_models.angles import wrap_pi
 from surveyapp_models.effects.effect import Effect
@@ -81,7 +82,7 @@ def run_problem(
                 f"session {session.id}",
                 f"method {session.method} without reversal rows",
                 "turning points on the circle",
-                "Diagnose the instrument's campaign with --campaign instead.",
+                "Diagnose the campaign of its instrument instead.",
             )
         )
     points = turning_points(session)
@@ -181,7 +182,7 @@ def determinations(orientation: Orientation, instrument: str) -> tuple[Determina
     The sigma is that of what belongs to one determination alone: centring, deflection and the
     known azimuth are the line's own, and whether a line stands off is to be found, not assumed.
     """
-    by_key = _circumstances(orientation, instrument)
+    by_key = facts_of(orientation.sessions, instrument, orientation.positions)
     constant = next(c for c in orientation.constants if c.instrument.id == instrument)
     found = []
     for calibration in constant.calibrations:
@@ -190,32 +191,9 @@ def determinations(orientation: Orientation, instrument: str) -> tuple[Determina
             *SHARED, "run-to-run scatter", f"{SOURCE} outside its range"
         )
         label = f"{calibration.session} ({calibration.line})"
-        found.append(_determination(calibration.value.value, own, facts, label))
+        subject = Subject.session(calibration.session, calibration.target)
+        found.append(_determination(calibration.value.value, own, facts, subject, label=label))
     return _in_time(found if found else _azimuths(orientation, instrument, by_key))
-
-
-def _circumstances(
-    orientation: Orientation, instrument: str
-) -> dict[tuple[str, str], Circumstances]:
-    """Circumstances of every gyro azimuth of one instrument, by session and target."""
-    places = [
-        (item, target)
-        for item in orientation.sessions
-        if item.session.instrument == instrument
-        for target in item.targets
-    ]
-    facts = in_blocks(
-        [
-            circumstances(
-                item, target, latitude=orientation.positions[item.session.station].latitude
-            )
-            for item, target in places
-        ]
-    )
-    return {
-        (item.session.id, target.target): fact
-        for (item, target), fact in zip(places, facts, strict=True)
-    }
 
 
 def _in_time(items: Sequence[Determination]) -> tuple[Determination, ...]:
@@ -254,14 +232,18 @@ def _azimuths(
                 first = -members[0].value
                 value = first + wrap_pi(value - first)
             # a larger gyro azimuth is a smaller constant
-            members.append(_determination(-value, target.gyro_azimuth, facts, item.session.id))
+            subject = Subject.session(item.session.id, target.target)
+            own = target.gyro_azimuth
+            members.append(_determination(-value, own, facts, subject, label=subject.id))
     longest: list[Determination] = []
     for members in lines.values():
         longest = members if len(members) > len(longest) else longest
     return longest
 
 
-def _determination(value: float, own: Uncertain, facts: Circumstances, label: str) -> Determination:
+def _determination(
+    value: float, own: Uncertain, facts: Circumstances, subject: Subject, *, label: str
+) -> Determination:
     sigma = own.sigma
     return Determination(
         value=value,
@@ -276,6 +258,7 @@ def _determination(value: float, own: Uncertain, facts: Circumstances, label: st
         north_reading=facts.north_reading,
         running_s=facts.running_s,
         label=label,
+        subject=subject,
     )
 
 
@@ -309,18 +292,18 @@ def campaign_problem(
     )
     cut = len(items)
     if confirm_from is not None:
-        labels = [item.label.split(" (")[0] for item in items]
-        if confirm_from not in labels:
+        sessions = ["" if item.subject is None else item.subject.id for item in items]
+        if confirm_from not in sessions:
             raise SurveyError(
                 Problem(
                     "the confirming session is no determination of this instrument",
-                    "--confirm",
+                    "confirm",
                     confirm_from,
                     f"a calibration session of {instrument}",
-                    nearest_names(confirm_from, labels),
+                    nearest_names(confirm_from, sessions),
                 )
             )
-        cut = labels.index(confirm_from)
+        cut = sessions.index(confirm_from)
         _check_parts(cut, len(items), confirm_from)
     first = campaign(
         items[:cut], instrument=instrument, reference_temperature_c=reference, extra=extra
@@ -339,7 +322,7 @@ def _check_parts(cut: int, count: int, confirm_from: str) -> None:
         raise SurveyError(
             Problem(
                 "the confirming session leaves no two parts of the campaign",
-                "--confirm",
+                "confirm",
                 f"{confirm_from}: {cut} determinations before it, {count - cut} from it on",
                 "at least 2 in each part; from 8 before it on an effect can be named",
                 "Name the session from which on, in time, the determinations only confirm.",

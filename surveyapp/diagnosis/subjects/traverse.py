@@ -20,9 +20,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from surveyapp.core.network.adjustment import solve_network
 from surveyapp.core.network.model import Model, compile_network
 from surveyapp.core.network.observation_equations import equations, linearised, misclosures
+from surveyapp.core.network.solving import solve_network
 from surveyapp.diagnosis.case import Case
 from surveyapp.domain.observations import Observation, ObservationKind
 from surveyapp.domain.project import ResultWarning

@@ -8,9 +8,10 @@ from __future__ import annotations
 import csv
 import io
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
+from surveyapp.domain.readings import FieldBook
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.fieldbook.reading import judge, move_tail_aside, split_tail
 from surveyapp.io.fieldbook.rows import COLUMNS
@@ -18,8 +19,17 @@ from surveyapp.io.files import has_control, read_bytes, shown, shown_path
 from surveyapp.io.tomltext import sync_folder
 from surveyapp_models.angles import AngleUnit
 
+Judge = Callable[[FieldBook, str], Sequence[Problem]]
+"""Further problems of a book, which is called as told."""
 
-def append_row(path: Path, row: Mapping[str, str], *, angle_unit: AngleUnit = AngleUnit.DMS) -> int:
+
+def append_row(
+    path: Path,
+    row: Mapping[str, str],
+    *,
+    angle_unit: AngleUnit = AngleUnit.DMS,
+    also: Judge | None = None,
+) -> int:
     """Append one row to a book and return its seq when it is on the disk.
 
     Parameters
@@ -31,6 +41,8 @@ def append_row(path: Path, row: Mapping[str, str], *, angle_unit: AngleUnit = An
         one keeps its own, and a value for a column that it lacks is refused.
     angle_unit : AngleUnit
         The project's unit of angles.
+    also : callable or None
+        A further judgement: what it finds with the row and not without it refuses the row.
 
     Returns
     -------
@@ -59,6 +71,9 @@ def append_row(path: Path, row: Mapping[str, str], *, angle_unit: AngleUnit = An
         line = ",".join(COLUMNS) + end + line
     after = judge(text + line, angle_unit=angle_unit, where=where)
     fresh = [problem for problem in after.problems if problem not in before.problems]
+    if also is not None and not after.problems:
+        known = also(before.book, where)
+        fresh += [problem for problem in also(after.book, where) if problem not in known]
     if fresh:
         raise SurveyError(fresh)
     _append(path, line.encode("utf-8"))

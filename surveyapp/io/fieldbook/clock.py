@@ -72,7 +72,9 @@ class SessionClock:
         self._base = now()
         self._elapsed = max((r.elapsed_s for r in rows if r.elapsed_s is not None), default=0.0)
         self.set_back_s = 0.0
-        last = next((row.time for row in reversed(rows) if row.time is not None), None)
+        dated = [row for row in rows if row.time is not None]
+        both = [row for row in dated if row.elapsed_s is not None]
+        last = (both or dated)[-1].time if dated else None
         if last is not None:
             gap = (self._base - last).total_seconds()
             if gap < -NOTICED_S:

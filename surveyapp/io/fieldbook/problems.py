@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 
+from surveyapp.core.observing.retyped import seconds_between
+from surveyapp.domain.readings import FieldBook, Reading, ReadingKind
 from surveyapp.errors import Problem
 
 
@@ -34,4 +37,33 @@ def read_only_problem(folder: Path, *, closed: bool) -> Problem:
         "it is open in another program, or the folder is read-only",
         "the only program that has the project open",
         "Close the other one and open the session again; it is shown for reading until then.",
+    )
+
+
+def moment_problems(book: FieldBook, where: str) -> list[Problem]:
+    """Turning points and passages whose moment does not lie behind that of the one before.
+
+    No reduction can use such a book; whoever writes one row asks this before it is written.
+    """
+    found = []
+    for kind in (ReadingKind.REVERSAL, ReadingKind.SCALE_REVERSAL, ReadingKind.TRANSIT):
+        for earlier, row in pairwise(book.of_kind(kind)):
+            apart = seconds_between(earlier, row)
+            if apart is not None and apart <= 0.0:
+                found.append(_moment_problem(where, earlier, row))
+    return found
+
+
+def _moment_problem(where: str, earlier: Reading, row: Reading) -> Problem:
+    name = str(row.kind).replace("_", " ")
+    clocks = [
+        f"{item.time:%H:%M:%S}" if item.time is not None else f"{item.elapsed_s:g} s"
+        for item in (row, earlier)
+    ]
+    return Problem(
+        f"its moment does not lie behind the {name} of row {earlier.seq}",
+        where,
+        " against ".join(clocks),
+        "moments in the order of the swing",
+        "State its moment behind @ (@08:15:30), or strike that row first.",
     )

@@ -48,6 +48,7 @@ _LIMITS: Final = {
     Dimension.TEMPERATURE: (-90.0, 150.0),
 }
 """Plausible values, far wider than any instrument: outside is a slip of the pen."""
+_STRIKING: Final = (ReadingKind.STRIKE, ReadingKind.UNSTRIKE)
 _LARGEST_SEQ: Final = 10**9
 _MOST_ROWS: Final = 5_000
 """No set-up has more; a larger file is a sensor log."""
@@ -234,7 +235,7 @@ class _RowReader:
             ),
             note=cell["note"],
             line=self.line,
-            strikes=self._strikes(cell["value"]) if kind is ReadingKind.STRIKE else None,
+            strikes=self._strikes(cell["value"]) if kind in _STRIKING else None,
         )
 
     def _unit(self, kind: ReadingKind, token: str) -> str | None:

@@ -3,8 +3,8 @@
 Reads the whole vocabulary of ``gama-local``: coordinate axes and angle direction, both angular
 units, default standard deviations, points, all observation kinds, heights of instrument and
 target, covariance matrices, control coordinates, vectors and the attribute ``extern``. Values
-become true east, north and clockwise radians here and nowhere else. External entities and document
-types are refused.
+become true east, north and clockwise radians here and nowhere else. Entities are refused; a plain
+document type is passed over.
 
 Source: GNU Gama manual, ch. 2, XML input data format; schema gama-local.xsd 1.01.
 """
@@ -45,6 +45,10 @@ def _handler(document: GkfDocument) -> ContentHandler:
         def endElement(self, name: str) -> None:
             document.end(name)
 
+        def skippedEntity(self, name: str) -> None:
+            line = self.locator.getLineNumber() if self.locator is not None else 0
+            document.problem("An entity that is not defined", line or 0, f"&{name};", "plain text")
+
         def characters(self, content: str) -> None:
             document.text(content)
 
@@ -83,6 +87,7 @@ def _parse(path: Path, document: GkfDocument) -> None:
     from defusedxml.sax import make_parser
 
     parser = make_parser()
+    parser.forbid_external = False  # a plain document type is passed over, its file never opened
     parser.setFeature(feature_external_ges, False)
     parser.setContentHandler(_handler(document))
     try:

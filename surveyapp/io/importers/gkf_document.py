@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import re
+import unicodedata
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -118,6 +119,7 @@ class GkfDocument:
         self.name = name
         self.problems: list[Problem] = []
         self.unknown_attributes: dict[str, int] = {}
+        self.carried: list[int] = []
         self.axes = Axes()
         self.parameters: dict[str, str] = {}
         self.defaults: dict[str, str] = {}
@@ -151,6 +153,8 @@ class GkfDocument:
         """Take the start of an element."""
         self._path.append(name)
         self._line = line
+        if not all(value.isascii() for value in attributes.values()):
+            attributes = {k: unicodedata.normalize("NFC", v) for k, v in attributes.items()}
         known = ATTRIBUTES.get(name)
         if known is None:
             hint = nearest_names(name, ATTRIBUTES)
@@ -200,7 +204,7 @@ class GkfDocument:
         except ValueError:
             pass
         match = _DMS.fullmatch(text.strip())
-        if match is None or float(match[3]) >= 60.0 or float(match[4]) >= 60.0:
+        if match is None or float(match[3]) > 60.0 or float(match[4]) > 60.0:
             self.problem(
                 "An angle cannot be read",
                 line,
@@ -209,6 +213,8 @@ class GkfDocument:
                 "Is it in another unit?",
             )
             return None
+        if float(match[3]) == 60.0 or float(match[4]) == 60.0:
+            self.carried.append(line)
         seconds = (float(match[2]) * 60.0 + float(match[3])) * 60.0 + float(match[4])
         return (-seconds if match[1] == "-" else seconds) * ARCSEC, ARCSEC
 

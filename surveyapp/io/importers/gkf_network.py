@@ -5,7 +5,9 @@ Every problem is collected in the document and raised together at the end.
 
 from __future__ import annotations
 
+import math
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,7 +18,7 @@ from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network
 from surveyapp.errors import SurveyError
 from surveyapp.io.importers.gkf_document import DEFAULTS, KINDS, MM, Cluster, GkfDocument
-from surveyapp.io.importers.gkf_points import network_point, without_idle
+from surveyapp.io.importers.gkf_points import declared_only, network_point, without_idle
 
 ANGLES = frozenset(
     {
@@ -39,6 +41,7 @@ class _Builder:
         self.observations: list[Observation] = []
         self.blocks: list[CorrelatedBlock] = []
         self.sets: Counter[str] = Counter()
+        self.face_right: list[int] = []
         self.sigma_apriori = self.parameter("sigma-apr", 10.0)
         self.distance_model = self._distance_model()
         self.default = {kind: self._default(name) for kind, name in DEFAULTS.items()}
@@ -116,6 +119,9 @@ class _Builder:
             return
         if kind in TURNING:
             value *= document.axes.turn
+        elif kind is ObservationKind.ZENITH and math.pi < value < 2.0 * math.pi:
+            value = 2.0 * math.pi - value  # read in face right
+            self.face_right.append(line)
         heights = [
             document.number(attributes.get(key, default), line, key) or 0.0
             for key, default in (("from_dh", str(cluster.from_dh)), ("to_dh", "0"))
@@ -284,6 +290,24 @@ def _banded(document: GkfDocument, cluster: Cluster, size: int) -> NDArray[np.fl
     return matrix
 
 
+def _lines(lines: Sequence[int]) -> str:
+    more = f" and {len(lines) - 6} more" if len(lines) > 6 else ""
+    return ", ".join(str(line) for line in lines[:6]) + more
+
+
+def _reading_notes(builder: _Builder) -> list[ResultWarning]:
+    """What was read otherwise than it is written."""
+    notes = []
+    if builder.face_right:
+        places = _lines(builder.face_right)
+        text = f"zenith angles of face right, taken as 360 degrees minus: lines {places}"
+        notes.append(ResultWarning("face_right", text))
+    if builder.document.carried:
+        text = f"60 seconds or minutes carried over: lines {_lines(builder.document.carried)}"
+        notes.append(ResultWarning("sixty_carried", text))
+    return notes
+
+
 def network_from(document: GkfDocument) -> Network:
     """Assemble the network of a document.
 
@@ -303,8 +327,10 @@ def network_from(document: GkfDocument) -> Network:
     builder = _Builder(document)
     for cluster in document.clusters:
         builder.cluster(cluster)
+    observations, blocks, told = declared_only(document, builder.observations, builder.blocks)
     points = [network_point(document, entry) for entry in document.points.values()]
-    used, warnings = without_idle([p for p in points if p is not None], builder.observations)
+    used, warnings = without_idle([p for p in points if p is not None], observations)
+    warnings += [*told, *_reading_notes(builder)]
     warnings += [
         ResultWarning("unknown_attribute", f"{document.where(line)}: {name} was not understood")
         for name, line in document.unknown_attributes.items()
@@ -321,8 +347,8 @@ def network_from(document: GkfDocument) -> Network:
     try:
         network = Network(
             points=tuple(used),
-            observations=tuple(builder.observations),
-            blocks=tuple(builder.blocks),
+            observations=tuple(observations),
+            blocks=tuple(blocks),
             sigma_apriori=builder.sigma_apriori,
             confidence=probability,
             scaled_by_residuals=actual == "aposteriori",

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from surveyapp.core.network.touched import touched
-from surveyapp.domain.observations import Observation
+from surveyapp.domain.observations import CorrelatedBlock, Observation
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import NetworkPoint, Status
-from surveyapp.errors import SurveyError
+from surveyapp.errors import SurveyError, nearest_names
 from surveyapp.io.importers.gkf_document import GkfDocument, PointEntry
 
 
@@ -37,6 +38,43 @@ def network_point(document: GkfDocument, entry: PointEntry) -> NetworkPoint | No
                 item.what, entry.line, f"{item.where}: {item.found}", item.expected, item.hint
             )
         return None
+
+
+def declared_only(
+    document: GkfDocument, observations: Sequence[Observation], blocks: Sequence[CorrelatedBlock]
+) -> tuple[list[Observation], list[CorrelatedBlock], list[ResultWarning]]:
+    """Leave out observations that touch a point which the file does not declare, and tell it."""
+    known = document.points
+    lost: dict[str, list[int]] = {}
+    keep = []
+    for place, obs in enumerate(observations):
+        missing = [name for name in (obs.at, obs.back, obs.to) if name and name not in known]
+        for name in missing:
+            lost.setdefault(name, []).append(obs.line)
+        if not missing:
+            keep.append(place)
+    if not lost:
+        return list(observations), list(blocks), []
+    moved = {old: new for new, old in enumerate(keep)}
+    kept_blocks = []
+    for block in blocks:
+        left = [i for i, member in enumerate(block.members) if member in moved]
+        if left:
+            members = tuple(moved[block.members[i]] for i in left)
+            rows = tuple(tuple(block.covariance[i][j] for j in left) for i in left)
+            kept_blocks.append(CorrelatedBlock(members, rows))
+    if not keep:
+        for name, lines in lost.items():
+            hint = nearest_names(name, known)
+            document.problem("Unknown point", lines[0], name, "a point of the file", hint)
+    names = ", ".join(f"{name} (line {lines[0]})" for name, lines in list(lost.items())[:6])
+    more = f" and {len(lost) - 6} more" if len(lost) > 6 else ""
+    text = (
+        f"{len(observations) - len(keep)} observations to points that the file does not declare "
+        f"were left out: {names}{more}"
+    )
+    warning = ResultWarning("undeclared_points", text)
+    return [observations[i] for i in keep], kept_blocks, [warning]
 
 
 def without_idle(

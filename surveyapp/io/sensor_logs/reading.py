@@ -202,11 +202,12 @@ class LogFile:
         where, first = self.request.where, self.layout.first_row
         problems: list[Problem] = []
         for name, values in columns.items():
-            if name in need.columns or name in need.others or name == "time_s":
+            timed = name == "time_s" and need.timed != "no"
+            if name in need.columns or name in need.others or timed:
                 problems += checks.not_finite(name, values, where=where, first_row=first)
             if name in need.varying:
                 problems += checks.constant(name, values, where=where)
-        if "time_s" in columns:
+        if "time_s" in columns and need.timed != "no":
             problems += checks.bad_times(columns["time_s"], where=where, first_row=first)
         stated = [name for name in columns if self.places[name].stated]
         problems += checks.mixed_units(columns, where=where)
@@ -226,7 +227,7 @@ class LogFile:
         size = rows.numbers.shape[1] if columns else len(rows.texts[0])
         rate: float | None = self.request.rate_hz
         gaps: tuple[Gap, ...] = ()
-        if "time_s" in columns:
+        if "time_s" in columns and need.timed != "no":
             median, gaps = checks.gaps_of(columns["time_s"])
             rate = rate or (1.0 / median if median > 0.0 else None)
         elif need.timed != "no" and rate is not None:

@@ -18,8 +18,8 @@ from surveyapp import api
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import SurveyError
-from surveyapp.observation import session as api_session
 from surveyapp.observation.practice import Practice
+from surveyapp.observation.record import write_record
 from surveyapp.tui import texts
 from surveyapp.tui.drafts import Draft
 from surveyapp.tui.entry_desk import problem_text
@@ -150,7 +150,7 @@ class ResultScreen(Screen[None]):
     def action_record(self) -> None:
         """Write the record as PDF in a thread, and show its path."""
         try:
-            path = api_session.write_record(self.folder)
+            path = write_record(self.folder)
             self.post_message(self.Told(texts.PDF_WRITTEN.format(path=path)))
         except SurveyError as error:
             self.post_message(self.Told(problem_text(error)))

@@ -21,7 +21,7 @@ from surveyapp.observation.practice import Practice
 from surveyapp.observation.session import SessionDesk
 from surveyapp.tui import texts
 from surveyapp.tui.drafts import Draft
-from surveyapp.tui.entry_desk import Desk, NotWrittenError, problem_text
+from surveyapp.tui.entry_desk import Desk, NotWrittenError, Pending, problem_text
 from surveyapp.tui.messages import ResultWanted, SessionLeft
 from surveyapp.tui.screens.help import HelpScreen
 from surveyapp.tui.screens.strike import StrikeScreen
@@ -42,7 +42,7 @@ class SessionScreen(Screen[None]):
     ----------
     observation : SessionDesk
         Open; the screen closes it when it is left.
-    draft : str
+    draft : Pending or None
         What was half typed when the session was left.
     practice : Practice or None
         The simulated instrument that is shown, in practice.
@@ -54,7 +54,10 @@ class SessionScreen(Screen[None]):
     ]
 
     def __init__(
-        self, observation: SessionDesk, draft: str = "", practice: Practice | None = None
+        self,
+        observation: SessionDesk,
+        draft: Pending | None = None,
+        practice: Practice | None = None,
     ) -> None:
         super().__init__()
         self.practice = practice
@@ -85,7 +88,9 @@ class SessionScreen(Screen[None]):
         warning = opening_warning(self.observation)
         if warning:
             entry.tell(warning, serious=True)
-        entry.text = self.draft
+        if self.draft is not None:
+            self.desk.take_up(self.draft)
+            entry.text = self.draft.text
         self.query_one(ReadingInput).focus()
         self.show_book()
         self.set_interval(1.0, self.watch_book)
@@ -159,39 +164,59 @@ class SessionScreen(Screen[None]):
             return self.desk.times()
         return action != "missed" or self.desk.swings()
 
+    def refused(self, key: str) -> bool:
+        """Whether a text in the line keeps a key from its work, which is told in words."""
+        entry = self.query_one(EntryLine)
+        self.desk.typing(entry.text)
+        obstacle = self.desk.obstacle(key)
+        if obstacle:
+            entry.tell(obstacle, serious=True)
+        return bool(obstacle)
+
     def action_other(self, which: str) -> None:
-        """The other kind of reading, face or target."""
+        """The other kind of reading, face or target; a text in the line keeps its kind."""
+        if which == "kind" and self.refused("F2"):
+            return
         self.desk.take_other(which)
         self.show_prompt()
 
     def action_missed(self) -> None:
         """A turning point was not read."""
+        if self.refused("F5"):
+            return
         self.attempt(self.desk.missed)
 
     def action_undo(self) -> None:
-        """Strike the latest reading."""
+        """Clear the line; an empty one: strike the latest reading."""
+        entry = self.query_one(EntryLine)
+        if entry.text:
+            entry.text = ""
+            self.desk.typing("")
+            entry.understood("")
+            entry.tell(texts.CLEARED)
+            return
         self.attempt(self.desk.undo)
 
     def action_strike(self) -> None:
         """Choose a reading to strike."""
-        rows = self.desk.strikable()
-        if not rows:
+        rows, struck_rows = self.desk.strikable(), self.desk.struck()
+        if not rows and not struck_rows:
             self.query_one(EntryLine).tell(texts.NOTHING_TO_STRIKE)
             return
+        back = {row.seq for row in struck_rows}
 
         def struck(choice: tuple[int, str] | None) -> None:
             if choice is not None:
-                self.attempt(lambda: self.desk.strike(*choice))
+                act = self.desk.unstrike if choice[0] in back else self.desk.strike
+                self.attempt(lambda: act(*choice))
 
-        self.app.push_screen(StrikeScreen(rows, self.reason), struck)
+        self.app.push_screen(StrikeScreen(rows, struck_rows, self.reason), struck)
 
     def action_step(self, places: int) -> None:
         """Go on, or back, by one step."""
-        entry = self.query_one(EntryLine)
-        if entry.text and not self.warned:
-            self.warned = True
-            entry.tell(texts.NOT_YET_WRITTEN, serious=True)
-        elif places > 0 and self.desk.step is Step.RESULT:
+        if self.refused("F8" if places > 0 else "F7"):
+            return
+        if places > 0 and self.desk.step is Step.RESULT:
             self.post_message(ResultWanted(self.observation.session_id))
         else:
             self.attempt(lambda: self.desk.go(places))
@@ -209,4 +234,4 @@ class SessionScreen(Screen[None]):
             self.query_one(EntryLine).tell(texts.DRAFT_KEPT)
             return
         self.observation.close()
-        self.post_message(SessionLeft(self.observation.session_id, text))
+        self.post_message(SessionLeft(self.observation.session_id, self.desk.pending))

@@ -18,7 +18,7 @@ from surveyapp.tui.drafts import Draft, keep, put_back
 
 
 class StrikeScreen(ModalScreen[tuple[int, str] | None]):
-    """Returns the row's seq and the reason, or None."""
+    """Returns the row's seq and the reason, or None; a struck row is chosen to count again."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape", "leave", texts.KEY_LEAVE),
@@ -26,16 +26,22 @@ class StrikeScreen(ModalScreen[tuple[int, str] | None]):
         Binding("down", "move(1)", show=False, priority=True),
     ]
 
-    def __init__(self, rows: Sequence[Reading], draft: Draft) -> None:
+    def __init__(self, rows: Sequence[Reading], struck: Sequence[Reading], draft: Draft) -> None:
         super().__init__()
         self.draft = draft
-        self.rows = tuple(rows)
+        self.rows = (*rows, *struck)
+        self.back = len(rows)
 
     def compose(self) -> ComposeResult:
         """Rows, the latest first, and the reason."""
         with Vertical(id="dialog"):
             yield Static(texts.STRIKE_TITLE, classes="heading", markup=False)
-            yield OptionList(*[Option(_line(row), id=str(row.seq)) for row in self.rows])
+            yield OptionList(
+                *[
+                    Option(_line(row, struck=place >= self.back), id=str(row.seq))
+                    for place, row in enumerate(self.rows)
+                ]
+            )
             reason = Input(
                 placeholder=texts.STRIKE_REASON, id="reason", compact=True, select_on_focus=False
             )
@@ -69,7 +75,8 @@ class StrikeScreen(ModalScreen[tuple[int, str] | None]):
         self.dismiss(None)
 
 
-def _line(row: Reading) -> str:
+def _line(row: Reading, *, struck: bool) -> str:
     kind = texts.KIND_NAMES[row.kind].split(",")[0]
     time = "" if row.time is None else f"{row.time:%H:%M:%S}"
-    return f"{row.seq:>4}  {time:<8}  {kind:<14}  {row.text}"
+    back = f"  {texts.STRIKE_BACK}" if struck else ""
+    return f"{row.seq:>4}  {time:<8}  {kind:<14}  {row.text}{back}"

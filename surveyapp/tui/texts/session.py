@@ -53,6 +53,7 @@ KIND_NAMES: Final = {
     "temperature": "temperature, °C",
     "note": "note",
     "strike": "strike",
+    "unstrike": "strike taken back",
 }
 PROMPT: Final = "{kind} {number}{detail}{unit}"
 PROMPT_UNIT: Final = " ({unit})"
@@ -63,20 +64,36 @@ TRANSIT_HINT: Final = "Space at the moment of passage"
 RESULT_HINT: Final = "F8 shows the result, Escape leaves"
 UNDERSTOOD: Final = "= {value}"
 UNDERSTOOD_COMPLETED: Final = "= {value}  (completed)"
-REFUSED: Final = "not possible: {what}"
-REFUSED_EXPECTED: Final = "not possible: {what}; expected {expected}"
+NOT_WRITTEN_YET: Final = "not written: "
+REFUSED: Final = "not written: {what}"
+REFUSED_EXPECTED: Final = "not written: {what}; expected {expected}"
 RECORDED: Final = "on disk: row {seq}, {kind} {value}"
+RECORDED_UNTIMED: Final = "; without a moment: typed too soon behind the point before"
 STEP_COMPLETE: Final = "; complete: F8 goes on"
 STRUCK: Final = "row {seq} struck: {reason}; it stays visible"
 NOTHING_TO_STRIKE: Final = "there is no reading to strike"
 MISSED_NOTED: Final = "on disk: row {seq}, turning point missed; the count goes on"
 NOT_WRITTEN: Final = "NOT written: {what}. {hint}"
 ASK_AGAIN: Final = "{question} Enter keeps it, typing replaces it."
+PENDING: Final = (
+    "not written: {text} ({kind}) is in the line. Enter writes it, Ctrl+Z clears it, then {key}"
+)
+PENDING_REFUSED: Final = (
+    "not written: {text} ({kind}) is in the line. {reason}. Ctrl+Z clears it, then {key}"
+)
+STRAYED: Final = (
+    "not written: it was typed as {kind}, and {now} is asked for. Ctrl+Z clears the line"
+)
+CLEARED: Final = "line cleared, nothing written; Ctrl+Z again strikes the latest reading"
+UNSTRUCK: Final = "row {seq} counts again: {reason}; strike and taking back stay visible"
+NO_MOMENT: Final = "no moment"
 BOOK_CHANGED: Final = "the book was changed by another hand: this is how it stands now"
 BOOK_BROKEN: Final = "the book was changed by another hand and cannot be read. {what}"
 DRAFT_KEPT: Final = "what you typed is kept; Escape again leaves, Enter writes it"
-NOT_YET_WRITTEN: Final = "not written yet: Enter writes it, the same key again goes without it"
 CLOSED_BEFORE: Final = "the swing has begun: what is read now counts as after it (F8 goes on)"
+CLOSED_REFUSED: Final = (
+    "not written: the swing has begun and this step stands before it. Ctrl+Z clears the line"
+)
 CLOCK_SET: Final = (
     "; the computer's clock is off by {seconds:+.0f} s now, the session's time goes on unbroken"
 )
@@ -95,6 +112,11 @@ QUESTIONS: Final = {
     "outside_rounds": "{difference} from the rounds so far, ±{limit}.",
     "other_division": "A passage at {difference}? F2 if it is a scale point.",
     "off_scale": "{difference} beyond the scale's end at {limit}.",
+    "outside_range": "{difference} is outside of {low} to {limit}.",
+    "supply_jump": "{difference} from the supply before.",
+    "zenith_face": "{difference} belongs to the other face (F3).",
+    "before_last_row": "The moment lies {difference} before the last row.",
+    "half_swing": "{difference} after the point before; the card's swing makes {limit}.",
 }
 ALERTS: Final = {
     "gross_error": "Point {number} stands out: strike it and repeat (p {p:.4f})",
@@ -156,6 +178,7 @@ WAYS: Final = {"R": ">", "L": "<", "": ""}
 
 # strike
 STRIKE_TITLE: Final = "Strike a reading: it stays in the book and no longer counts"
+STRIKE_BACK: Final = "struck: Enter lets it count again"
 STRIKE_REASON: Final = "reason"
 STRIKE_KEYS: Final = "Up and Down choose the row, Enter strikes it, Escape leaves it"
 UNDO_REASON: Final = "undo"

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from surveyapp.core.observing.progress import Progress
-from surveyapp.domain.readings import FieldBook, Reading, ReadingKind
+from surveyapp.domain.readings import QUIET_KINDS, FieldBook, Reading, ReadingKind
 from surveyapp.tui import texts
 from surveyapp.tui.views.progress import residual_text
 
-QUIET = (ReadingKind.NOTE, ReadingKind.STRIKE)
+QUIET = tuple(QUIET_KINDS)
 
 
 def ledger_rows(

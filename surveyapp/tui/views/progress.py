@@ -7,7 +7,7 @@ import textwrap
 from surveyapp.core.observing.passage_forecast import PassageForecast
 from surveyapp.core.observing.progress import Progress
 from surveyapp.core.observing.target import Target
-from surveyapp.observation.session import Aim
+from surveyapp.observation.aim import Aim
 from surveyapp.tui import texts
 from surveyapp.tui.views.form import arcsec_text, number_text
 from surveyapp_models.angles import AngleUnit, format_angle

@@ -8,7 +8,7 @@ from textual.containers import Vertical
 from textual.widgets import Static
 
 from surveyapp.core.observing.progress import Progress
-from surveyapp.observation.session import Aim
+from surveyapp.observation.aim import Aim
 from surveyapp.tui import texts
 from surveyapp.tui.views.progress import (
     alert_text,

@@ -24,6 +24,7 @@ class CalibrationSubject:
 
 
 SUBJECTS: Final = (
+    CalibrationSubject("compass", "compass", "electronic compass: hard and soft iron, swing"),
     CalibrationSubject("tilt", "tilt", "tilt sensor: two axes, or one on a dividing head"),
     CalibrationSubject("rate", "rate", "gyros and accelerometers on a table or by hand"),
     CalibrationSubject("fog-station", "fog_station", "fibre-optic gyro on a total station"),

@@ -40,4 +40,5 @@ EFFECT = Effect(
     separate_by="a repetition of the block on the same line",
     per="session",
     confusable_with=("transport_step", "line_offset"),
+    event=True,
 )

@@ -45,4 +45,5 @@ EFFECT = Effect(
     confusable_with=("time_drift", "line_offset", "gyro_block"),
     at_datum=both_plateaus,
     reference=at_last_date,
+    event=True,
 )

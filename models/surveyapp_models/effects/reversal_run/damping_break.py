@@ -70,4 +70,5 @@ EFFECT = Effect(
     symptom="the swing lost a different share of its amplitude per half swing after one point",
     separate_by="more turning points after the change, or a second run without it",
     confusable_with=("quadratic_drag", "dry_friction", "midpoint_step"),
+    event=True,
 )

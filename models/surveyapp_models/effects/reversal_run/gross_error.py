@@ -38,4 +38,5 @@ EFFECT = Effect(
     symptom="single readings stand off while their neighbours agree",
     separate_by="the book itself, or a repeated run",
     confusable_with=("midpoint_step",),
+    event=True,
 )

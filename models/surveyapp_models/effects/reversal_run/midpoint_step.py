@@ -79,4 +79,5 @@ EFFECT = Effect(
     confusable_with=("midpoint_drift", "warm_up", "secondary_oscillation", "gross_error"),
     at_datum=both_plateaus,
     midpoint=midpoint,
+    event=True,
 )

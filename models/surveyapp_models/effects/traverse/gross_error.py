@@ -46,4 +46,5 @@ EFFECT = Effect(
         "lateral_refraction",
         "gyro_constant_shift",
     ),
+    event=True,
 )

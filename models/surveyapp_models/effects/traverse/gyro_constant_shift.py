@@ -60,4 +60,5 @@ EFFECT = Effect(
     separate_by="a calibration after the work underground, or a gyro side measured twice",
     per="instrument",
     confusable_with=("angle_bias", "lateral_refraction", "gross_error"),
+    event=True,
 )

@@ -1,0 +1,348 @@
+"""Blunders within one session that its own readings, the card or other sessions can tell.
+
+Rounds that do not belong together, sights of one face that disagree, a collimation that no other
+session has, moments and periods that no swing can have, tape zeros that disagree.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from surveyapp.core.orientation.whole_project import Orientation
+from surveyapp.core.statistics.distributions import (
+    chi_square_quantile,
+    f_tail,
+    normal_quantile,
+    student_quantile,
+)
+from surveyapp.core.statistics.levels import level_of_one
+from surveyapp.core.swing.session import ReducedSession, TargetReduction
+from surveyapp.core.swing.sights import moments
+from surveyapp.core.swing.tape_zero import MIN_POINTS_FOR_RESIDUALS
+from surveyapp.domain.readings import Reading, ReadingKind
+from surveyapp.domain.results import Check
+from surveyapp.domain.subject import Subject
+from surveyapp_models.angles import ARCSEC, RHO_ARCSEC
+
+ROUND_SIGMA: Final = 60.0 * ARCSEC
+"""Of one round of an automatic gyro where its card states none: twice the coarsest card. A bound
+of reason."""
+POINTING_SIGMA: Final = 20.0 * ARCSEC
+"""Of one pointing where nothing else tells: coarse circles. A bound of reason."""
+COLLIMATION_CHANGE: Final = 5.0 * ARCSEC
+"""By which the collimation of a theodolite changes from set-up to set-up (temperature, transport);
+a bound of reason."""
+PERIODS_S: Final = (150.0, 1200.0)
+"""Full periods of suspended gyros: 6 to 9 minutes in use (physics.md 7), with a margin."""
+UNEVEN: Final = 0.05
+"""Of one full swing against the others: the amplitude term makes 0.002 (physics.md 1.2)."""
+TAPE_ZERO_CHANGE_DIV: Final = 0.5
+"""Source: Coal Mine Surveying Regulations (China, 1989), article 62: the limit of a tape zero."""
+LEAST_OTHERS: Final = 3
+"""Degrees of freedom of the other sessions from which they tell of one."""
+
+Items = Sequence[ReducedSession]
+
+
+def session_blunder_checks(orientation: Orientation) -> list[Check]:
+    """All of them, for every session."""
+    items = orientation.sessions
+    checks = [
+        *_rounds(orientation, items),
+        *_faces(orientation, items),
+        *_collimations(orientation, items),
+        *_tape_zeros(orientation, items),
+    ]
+    for item in items:
+        checks += _period(item)
+        checks += _evenness(item)
+    return checks
+
+
+def _made(
+    rule: str,
+    item: ReducedSession,
+    text: str,
+    *,
+    value: float,
+    limit: float,
+    unit: str = "",
+    clause: str = "statistical test, level shared over the project",
+    target: str = "",
+    passed: bool | None = None,
+) -> Check:
+    subject = Subject.session(item.session.id, target)
+    return Check(
+        rule=rule,
+        clause=clause,
+        value=value,
+        limit=limit,
+        confirmed=True,
+        passed=value <= limit if passed is None else passed,
+        unit=unit,
+        where=subject.text,
+        text=text,
+        subject=subject,
+    )
+
+
+def _rounds(orientation: Orientation, items: Items) -> list[Check]:
+    """Rounds of an automatic gyro about their mean, against the sigma of one round."""
+    tested = [
+        item for item in items if item.session.method == "automatic" and item.reduction.dof > 0
+    ]
+    checks = []
+    for item in tested:
+        card = orientation.project.instrument(item.session.instrument).card
+        rms, dof = item.reduction.residual_rms, item.reduction.dof
+        if rms is None:
+            continue
+        sigma = card.sigma.azimuth if card.sigma.azimuth is not None else ROUND_SIGMA
+        quantile = chi_square_quantile(1.0 - level_of_one(len(tested)), dof)
+        residuals = [abs(point.residual or 0.0) for point in item.reduction.points]
+        worst = item.reduction.points[int(np.argmax(residuals))].seq
+        scatter = rms * math.sqrt((dof + 1.0) / dof)
+        origin = f"card {card.id}" if card.sigma.azimuth is not None else "no card exceeds it"
+        checks.append(
+            _made(
+                "rounds.scatter",
+                item,
+                f'{dof + 1} rounds scatter by {scatter * RHO_ARCSEC:.1f}" about their mean, one '
+                f'round has {sigma * RHO_ARCSEC:.1f}" ({origin}); furthest off: seq {worst}',
+                value=scatter * RHO_ARCSEC,
+                limit=sigma * math.sqrt(quantile / dof) * RHO_ARCSEC,
+                unit="arcsec",
+            )
+        )
+    return checks
+
+
+def _sighted(items: Items) -> Iterator[tuple[ReducedSession, TargetReduction]]:
+    for item in items:
+        for target in item.targets:
+            if target.sights is not None:
+                yield item, target
+
+
+def _faces(orientation: Orientation, items: Items) -> list[Check]:
+    """Residuals of the sights of one target against those of all others, else against the card."""
+    tested = [(i, t) for i, t in _sighted(items) if t.sights is not None and t.sights.dof > 0]
+    checks = []
+    for item, target in tested:
+        sights = target.sights
+        assert sights is not None
+        others = [
+            other.sights
+            for one, other in tested
+            if one.session.instrument == item.session.instrument and other is not target
+        ]
+        dof = sum(other.dof for other in others if other is not None)
+        squares = math.fsum(other.sum_of_squares for other in others if other is not None)
+        card = orientation.project.instrument(item.session.instrument).card
+        bound = card.sigma.reversal if card.sigma.reversal is not None else POINTING_SIGMA
+        level = level_of_one(len(tested))
+        variance = sights.sum_of_squares / sights.dof
+        limit = bound * math.sqrt(chi_square_quantile(1.0 - level, sights.dof) / sights.dof)
+        told = f'one pointing at most {bound * RHO_ARCSEC:.1f}"'
+        if dof >= LEAST_OTHERS and squares > 0.0:
+            found = squares / dof
+            quantile = _f_quantile(level, sights.dof, dof)
+            if math.sqrt(found * quantile) < limit:
+                limit = math.sqrt(found * quantile)
+                told = f'the other sights have {math.sqrt(found) * RHO_ARCSEC:.1f}"'
+        checks.append(
+            _made(
+                "sights.agree",
+                item,
+                f'sights of one face disagree by {math.sqrt(variance) * RHO_ARCSEC:.1f}" (1 sigma)'
+                f"; {told}",
+                value=math.sqrt(variance) * RHO_ARCSEC,
+                limit=limit * RHO_ARCSEC,
+                unit="arcsec",
+                target=target.target,
+            )
+        )
+    return checks
+
+
+def _f_quantile(level: float, numerator: int, denominator: int) -> float:
+    """Upper quantile of F by bisection."""
+    low, high = 0.0, 1.0
+    while f_tail(high, dof_numerator=numerator, dof_denominator=denominator) > level:
+        high *= 2.0
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        tail = f_tail(middle, dof_numerator=numerator, dof_denominator=denominator)
+        low, high = (middle, high) if tail > level else (low, middle)
+    return high
+
+
+@dataclass(frozen=True, slots=True)
+class _Collimation:
+    item: ReducedSession
+    target: str
+    value: float
+    cofactor: float
+
+
+def _collimations(orientation: Orientation, items: Items) -> list[Check]:
+    """Collimation of one set-up against the instrument's others: a wrong sight changes it."""
+    by_instrument: dict[str, list[_Collimation]] = {}
+    for item, target in _sighted(items):
+        sights = target.sights
+        if sights is not None and sights.collimation is not None:
+            found = _Collimation(
+                item, target.target, sights.collimation, sights.collimation_cofactor
+            )
+            by_instrument.setdefault(item.session.instrument, []).append(found)
+    tested = sum(len(found) for found in by_instrument.values() if len(found) > 1)
+    checks = []
+    for identity, setups in by_instrument.items():
+        if len(setups) < 2:
+            continue
+        card = orientation.project.instrument(identity).card
+        pointing = orientation.sight_sigmas[identity]
+        bound = card.sigma.reversal if card.sigma.reversal is not None else POINTING_SIGMA
+        sigma, dof = pointing.value, pointing.dof
+        if dof < LEAST_OTHERS or sigma > bound:
+            sigma, dof = bound, math.inf
+        quantile = (
+            student_quantile(1.0 - 0.5 * level_of_one(tested), dof)
+            if dof < math.inf
+            else normal_quantile(1.0 - 0.5 * level_of_one(tested))
+        )
+        for own in setups:
+            others = [other.value for other in setups if other is not own]
+            middle = float(np.median(others))
+            error = sigma * math.sqrt(own.cofactor * (1.0 + 1.6 / len(others)))
+            limit = quantile * math.hypot(error, COLLIMATION_CHANGE)
+            checks.append(
+                _made(
+                    "sights.collimation",
+                    own.item,
+                    f'collimation {own.value * RHO_ARCSEC:+.1f}", in the other set-ups '
+                    f'{middle * RHO_ARCSEC:+.1f}" (median of {len(others)})',
+                    value=abs(own.value - middle) * RHO_ARCSEC,
+                    limit=limit * RHO_ARCSEC,
+                    unit="arcsec",
+                    target=own.target,
+                )
+            )
+    return checks
+
+
+def _period(item: ReducedSession) -> list[Check]:
+    """A full period that a suspended gyro can have."""
+    period = item.reduction.period_s
+    if period is None or item.session.method == "automatic":
+        return []
+    low, high = PERIODS_S
+    return [
+        _made(
+            "period.possible",
+            item,
+            f"period {period:.1f} s; no suspended gyro swings outside {low:g} to {high:g} s",
+            value=period,
+            limit=low if period < low else high,
+            unit="s",
+            clause="physics of the swing",
+            passed=low <= period <= high,
+        )
+    ]
+
+
+def _evenness(item: ReducedSession) -> list[Check]:
+    """Every full swing lasts as long as the others."""
+    swing = item.session.book.of_kind(ReadingKind.REVERSAL, ReadingKind.MISSED, ReadingKind.TRANSIT)
+    kind = ReadingKind.TRANSIT if item.session.method == "transit" else ReadingKind.REVERSAL
+    rows = [row for row in swing if row.kind in (kind, ReadingKind.MISSED)]
+    spans = _full_swings(rows, kind)
+    if item.session.method == "automatic" or len(spans) < 2:
+        return []
+    lengths = np.array([length for length, _ in spans])
+    middle = float(np.median(lengths))
+    worst = int(np.argmax(np.abs(lengths - middle)))
+    return [
+        _made(
+            "moments.even",
+            item,
+            f"full swings of {middle:.1f} s (median); the one that ends at seq {spans[worst][1]} "
+            f"lasts {lengths[worst]:.1f} s",
+            value=abs(float(lengths[worst]) - middle),
+            limit=UNEVEN * abs(middle),
+            unit="s",
+            clause="physics of the swing",
+        )
+    ]
+
+
+def _full_swings(rows: Sequence[Reading], kind: ReadingKind) -> list[tuple[float, int]]:
+    """Length [s] and last seq of every full swing: from a row to the next but one."""
+    spans = []
+    for first, middle, last in zip(rows, rows[1:], rows[2:], strict=False):
+        if first.kind is not kind or last.kind is not kind:
+            continue
+        if kind is ReadingKind.TRANSIT and len({first.value, middle.value, last.value}) > 1:
+            continue
+        times = moments([first, last])
+        if times is not None:
+            spans.append((float(times[1] - times[0]), last.seq))
+    return spans
+
+
+def _tape_zeros(orientation: Orientation, items: Items) -> list[Check]:
+    """Tape zero after against before, and the readings of each about its own swing."""
+    zeros = [(item, item.reduction.tape_zero) for item in items]
+    both = [(i, z) for i, z in zeros if z is not None and z.before and z.after]
+    swings = [
+        (item, name, rest)
+        for item, zero in zeros
+        if zero is not None
+        for name, rest in (("before", zero.before), ("after", zero.after))
+        if rest is not None and rest.points >= MIN_POINTS_FOR_RESIDUALS and rest.dof > 0
+    ]
+    checks = []
+    for item, zero in both:
+        assert zero is not None
+        assert zero.before is not None
+        assert zero.after is not None
+        card = orientation.project.instrument(item.session.instrument).card
+        change = zero.after.value_div - zero.before.value_div
+        limit = card.tape_zero.limit_div or TAPE_ZERO_CHANGE_DIV
+        noise = (card.sigma.scale_div or 0.0) * math.hypot(
+            zero.before.weight_norm, zero.after.weight_norm
+        )
+        checks.append(
+            _made(
+                "tape_zero.agree",
+                item,
+                f"tape zero before {zero.before.value_div:+.3f} div, after "
+                f"{zero.after.value_div:+.3f} div; the change is in the sigma of gyro north",
+                value=abs(change),
+                limit=limit + normal_quantile(1.0 - 0.5 * level_of_one(len(both))) * noise,
+                unit="div",
+                clause="change of the tape zero during one session",
+            )
+        )
+    for item, name, rest in swings:
+        card = orientation.project.instrument(item.session.instrument).card
+        if card.sigma.scale_div is None or rest.scale_variance is None:
+            continue
+        quantile = chi_square_quantile(1.0 - level_of_one(len(swings)), rest.dof)
+        checks.append(
+            _made(
+                "tape_zero.readings",
+                item,
+                f"readings of the tape zero {name} about their damped swing, card "
+                f"{card.sigma.scale_div:g} div",
+                value=math.sqrt(rest.scale_variance),
+                limit=card.sigma.scale_div * math.sqrt(quantile / rest.dof),
+                unit="div",
+            )
+        )
+    return checks

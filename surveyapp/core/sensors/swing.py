@@ -1,0 +1,195 @@
+"""Swing of a compass: deviation of the uncorrected heading against known headings, A to E."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+
+from surveyapp.core.sensors.linear import LinearFit, alternate_blocks, fit_linear, rms
+from surveyapp.domain.calibration import (
+    Calibration,
+    CalibrationModel,
+    Geometry,
+    HeldOut,
+    Misfit,
+    SensorParameter,
+)
+from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.errors import Problem, SurveyError
+from surveyapp_models.arrays import Floats
+from surveyapp_models.compass.deviation import COEFFICIENTS, deviation_basis
+from surveyapp_models.compass.heading import heading_of
+
+NAMES: Final = tuple(f"deviation_{letter}" for letter in COEFFICIENTS)
+BLOCK_S: Final = 2.0
+LEVEL_LIMIT_DEG: Final = 45.0
+"""A swing turns a carrier near level: up is within so many degrees of z."""
+
+
+def shown_heading(log: SensorLog) -> Floats:
+    """Uncorrected heading, tilt-compensated where the specific force was recorded [rad].
+
+    Raises
+    ------
+    SurveyError
+        If the specific force does not point along +z: axes exchanged, or z down.
+    """
+    field = np.column_stack([log.columns[f"mag_{axis}_uT"] for axis in "xyz"])
+    acc = log.vector("acc")
+    if acc is not None:
+        refuse_swapped(acc, log.path)
+    return heading_of(field, acc)
+
+
+def refuse_swapped(acc: Floats, where: str) -> None:
+    """Refuse a level record whose mean specific force is not along +z.
+
+    Raises
+    ------
+    SurveyError
+    """
+    mean = acc.mean(axis=0)
+    tilt = math.degrees(math.acos(np.clip(mean[2] / np.linalg.norm(mean), -1.0, 1.0)))
+    if tilt <= LEVEL_LIMIT_DEG:
+        return
+    axis = int(np.argmax(np.abs(mean)))
+    name = f"{'+' if mean[axis] > 0.0 else '-'}{'xyz'[axis]}"
+    raise SurveyError(
+        Problem(
+            "the axes are exchanged or reversed: gravity is not on the z axis",
+            where,
+            f"mean specific force ({mean[0]:.2f}, {mean[1]:.2f}, {mean[2]:.2f}) m/s2: up is {name}",
+            "+g on the z axis, which points up; axes right-handed",
+            "exchange the columns with --map; --scale COLUMN=-1 reverses one (acc and mag alike)",
+        )
+    )
+
+
+def calibrate_swing(log: SensorLog, *, limit: float) -> Calibration:
+    """Deviation coefficients of a swing.
+
+    Parameters
+    ----------
+    log : SensorLog
+        ``mag_*``, ``heading_deg`` (known MAGNETIC heading), and ``acc_*`` where recorded.
+    limit : float
+        Largest sigma of a corrected heading that is accepted [rad].
+
+    Returns
+    -------
+    Calibration
+
+    Raises
+    ------
+    SurveyError
+        If the axes are exchanged.
+    """
+    psi = np.radians(log.columns["heading_deg"])
+    shown = shown_heading(log)
+    deviation = (psi - shown + np.pi) % (2.0 * np.pi) - np.pi
+    middle = math.atan2(float(np.mean(np.sin(deviation))), float(np.mean(np.cos(deviation))))
+    deviation = middle + (deviation - middle + np.pi) % (2.0 * np.pi) - np.pi
+    design = deviation_basis(psi)
+    fit = fit_linear(design, deviation, correlated=True)
+    sigma = math.inf if fit is None else _heading_sigma(fit)
+    return _result(log, (psi, deviation, design), fit, (sigma, limit))
+
+
+def _heading_sigma(fit: LinearFit) -> float:
+    basis = deviation_basis(np.radians(np.arange(0.0, 360.0, 10.0)))
+    return float(np.sqrt(np.max(np.sum((basis @ fit.covariance) * basis, axis=1))))
+
+
+def _result(
+    log: SensorLog,
+    data: tuple[Floats, Floats, Floats],
+    fit: LinearFit | None,
+    gate: tuple[float, float],
+) -> Calibration:
+    psi, deviation, design = data
+    sigma, limit = gate
+    met = fit is not None and sigma <= limit
+    parameters = tuple(
+        SensorParameter(
+            name,
+            math.degrees(float(fit.x[i])) if fit is not None and met else None,
+            math.degrees(float(fit.sigma[i])) if fit is not None and met else None,
+            "deg",
+        )
+        for i, name in enumerate(NAMES)
+    )
+    rate = log.rate_hz if log.rate_hz is not None else 1.0
+    block = max(min(round(BLOCK_S * rate), log.size // 10), 1)
+    held, plain = _held_out(design, deviation, block), math.degrees(rms(deviation))
+    after = math.degrees(fit.rms) if fit is not None and met else None
+    cells = np.histogram(psi % (2.0 * np.pi), bins=12, range=(0.0, 2.0 * np.pi))[0]
+    return Calibration(
+        kind="swing",
+        source=log.id,
+        parameters=parameters,
+        before=Misfit(plain, "deg", "known minus shown heading"),
+        after=Misfit(after, "deg", "known minus corrected heading"),
+        geometry=Geometry(
+            "good" if met else "refused",
+            None if fit is None else fit.condition,
+            () if met else NAMES,
+            math.degrees(sigma) if math.isfinite(sigma) else None,
+            float(np.count_nonzero(cells)) / cells.size,
+        ),
+        held_out=HeldOut(
+            f"contiguous blocks of {block} rows, two halves fitted alternately", plain, held, "deg"
+        ),
+        models=(
+            CalibrationModel("none", plain, plain, not met),
+            CalibrationModel("A_to_E", after, held, met),
+        ),
+        warnings=(*log.warnings, *_warnings(log, fit, met=met)),
+        met=met,
+        n=log.size,
+        sha256=log.sha256,
+        covariance=_degrees_covariance(fit) if met else None,
+        extra={"coverage_cells": [cells.tolist()]},
+        constants={"heading_sigma_deg": math.degrees(sigma)} if met else {},
+        temperature_c=_temperatures(log),
+    )
+
+
+def _degrees_covariance(fit: LinearFit | None) -> tuple[tuple[float, ...], ...] | None:
+    if fit is None:
+        return None
+    scaled = fit.covariance * math.degrees(1.0) ** 2
+    return tuple(tuple(float(v) for v in row) for row in scaled)
+
+
+def _held_out(design: Floats, deviation: Floats, block: int) -> float | None:
+    left = np.full(deviation.size, np.nan)
+    for used, held in alternate_blocks(deviation.size, block):
+        half = fit_linear(design[used], deviation[used])
+        if half is None:
+            return None
+        left[held] = deviation[held] - design[held] @ half.x
+    return math.degrees(rms(left))
+
+
+def _temperatures(log: SensorLog) -> tuple[float, float] | None:
+    values = log.columns.get("temperature_c")
+    if values is None or not np.all(np.isfinite(values)):
+        return None
+    return float(values.min()), float(values.max())
+
+
+def _warnings(log: SensorLog, fit: LinearFit | None, *, met: bool) -> list[ResultWarning]:
+    found = []
+    if not met:
+        text = "the headings do not determine A to E: swing through the whole circle"
+        found.append(ResultWarning("geometry", text))
+    if fit is not None and fit.inflation > 1.0:
+        text = f"neighbouring deviations resemble each other; sigmas widened {fit.inflation:.2f} x"
+        found.append(ResultWarning("correlated", text))
+    if log.vector("acc") is None:
+        text = "no specific force: the headings are taken as level, not tilt-compensated"
+        found.append(ResultWarning("not_tilt_compensated", text))
+    return found

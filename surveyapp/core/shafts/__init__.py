@@ -1,0 +1,1 @@
+"""Orientation through shafts: swinging wires, triangles, two shafts, wires joined with gyro."""

@@ -1,0 +1,100 @@
+"""Mixtures of Student distributions: what a value averaged over several models is spread like.
+
+Numpy and the standard library only: the reduction of a project needs no scipy.
+
+Source of the approximation: Wallace, D. L. (1959), Bounds on normal approximations to Student's
+and the chi-square distributions, Ann. Math. Statist. 30, 1121-1130 (within 0.0006 of the
+probability from 8 degrees of freedom on, held against the exact one in the tests); error function:
+Abramowitz & Stegun (1964), 7.1.26.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from surveyapp_models.arrays import Floats
+
+PROBABILITY = 0.95
+LEAST_WEIGHT = 1e-5
+"""Members below it are left out of an interval."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Mixture:
+    """A mixture about its own mean.
+
+    Parameters
+    ----------
+    weights : ndarray, shape (m,)
+        Sum 1.
+    offsets : ndarray, shape (m,)
+        Mean of each member minus the mean of all.
+    variances : ndarray, shape (m,)
+        Square of the scale of each member.
+    dof : float
+        Degrees of freedom of each member; may be infinite.
+    """
+
+    weights: Floats
+    offsets: Floats
+    variances: Floats
+    dof: float = math.inf
+    _cache: dict[float, float] = field(default_factory=dict, repr=False)
+
+    @property
+    def variance(self) -> float:
+        """Of the mixture, its members taken for normal."""
+        return float(self.weights @ (self.variances + self.offsets**2))
+
+    def scaled(self, factor: float) -> Mixture:
+        """The same of a multiple of the value."""
+        return Mixture(
+            self.weights, factor * self.offsets, factor * factor * self.variances, self.dof
+        )
+
+    def half_width(self, beside: float = 0.0) -> float:
+        """Half-width in which .95 lies, beside an independent error of a variance ``beside``."""
+        if beside not in self._cache:
+            self._cache[beside] = self._half_width(beside)
+        return self._cache[beside]
+
+    def _half_width(self, beside: float) -> float:
+        kept = self.weights > LEAST_WEIGHT * self.weights.max()
+        weights = self.weights[kept] / self.weights[kept].sum()
+        scales = np.sqrt(np.maximum(self.variances[kept] + beside, 1e-300))
+        offsets = self.offsets[kept]
+        low, high = 0.0, float(np.max(np.abs(offsets) + 6.0 * scales))
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            inside = student_cdf((middle - offsets) / scales, self.dof) - student_cdf(
+                (-middle - offsets) / scales, self.dof
+            )
+            if float(weights @ inside) < PROBABILITY:
+                low = middle
+            else:
+                high = middle
+            if high - low <= 1e-6 * high:
+                break
+        return 0.5 * (low + high)
+
+
+def normal_cdf(z: Floats) -> Floats:
+    """Normal distribution function, error below 1e-7."""
+    x = np.abs(z) / math.sqrt(2.0)
+    t = 1.0 / (1.0 + 0.3275911 * x)
+    poly = t * (
+        0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429)))
+    )
+    upper = 0.5 * poly * np.exp(-x * x)
+    return np.asarray(np.where(z >= 0.0, 1.0 - upper, upper))
+
+
+def student_cdf(t: Floats, dof: float) -> Floats:
+    """Student distribution function by Wallace's transformation to the normal one."""
+    if math.isinf(dof):
+        return normal_cdf(t)
+    z = np.sign(t) * np.sqrt(dof * np.log1p(t * t / dof)) * (8.0 * dof + 1.0) / (8.0 * dof + 3.0)
+    return normal_cdf(z)

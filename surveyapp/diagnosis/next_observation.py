@@ -1,0 +1,229 @@
+"""Which observation would tell most next: expected separation of the causes, expected interval.
+
+The average over the causes says what each action would read; every such reading, drawn from it,
+moves the weights of the causes and narrows the interval of the next line. The mean over the draws
+is what the action is worth before it is made.
+
+Source: prediction.md D; Lindley, D. V. (1956), On a measure of the information provided by an
+experiment, Ann. Math. Statist. 27, 986-1005.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from surveyapp.core.prediction.members import Members, members
+from surveyapp.core.statistics.mixture import student_cdf
+from surveyapp.diagnosis.action import POSITION, Action, completed
+from surveyapp.diagnosis.case import Case
+from surveyapp.diagnosis.later_visits import campaign_data, is_campaign
+from surveyapp.diagnosis.outlook import ActionResult
+from surveyapp.domain.priors import DEFAULT_PRIORS, GROSS, Priors
+from surveyapp_models.arrays import Floats
+
+DRAWS = 200
+WIDTH_DRAWS = 40
+"""Draws for which the final interval is formed as well."""
+LEAST_WEIGHT = 1e-4
+LEAST = 4
+"""Determinations from which advice is given."""
+HORIZON_DAYS = 30.0
+"""The later line for which the final interval is told: so many days on, at another line."""
+SUM = 0.95
+
+
+@dataclass(frozen=True, slots=True)
+class Outlook:
+    """What actions are worth beside each other.
+
+    Parameters
+    ----------
+    now : float
+        Weight of the likeliest cause as it stands.
+    interval : float
+        Half-width of the 95 % interval of the later line as it stands [SI].
+    actions : tuple of ActionResult
+        Best first.
+    """
+
+    now: float
+    interval: float
+    actions: tuple[ActionResult, ...]
+
+
+def advice(case: Case, rng: np.random.Generator, priors: Priors = DEFAULT_PRIORS) -> Outlook | None:
+    """What each feasible action at the end of a campaign would tell; None where nothing can.
+
+    Parameters
+    ----------
+    case : Case
+        With its ``actions``.
+    rng : numpy.random.Generator
+        For the readings that are drawn.
+    """
+    if not is_campaign(case) or case.size < LEAST or not case.actions:
+        return None
+    columns = {name: np.asarray(values) for name, values in case.columns.items()}
+    columns.setdefault("elapsed_days", case.position)
+    columns[POSITION] = case.position
+    feasible = [(a, rows) for a in case.actions if (rows := a.rows(columns)) is not None]
+    if not feasible:
+        return None
+    visits = [completed(columns, rows) for _, rows in feasible]
+    found = _members(case, visits, _later(columns), priors)
+    return _outlook(case, [action for action, _ in feasible], found, rng)
+
+
+def _later(columns: Mapping[str, Floats]) -> dict[str, Floats]:
+    """The line that is wanted: some weeks on, another line, the mean of all that varies."""
+    days = columns["elapsed_days"]
+    later = {name: np.array([float(np.mean(values))]) for name, values in columns.items()}
+    later["elapsed_days"] = later[POSITION] = np.array([days.max() + HORIZON_DAYS])
+    for name in ("line", "block"):
+        if name in columns:
+            later[name] = np.array([columns[name].max() + 1000.0])
+    if "observer" in columns:
+        later["observer"] = columns["observer"][-1:]
+    for name in ("line_reading", "north_reading"):
+        if name in columns:
+            later[name] = columns[name][-1:]
+    return later
+
+
+def _members(
+    case: Case, visits: Sequence[Mapping[str, Floats]], later: Mapping[str, Floats], priors: Priors
+) -> Members:
+    """Every cause with its prediction of each action's reading and of the later line (last)."""
+    n, q = case.size, len(visits) + 1
+    names = set(case.columns) | {"elapsed_days"}
+    more = {
+        name: np.concatenate([*(v[name][:1] for v in visits), later[name]])
+        for name in names
+        if all(name in v for v in visits)
+    }
+    targets = np.zeros((q, n + q))
+    targets[np.arange(q), n + np.arange(q)] = 1.0
+    return members(campaign_data(case, np.arange(n), targets, more), priors)
+
+
+def _outlook(
+    case: Case, actions: Sequence[Action], found: Members, rng: np.random.Generator
+) -> Outlook:
+    keep = found.weights > LEAST_WEIGHT * found.weights.max()
+    weights = found.weights[keep] / found.weights[keep].sum()
+    units = np.array(found.units)[keep]
+    # a slip that is not carried forward is no rival of anything for the next line
+    names = sorted(set(units.tolist()) - {GROSS})
+    classes = np.array([[float(u == name) for name in names] for u in units])
+    means, covariance = found.means[keep], found.covariance[keep]
+    noise = found.noise[keep]
+    state = _State(weights, classes, means, covariance, noise, found.dof)
+    share = weights @ classes
+    interval = float(
+        _half_widths(state, weights[None, :], means[None, :, -1], covariance[:, -1, -1])[0]
+    )
+    sigma = 1.0 if case.sigma is None else float(np.median(case.sigma)) / found.unit
+    results = [
+        _worth(state, place, action, (rng, sigma, found.unit))
+        for place, action in enumerate(actions)
+    ]
+    results.sort(key=lambda item: (-item.information, item.interval95))
+    return Outlook(float(share.max() / share.sum()), interval * found.unit, tuple(results))
+
+
+@dataclass(frozen=True, slots=True)
+class _State:
+    """Members as they stand: weights (m,), classes (m, c), means (m, t), covariance (m, t, t)."""
+
+    weights: Floats
+    classes: Floats
+    means: Floats
+    covariance: Floats
+    noise: Floats
+    dof: float
+
+
+def _worth(
+    state: _State,
+    place: int,
+    action: Action,
+    how: tuple[np.random.Generator, float, float],
+) -> ActionResult:
+    """Expected separation and interval once an action's reading is there."""
+    rng, sigma, unit = how
+    total = state.covariance[:, place, place] + state.noise * sigma**2
+    chosen = rng.choice(state.weights.size, DRAWS, p=state.weights)
+    scale = np.sqrt(total)
+    y = state.means[chosen, place] + scale[chosen] * rng.standard_t(state.dof, DRAWS)
+    z = (y[:, None] - state.means[None, :, place]) / scale[None, :]
+    log = -np.log(scale) - 0.5 * (state.dof + 1.0) * np.log1p(z * z / state.dof)
+    new = state.weights * np.exp(log - log.max(axis=1, keepdims=True))
+    new /= new.sum(axis=1, keepdims=True)
+    share = new @ state.classes
+    share /= share.sum(axis=1, keepdims=True)
+    before = state.weights @ state.classes
+    before = before / before.sum()
+    gain = _entropy(before[None, :])[0] - float(_entropy(share).mean())
+    cross = state.covariance[:, place, -1]
+    left = np.maximum(state.covariance[:, -1, -1] - cross**2 / total, 0.0)
+    some = slice(0, WIDTH_DRAWS)
+    moved = state.means[None, :, -1] + (cross / total) * (
+        y[some, None] - state.means[None, :, place]
+    )
+    half = _half_widths(state, new[some], moved, left)
+    return ActionResult(
+        action=action.id,
+        text=action.text,
+        separation=float(share.max(axis=1).mean()),
+        information=max(gain, 0.0),
+        interval95=float(half.mean()) * unit,
+    )
+
+
+def _entropy(share: Floats) -> Floats:
+    safe = np.where(share > 0.0, share, 1.0)
+    return np.asarray(-(share * np.log(safe)).sum(axis=1))
+
+
+def _half_widths(state: _State, weights: Floats, means: Floats, variance: Floats) -> Floats:
+    """Half-width of the 95 % interval for each row of weights and means, shape (draws,)."""
+    centre = (weights * means).sum(axis=1, keepdims=True)
+    offsets = means - centre
+    scale = np.sqrt(np.maximum(variance, 1e-12))[None, :]
+    low = np.zeros(weights.shape[0])
+    high = (np.abs(offsets) + 6.0 * scale).max(axis=1)
+    for _ in range(25):
+        middle = 0.5 * (low + high)
+        inside = student_cdf((middle[:, None] - offsets) / scale, state.dof)
+        inside -= student_cdf((-middle[:, None] - offsets) / scale, state.dof)
+        enough = (weights * inside).sum(axis=1) >= SUM
+        high, low = np.where(enough, middle, high), np.where(enough, low, middle)
+    return np.asarray(0.5 * (low + high))
+
+
+def worth_in_words(outlook: Outlook, *, scale: float, unit: str) -> list[str]:
+    """The advice in sentences with numbers, the best action first."""
+    if not outlook.actions:
+        return []
+    best = outlook.actions[0]
+    sign = '"' if unit == "arcsec" else f" {unit}"
+    now = f"+-{outlook.interval / scale:.1f}{sign}"
+
+    def told(item: ActionResult) -> str:
+        return (
+            f"{item.text}: the likeliest cause would then stand at {item.separation:.0%} on "
+            f"average, and a line in {HORIZON_DAYS:.0f} days at "
+            f"+-{item.interval95 / scale:.1f}{sign} (95 %)"
+        )
+
+    said = [f"Next, best: {told(best)}; today it stands at {outlook.now:.0%} and {now}."]
+    others = [told(item) for item in outlook.actions[1:3]]
+    if others:
+        said.append(f"Else: {'; or '.join(others)}.")
+    return said
+
+
+__all__ = ["Outlook", "advice", "worth_in_words"]

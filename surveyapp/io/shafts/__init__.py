@@ -1,0 +1,1 @@
+"""``[[shaft]]`` of project.toml and its book."""

@@ -1,0 +1,108 @@
+"""Orientation through shafts in the record: azimuths, checks, swings, budget, plumbing."""
+
+from __future__ import annotations
+
+from surveyapp.domain.shaft import CHECK_IDS
+from surveyapp.domain.shaft_result import ShaftOrientation, ShaftResult, SideAzimuth
+from surveyapp.report.blocks import Block, Heading, Paragraph, Table
+from surveyapp.report.numbers import NOTHING, direction, plain
+from surveyapp_models.angles import RHO_ARCSEC, AngleUnit
+
+MET = {True: "yes", False: "NO", None: NOTHING}
+
+
+def blocks(result: ShaftResult, *, unit: AngleUnit) -> tuple[Block, ...]:
+    """Blocks of every shaft."""
+    found: list[Block] = []
+    for shaft in result.shafts:
+        found += [Heading(f"Shaft {shaft.id}"), _azimuths(shaft, unit)]
+        if shaft.combined.consistent is False:
+            text = "Wires and gyro contradict each other: nothing is averaged."
+            found.append(Paragraph(text, "warning"))
+        found += [Heading("Checks of the shaft", 2), _checks(shaft)]
+        text = f"The plumb lines converge by {shaft.convergence_mm:.2f} mm over the depth."
+        found.append(Paragraph(text, "small"))
+        found += [Heading("Rest of the wires", 2), _wires(shaft)]
+        found += [Heading("Error of one orientation through the shaft", 2), _budget(shaft)]
+        found += [Heading("Checks of the plumbing", 2), _plumbing(shaft)]
+    found += [Paragraph(f"{w.code}: {w.text}", "warning") for w in result.warnings]
+    return tuple(found)
+
+
+def _azimuths(shaft: ShaftOrientation, unit: AngleUnit) -> Table:
+    joint = shaft.combined
+    chi = NOTHING if joint.chi2 is None else f"{joint.chi2:.2f} ({joint.dof} dof)"
+
+    def row(name: str, value: SideAzimuth | None, note: str = "") -> tuple[str, ...]:
+        if value is None:
+            return name, NOTHING, NOTHING, note
+        return name, direction(value.value, unit), plain(value.sigma * RHO_ARCSEC, 1), note
+
+    rows = [row("wires", shaft.azimuth), row("gyro", shaft.gyro)]
+    if shaft.gyro is not None:
+        rows.append(row("together", joint.azimuth, f"chi-square {chi}"))
+    head = (f"{shaft.at} - {shaft.to} by", "grid azimuth", '\N{PLUS-MINUS SIGN}"', "")
+    return Table(head, tuple(rows), "lrrl", strong=frozenset({len(rows) - 1}))
+
+
+def _checks(shaft: ShaftOrientation) -> Table:
+    rows = [
+        (
+            f"distance of the wires from {item.station}, {item.place}",
+            f"{item.f_mm:+.2f}",
+            f"{item.limit_mm:.2f}",
+            MET[item.passed],
+        )
+        for item in shaft.triangles
+    ]
+    if shaft.scale is not None:
+        scale = shaft.scale
+        values = (f"{scale.misclosure_mm:+.2f}", f"{scale.limit_mm:.2f}", MET[scale.passed])
+        rows.append(("distance of the shafts, above against below", *values))
+    depth = shaft.depth
+    rows.append(
+        (
+            f"depth {depth.m:.4f} m by two determinations",
+            plain(depth.difference_mm, 2),
+            f"{depth.limit_mm:.2f}",
+            MET[depth.passed],
+        )
+    )
+    return Table(("check", "mm", "limit mm", "met"), tuple(rows), "lrrl")
+
+
+def _wires(shaft: ShaftOrientation) -> Table:
+    rows = tuple(
+        (
+            wire.name,
+            plain(wire.x_mm, 3),
+            plain(wire.sigma_x_mm, 3),
+            plain(wire.y_mm, 3),
+            plain(wire.sigma_y_mm, 3),
+            plain(wire.period_s, 2),
+        )
+        for wire in shaft.wires
+    )
+    sign = "\N{PLUS-MINUS SIGN}"
+    return Table(("wire", "x mm", sign, "y mm", sign, "period s"), rows, "lrrrrr")
+
+
+def _budget(shaft: ShaftOrientation) -> Table:
+    rows = tuple(
+        (line.source.replace("_", " "), plain(line.sigma * RHO_ARCSEC, 2), f"{line.share:.0%}")
+        for line in shaft.budget
+    )
+    return Table(("source", '\N{PLUS-MINUS SIGN}"', "share"), rows, "lrr")
+
+
+def _plumbing(shaft: ShaftOrientation) -> Table:
+    recorded = {check.id: check for check in shaft.checks}
+    rows = []
+    for name in CHECK_IDS:
+        check = recorded.get(name)
+        if check is None:
+            rows.append((name.replace("_", " "), "open", "", ""))
+        else:
+            done = check.done_at or "open"
+            rows.append((name.replace("_", " "), done, check.by, check.note))
+    return Table(("check", "done", "by", "note"), tuple(rows), "llll")

@@ -1,0 +1,61 @@
+"""``calibrate compass``: a swing where headings are known, else an ellipsoid."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Final
+
+from surveyapp.core.sensors.compass_calibration import calibrate_ellipsoid
+from surveyapp.core.sensors.swing import calibrate_swing
+from surveyapp.domain.calibration import Calibration
+from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.sensor_logs.reading import Need
+from surveyapp.workflows.calibrating.request import CalibrationRequest
+
+MAG: Final = ("mag_x_uT", "mag_y_uT", "mag_z_uT")
+ACC: Final = ("acc_x_m_s2", "acc_y_m_s2", "acc_z_m_s2")
+HEADING_LIMIT_DEG: Final = 0.5
+
+
+def calibrate(request: CalibrationRequest) -> Calibration:
+    """Calibrate a compass from its log."""
+    limit = request.number("heading_limit_deg", HEADING_LIMIT_DEG)
+    if limit is None or not 0.0 < limit <= 45.0:
+        found, expected = str(limit), "more than 0, at most 45"
+        raise SurveyError(Problem("this is no limit", "--heading-limit-deg", found, expected))
+    swing = request.file.has("heading_deg")
+    acc = ACC if request.file.has(*ACC) else ()
+    heading = ("heading_deg",) if swing else ()
+    log = request.read(
+        Need(
+            columns=(*MAG, *acc, *heading),
+            varying=(*MAG, *heading),
+            optional=("temperature_c",),
+        )
+    )
+    result = (calibrate_swing if swing else calibrate_ellipsoid)(log, limit=math.radians(limit))
+    declination = request.option("declination")
+    if declination is None:
+        return result
+    value, sigma = declination_of(str(declination))
+    stated = {"deg": value, "sigma_deg": sigma, "reference": "MAGNETIC"}
+    return replace(result, extra={**result.extra, "declination": stated})
+
+
+def declination_of(text: str) -> tuple[float, float | None]:
+    """``D`` or ``D,SIGMA`` in degrees.
+
+    Raises
+    ------
+    SurveyError
+    """
+    try:
+        numbers = [float(part) for part in text.split(",")]
+    except ValueError:
+        numbers = []
+    usable = len(numbers) in (1, 2) and all(math.isfinite(n) for n in numbers)
+    if not usable or abs(numbers[0]) > 180.0 or (len(numbers) == 2 and numbers[1] < 0.0):
+        expected = "D or D,SIGMA in degrees, east positive"
+        raise SurveyError(Problem("this is no declination", "--declination", text, expected))
+    return numbers[0], numbers[1] if len(numbers) == 2 else None

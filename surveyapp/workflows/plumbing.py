@@ -1,0 +1,38 @@
+"""Every shaft of a project oriented; the problems of all come in one error."""
+
+from __future__ import annotations
+
+from surveyapp.core.shafts.orientation import orient_shaft
+from surveyapp.domain.project import Project, ResultWarning
+from surveyapp.domain.shaft_result import ShaftOrientation, ShaftResult
+from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.shafts.table import read_shafts
+
+
+def orient_shafts(project: Project, *, software: str) -> ShaftResult:
+    """Orient through every shaft.
+
+    Raises
+    ------
+    SurveyError
+        If there is none, and with every problem of tables, books and networks.
+    """
+    known = {
+        station.name: (station.e, station.n)
+        for station in project.stations
+        if station.e is not None and station.n is not None and not station.planned
+    }
+    found: list[ShaftOrientation] = []
+    warnings: list[ResultWarning] = list(project.warnings)
+    problems: list[Problem] = []
+    for shaft in read_shafts(project):
+        try:
+            oriented, told = orient_shaft(shaft, known)
+        except SurveyError as refused:
+            problems += refused.problems
+            continue
+        found.append(oriented)
+        warnings += told
+    if problems:
+        raise SurveyError(problems)
+    return ShaftResult(project.name, software, project.digest, tuple(found), tuple(warnings))

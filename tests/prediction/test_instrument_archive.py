@@ -1,0 +1,133 @@
+"""All records of an instrument together: pooled runs, priors of an archive, what is refused."""
+
+import dataclasses
+import shutil
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from bench._records import Truth, problems
+from surveyapp import api
+from surveyapp.diagnosis import Case
+from surveyapp.diagnosis.pooling import pool
+from surveyapp.domain.priors import DEFAULT_PRIORS
+from surveyapp.errors import SurveyError
+from surveyapp_models.angles import ARCSEC
+from tests.cli.command import run
+
+
+def runs(truth: Truth, count: int, seed: int) -> list[Case]:
+    made, _ = problems(truth, count, seed)
+    return [dataclasses.replace(c, sigma=np.full(c.size, 4.0 * ARCSEC)) for c in made]
+
+
+def test_a_warm_up_that_one_run_does_not_show_is_named_from_eight() -> None:
+    truth = Truth("warm-up", 8, warm_up=40.0, one_sign=True)
+    one = sum(pool(runs(truth, 1, s), np.random.default_rng(s)).named is not None for s in range(8))
+    found = [pool(runs(truth, 8, s), np.random.default_rng(s)).named for s in range(4)]
+    named = [item for item in found if item is not None and item.effect == "warm_up"]
+    # .99 of eight runs and .18 of one are named in the reference
+    assert len(named) >= 3
+    assert one <= stats.binom.ppf(0.999, 8, 0.18)
+    for item in named:
+        assert item.coefficient is not None
+        assert item.sessions == 8
+        assert -90.0 < item.coefficient * np.sign(item.coefficient) - 40.0 < 60.0
+
+
+def test_a_walk_is_not_named_however_many_runs_there_are() -> None:
+    truth = Truth("walk", 8, walk=9.0)
+    for count in (2, 8):
+        found = [pool(runs(truth, count, s), np.random.default_rng(s)).named for s in range(6)]
+        assert sum(item is not None for item in found) <= stats.binom.ppf(0.999, 6, 0.05)
+
+
+@pytest.fixture(scope="module")
+def archive(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("archive")
+    for seed in range(3):
+        api.simulate("campaign", folder / f"c{seed}", effects=["temperature=1.5"], seed=seed)
+    return folder
+
+
+def test_an_archive_teaches_priors_that_a_project_then_uses(archive: Path, tmp_path: Path) -> None:
+    project = shutil.copytree(archive / "c0", tmp_path / "p")
+    before = api.orient(project)
+    with ThreadPoolExecutor(2) as executor:
+        found = api.diagnose_instrument(
+            project, "G1", archive=[archive], priors=project / "priors.toml", executor=executor
+        )
+    assert found.priors is not None
+    assert found.campaigns == 4  # the copy is another folder
+    assert found.priors.share("temperature") > 2.0 * DEFAULT_PRIORS.share("temperature")
+    text = (project / "project.toml").read_text(encoding="utf-8")
+    text = text.replace("serial =", 'priors = "priors.toml"\nserial =', 1)
+    (project / "project.toml").write_text(text, encoding="utf-8")
+    after = api.orient(project)
+    assert api.open_project(project).instruments[0].priors is not None
+    assert after.lines[0].constant != before.lines[0].constant
+    assert after.lines[0].constant_choice == "predicted"
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("format = 2", "no priors file"),
+        ("[[[", "no TOML"),
+        (
+            'format = 1\nkind = "priors of the instrument constant"\n[shares]\nbase = 0.5\n'
+            'drft = 0.5\n[sizes]\n"0.7" = 2',
+            "drift",
+        ),
+    ],
+)
+def test_a_faulty_priors_file_is_told(archive: Path, tmp_path: Path, text: str, told: str) -> None:
+    project = shutil.copytree(archive / "c1", tmp_path / "p")
+    (project / "priors.toml").write_text(text, encoding="utf-8")
+    toml = (project / "project.toml").read_text(encoding="utf-8")
+    toml = toml.replace("serial =", 'priors = "priors.toml"\nserial =', 1)
+    (project / "project.toml").write_text(toml, encoding="utf-8")
+    answer = run("orient", str(project))
+    assert answer.code == 2
+    assert told in answer.err
+
+
+def test_what_cannot_be_pooled_is_refused(archive: Path, tmp_path: Path) -> None:
+    other = shutil.copytree(archive / "c2", tmp_path / "other")
+    text = (other / "project.toml").read_text(encoding="utf-8")
+    text = text.replace('serial = "simulated"', 'serial = "another one"')
+    (other / "project.toml").write_text(text, encoding="utf-8")
+    found = api.diagnose_instrument(archive / "c0", "G1", archive=[other])
+    assert found.projects == 1
+    assert [w.code for w in found.warnings] == ["other_instrument"]
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    with pytest.raises(SurveyError, match="archive without projects"):
+        api.diagnose_instrument(archive / "c0", "G1", archive=[empty])
+    for words in (
+        ["--instrument", "G2"],
+        ["--instrument", "G1", "--adopt"],
+        ["--campaign", "G1", "--archive", str(archive)],
+    ):
+        answer = run("diagnose", str(archive / "c0"), *words)
+        assert answer.code == 2, words
+        assert "Traceback" not in answer.err
+
+
+def test_the_pooled_result_has_its_keys(archive: Path) -> None:
+    found = api.diagnose_instrument(archive / "c0", "G1").to_dict()
+    assert found["schema"] == "surveyapp.diagnose/1"
+    assert set(found) >= {"subject", "verdict", "pooled", "priors", "words", "warnings"}
+    diagnosis = api.diagnose(archive / "c0", campaign="G1", log=False).to_dict()
+    assert diagnosis["pooled"] is None
+    held = diagnosis["prediction"]
+    assert set(held["before"]) == {"rms", "coverage", "interval95_arcsec"}
+    assert held["after"]["rms"] < held["before"]["rms"]
+    assert diagnosis["actions"]
+    best = diagnosis["actions"][0]
+    assert set(best) == {"action", "text", "separation", "information", "interval95_arcsec"}
+    gains = [item["information"] for item in diagnosis["actions"]]
+    assert gains == sorted(gains, reverse=True)
