@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from surveyapp.core.sensors.rate.indexing import Indexed, Setting, Stop, solve_indexing
+from surveyapp.core.sensors.rate.indexing import solve_indexing
+from surveyapp.core.sensors.rate.indexing_values import Indexed, Setting, Stop
 from surveyapp.core.simulate.rate.table_programmes import DEG_H
 from surveyapp_models.angles import wrap_pi
 from surveyapp_models.arrays import Floats

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from surveyapp.core.sensors.rate.indexing import Setting
 from surveyapp.core.sensors.rate.indexing_log import (
     GYROS,
     NEEDED,
@@ -15,6 +14,7 @@ from surveyapp.core.sensors.rate.indexing_log import (
     IndexingOptions,
     find_heading,
 )
+from surveyapp.core.sensors.rate.indexing_values import Setting
 from surveyapp.core.sensors.rate.parameters import DEG_H
 from surveyapp.domain.north import NorthResult
 from surveyapp.domain.sensor_log import SensorLog

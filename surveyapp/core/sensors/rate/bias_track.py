@@ -14,7 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from surveyapp.core.sensors.rate.indexing import Indexed, Setting, Stop, solve_indexing
+from surveyapp.core.sensors.rate.indexing import solve_indexing
+from surveyapp.core.sensors.rate.indexing_values import Indexed, Setting, Stop
 from surveyapp.core.sensors.rate.parameters import DEG_H
 
 WALK = 0.05 * DEG_H

@@ -11,13 +11,8 @@ from typing import Any
 import numpy as np
 
 from surveyapp.core.sensors.rate.bias_track import Tracked, track_bias
-from surveyapp.core.sensors.rate.indexing import (
-    Indexed,
-    Root,
-    Setting,
-    Stop,
-    solve_indexing,
-)
+from surveyapp.core.sensors.rate.indexing import solve_indexing
+from surveyapp.core.sensors.rate.indexing_values import Indexed, Root, Setting, Stop
 from surveyapp.core.sensors.rate.parameters import DEG_H
 from surveyapp.domain.calibration import SensorParameter
 from surveyapp.domain.north import NorthDirection, NorthResult
