@@ -7,7 +7,8 @@ Each subject has a module of its own behind this one, which is all that scripts 
 from __future__ import annotations
 
 from surveyapp.api.batch import batch, batch_rows
-from surveyapp.api.importing import import_file
+from surveyapp.api.importing import export_survey, import_file
+from surveyapp.api.instruments import follow_turn, read_instrument
 from surveyapp.api.judgement import check, diagnose, subjects
 from surveyapp.api.network import (
     adjust,
@@ -104,7 +105,10 @@ __all__ = [
     "close",
     "reopen",
     "compare",
+    "read_instrument",
+    "follow_turn",
     "import_file",
+    "export_survey",
     "export_csv",
     "export_gkf",
     "export_json",

@@ -1,14 +1,16 @@
-"""Field files into projects for scripts, re-exported by ``surveyapp.api``."""
+"""Field files into projects and out of them for scripts, re-exported by ``surveyapp.api``."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from datetime import datetime
 from pathlib import Path
 
-from surveyapp.api.project import Folder, open_project
+from surveyapp.api.project import SOFTWARE, Folder, open_project
 from surveyapp.domain.fieldfile import ImportResult
-from surveyapp.errors import Problem, SurveyError
+from surveyapp.domain.filing import ExportResult
+from surveyapp.errors import Problem, SurveyError, nearest_names
 
 
 def import_file(
@@ -86,3 +88,54 @@ def import_file(
         return planned.result
     write_additions(Path(folder), planned.additions)
     return replace(planned.result, written=True)
+
+
+def _local_now() -> datetime:
+    return datetime.now().astimezone()
+
+
+def export_survey(
+    form: str,
+    folder: Folder,
+    output: Folder,
+    *,
+    now: Callable[[], datetime] = _local_now,
+) -> ExportResult:
+    """Write points, observations and lines of a project for another program.
+
+    Parameters
+    ----------
+    form : str
+        ``gsi`` | ``sdr`` | ``starnet`` | ``dxf`` | ``landxml`` | ``kml`` | ``geojson``.
+    folder, output : path
+        The project, and the file to be written.
+    now : callable
+        Clock, for formats that demand a moment.
+
+    Returns
+    -------
+    ExportResult
+        ``warnings`` tell what was left out.
+
+    Raises
+    ------
+    SurveyError
+        If the project cannot be read, or the format has no words for something in it.
+    """
+    from surveyapp.api.network import network
+    from surveyapp.io.exporters.catalogue import EXPORTERS, Stamp
+    from surveyapp.io.importing.writing import sha256
+    from surveyapp.io.tomltext import atomic_write
+    from surveyapp.workflows.exporting import exported_survey
+
+    exporter = next((item for item in EXPORTERS if item.id == form), None)
+    if exporter is None:
+        hint = nearest_names(form, [item.id for item in EXPORTERS])
+        raise SurveyError(Problem("there is no such format", "export", form, "", hint))
+    project = open_project(folder)
+    survey = exported_survey(project, network(project) if project.traverses else None)
+    written = exporter.write(survey, Stamp(SOFTWARE, now()))
+    data = written.text.encode("utf-8")
+    atomic_write(Path(output), data)
+    warnings = (*survey.warnings, *written.warnings)
+    return ExportResult(form, str(output), written.items, sha256(data), warnings)

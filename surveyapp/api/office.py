@@ -258,11 +258,15 @@ def export_gkf(source: Source, output: Folder) -> ExportResult:
     SurveyError
         If there is no traverse, or the format has no words for something in it.
     """
+    from dataclasses import replace
+
+    from surveyapp.core.network.setups import without_setup_blocks
     from surveyapp.io.exporters.gkf import gkf_text
 
-    found = network(source)
+    found, warnings = without_setup_blocks(network(source))
     data = gkf_text(found).encode("utf-8")
-    return _write_export("gkf", data, Path(output), len(found.observations))
+    result = _write_export("gkf", data, Path(output), len(found.observations))
+    return replace(result, warnings=warnings)
 
 
 def export_json(source: Source, output: Folder) -> ExportResult:

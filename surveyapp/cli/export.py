@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from surveyapp.cli.output import print_json
+from surveyapp.cli.output import paragraph, print_json
 from surveyapp.domain.filing import ExportResult
 
 TABLES: Final = ("lines", "sessions", "constants", "checks", "all")
@@ -45,10 +45,23 @@ def _gkf(options: argparse.Namespace) -> ExportResult:
     return api.export_gkf(options.folder, options.file)
 
 
+def _survey(options: argparse.Namespace) -> ExportResult:
+    from surveyapp import api
+
+    return api.export_survey(options.format, options.folder, options.file)
+
+
 FORMATS: Final[Mapping[str, Format]] = {
     "csv": Format("results as a table", _csv),
     "gkf": Format("traverses as a GNU Gama network", _gkf),
     "json": Format("result with cards, rule book and hashes, for a later compare", _json),
+    "gsi": Format("points as Leica GSI-16", _survey),
+    "sdr": Format("points as Sokkia SDR33", _survey),
+    "starnet": Format("points and observations as STAR*NET input", _survey),
+    "dxf": Format("a drawing, DXF R12", _survey),
+    "landxml": Format("points as LandXML 1.2", _survey),
+    "kml": Format("stations and lines for maps", _survey),
+    "geojson": Format("stations and lines for maps", _survey),
     "zip": Format("the whole project for hand-over", _zip),
 }
 """Formats by name."""
@@ -71,4 +84,6 @@ def run(options: argparse.Namespace) -> int:
         print_json(result.to_dict())
     else:
         print(f"{result.path}: {result.items} items\n  sha256 {result.sha256}")
+        for item in result.warnings:
+            print(paragraph(f"{item.code}: {item.text}"))
     return 0

@@ -47,6 +47,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("reopen", "reopen", "open what was closed; the ledger keeps the reason"),
     Command("compare", "compare", "what changed between two results, and because of what"),
     Command("import", "import_file", "field files of total stations and gyros into a project"),
+    Command("instrument", "instrument", "read a total station on the cable"),
     Command("export", "export", "results and projects as csv, json or zip"),
     Command("batch", "batch", "many projects, one row each; failures are told, not fatal"),
     Command("new", "new", "make a new project folder"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.results import finite
 
 Part = Literal["input", "software", "card", "rule_book", "result"]
@@ -68,6 +69,7 @@ class ExportResult:
     path: str
     items: int
     sha256: str
+    warnings: tuple[ResultWarning, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON, schema ``surveyapp.export/1``."""
@@ -77,6 +79,7 @@ class ExportResult:
             "path": self.path,
             "items": self.items,
             "sha256": self.sha256,
+            "warnings": [item.to_dict() for item in self.warnings],
         }
 
 

@@ -59,6 +59,8 @@ class Traverse:
         Centring, each component [m].
     atmosphere_applied, constant_applied : bool or None
         Whether the instrument has corrected the distances; None where nobody says.
+    height_m : tuple of float
+        Standard deviations of instrument and target height, which a set-up's rounds share [m].
     rows : tuple of TraverseRow
         Of its book, every station known.
     """
@@ -73,6 +75,7 @@ class Traverse:
     target_m: float = 0.0
     atmosphere_applied: bool | None = None
     constant_applied: bool | None = None
+    height_m: tuple[float, float] = (0.0, 0.0)
     rows: tuple[TraverseRow, ...] = ()
 
     @property

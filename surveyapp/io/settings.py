@@ -30,11 +30,14 @@ class Settings:
         Name of a theme, empty for the default.
     sound : bool
         Whether the countdown may be heard.
+    instrument : str
+        Total station on the cable, ``protocol:port``; empty where there is none.
     """
 
     recent: tuple[str, ...] = ()
     theme: str = ""
     sound: bool = True
+    instrument: str = ""
 
     def with_recent(self, folder: str) -> Settings:
         """The same with a project at the top of the recent ones."""
@@ -51,12 +54,14 @@ def read_settings(folder: Path | None = None) -> Settings:
         return Settings()
     recent = data.get("recent", [])
     theme, sound = data.get("theme", ""), data.get("sound", True)
+    instrument = data.get("instrument", "")
     return Settings(
         recent=tuple(item for item in recent if isinstance(item, str))
         if isinstance(recent, list)
         else (),
         theme=theme if isinstance(theme, str) else "",
         sound=sound if isinstance(sound, bool) else True,
+        instrument=instrument if isinstance(instrument, str) else "",
     )
 
 
@@ -66,6 +71,7 @@ def write_settings(settings: Settings, folder: Path | None = None) -> bool:
     text = "# surveyapp: settings of the screens\n"
     text += f"theme = {toml_value(settings.theme)}\n"
     text += f"sound = {toml_value(settings.sound)}\n"
+    text += f"instrument = {toml_value(settings.instrument)}\n"
     text += f"recent = {toml_value(list(settings.recent))}\n"
     try:
         place.mkdir(parents=True, exist_ok=True)

@@ -25,6 +25,7 @@ from surveyapp.observation.entry import (
 )
 from surveyapp.observation.session import NewRow, SessionDesk
 from surveyapp.tui import texts
+from surveyapp.tui.from_instrument import Taken, marked
 from surveyapp.tui.views.form import number_text, small_text
 from surveyapp_models.angles import AngleUnit, format_angle
 
@@ -67,6 +68,7 @@ class Desk:
         self.face: Face | None = None
         self.target: str | None = None
         self.pending: Pending | None = None
+        self.taken = Taken()
         self.tried = False
         self.timed = True
         self.asked: str | None = None
@@ -244,7 +246,8 @@ class Desk:
             self.asked = text
             question = " ".join(question_text(item) for item in found.questions)
             raise NotWrittenError(texts.ASK_AGAIN.format(question=question))
-        seq = self.write(found.row, found.stamp, timed=found.timed)
+        row = marked(found.row, text, self.taken)
+        seq = self.write(row, found.stamp, timed=found.timed)
         kind = texts.KIND_NAMES[found.row.kind].split(",")[0]
         value = found.row.value or found.row.note
         told = texts.RECORDED.format(seq=seq, kind=kind, value=value)

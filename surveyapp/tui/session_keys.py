@@ -14,11 +14,13 @@ KEYS = {
     "ctrl+z": ("undo", texts.KEY_UNDO, texts.LONG_UNDO),
     "f7": ("step(-1)", texts.KEY_PREVIOUS, texts.LONG_PREVIOUS),
     "f8": ("step(1)", texts.KEY_NEXT, texts.LONG_NEXT),
+    "f9": ("instrument", texts.KEY_INSTRUMENT, texts.LONG_INSTRUMENT),
+    "shift+f9": ("follow", texts.KEY_FOLLOW, texts.LONG_FOLLOW),
     "escape": ("leave", texts.KEY_LEAVE, texts.LONG_LEAVE),
     "ctrl+t": ("passage", texts.LONG_PASSAGE, texts.LONG_PASSAGE),
 }
 """Action, name in the footer, name in the palette."""
 ORDERED = {key: action for key, (action, *_) in KEYS.items()} | {"empty_space": "passage"}
 """Keys that the entry line works off in their order; the bindings show them and serve the rest."""
-HIDDEN = ("undo", "passage")
+HIDDEN = ("undo", "passage", "instrument", "follow")
 """Actions for which 80 columns have no room; the palette and F1 name them."""

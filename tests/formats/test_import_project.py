@@ -60,7 +60,10 @@ def test_import_adjust_check_and_record_without_an_edit(tmp_path: Path) -> None:
     assert run("new", str(folder)).code == 0
     result = run("import", "gsi", str(path), str(folder), "--fix", "B", "C", "--json")
     assert result.code == 0, result.err
-    adjusted = json.loads(run("adjust", str(folder), "--json").out)
+    answer = run("adjust", str(folder), "--json")
+    assert answer.code == 0
+    adjusted = json.loads(answer.out)
+    assert adjusted["global_test"]["pass"] is True
     found = {point["name"]: point for point in adjusted["points"]}
     assert found["D"]["e"] == pytest.approx(1100.0, abs=0.01)
     assert found["D"]["n"] == pytest.approx(2160.0, abs=0.01)
@@ -71,7 +74,7 @@ def test_import_adjust_check_and_record_without_an_edit(tmp_path: Path) -> None:
 
 
 def _true_traverse() -> tuple[list[w.Setup], list[w.Sight]]:
-    """B and C known, D and E new; readings computed from places, with 2" and 0.5 mm of noise."""
+    """B, C known, D, E new; readings from places, 2" and 0.5 mm of noise, 1 mm of centring."""
     import math
     import random
 
@@ -83,11 +86,15 @@ def _true_traverse() -> tuple[list[w.Setup], list[w.Sight]]:
     for i, at in enumerate(names):
         setups.append(w.Setup(at, *places[at], 1.5 + 0.01 * i))
         near = [names[j] for j in (i - 1, i + 1) if 0 <= j < len(names)]
+        off = {name: [r.gauss(0, 0.001) for _ in range(3)] for name in (at, *near)}
         for k in range(3):
             turn = 60.0 * k + 10.0
             for face, order in (("L", near), ("R", near[::-1])):
                 for to in order:
-                    de, dn, dh = (b - a for a, b in zip(places[at], places[to], strict=True))
+                    de, dn, dh = (
+                        b + y - a - x
+                        for a, x, b, y in zip(places[at], off[at], places[to], off[to], strict=True)
+                    )
                     dh += 1.4 - setups[i].hi
                     flat = math.hypot(de, dn)
                     hz = math.degrees(math.atan2(de, dn)) + turn + r.gauss(0, 2 / 3600)

@@ -17,6 +17,7 @@ from typing import Final
 import numpy as np
 
 from surveyapp.core.network.centring import angle_centring, direction_centring
+from surveyapp.core.network.setups import as_blocks, setup_blocks
 from surveyapp.core.network.touched import touched
 from surveyapp.domain.observations import CorrelatedBlock, Observation, ObservationKind
 from surveyapp.domain.project import Project, ResultWarning, Station
@@ -168,17 +169,21 @@ def _collect(
     traverse: Traverse,
     lines: Sequence[OrientedLine],
     waiting: Collection[tuple[str, str]],
-) -> tuple[list[Observation], list[tuple[int, int]], list[Problem]]:
-    """Observations, (place of line, place of observation) of the gyro sides, problems.
+) -> tuple[list[Observation], list[tuple[int, int]], list[CorrelatedBlock], list[Problem]]:
+    """Observations, (line, observation) of the gyro sides, blocks of set-ups, problems.
 
     A gyro side whose session is still being observed is passed over.
     """
     known, problems = book_observations(traverse, project.stations)
+    lengths = _lengths(traverse.rows, {station.name: station for station in project.stations})
+    known, blocks = setup_blocks(traverse, known, lengths)
+    member_of: dict[int, int] = {}
     observations: list[Observation] = []
     gyro: list[tuple[int, int]] = []
     for number, row in enumerate(traverse.rows):
         if row.kind is not K.GYRO:
             if number in known:
+                member_of[number] = len(observations)
                 observations.append(known[number])
             continue
         found = _oriented(row, lines)
@@ -187,7 +192,7 @@ def _collect(
         for place, obs in found:
             gyro.append((place, len(observations)))
             observations.append(obs)
-    return observations, gyro, problems
+    return observations, gyro, as_blocks(blocks, member_of), problems
 
 
 def _not_oriented(row: TraverseRow, traverse: Traverse, lines: Sequence[OrientedLine]) -> Problem:
@@ -306,10 +311,15 @@ def network_of(
         )
     observations: list[Observation] = []
     gyro: list[tuple[int, int]] = []
+    blocks: list[CorrelatedBlock] = []
     problems: list[Problem] = []
     warnings: list[ResultWarning] = []
     for header in chosen:
-        found, sides, faults = _collect(project, header, lines, waiting)
+        found, sides, shared_by, faults = _collect(project, header, lines, waiting)
+        blocks += [
+            replace(block, members=tuple(m + len(observations) for m in block.members))
+            for block in shared_by
+        ]
         gyro += [(place, member + len(observations)) for place, member in sides]
         observations += found
         problems += faults
@@ -322,7 +332,7 @@ def network_of(
     return Network(
         points=tuple(points),
         observations=tuple(observations),
-        blocks=_gyro_blocks(gyro, lines),
+        blocks=(*_gyro_blocks(gyro, lines), *blocks),
         constants=tuple(shared.get(name, GyroConstant(name)) for name in names),
         name=f"{project.name}: {', '.join(header.name for header in chosen)}",
         warnings=(*warnings, *height_warnings),

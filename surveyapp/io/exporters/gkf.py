@@ -18,7 +18,7 @@ import numpy as np
 from surveyapp.domain.observations import CorrelatedBlock, Observation, ObservationKind
 from surveyapp.domain.traverse import Network, NetworkPoint, Status
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.io.importers.gkf_document import CC, GON, KINDS, MM, Axes
+from surveyapp.io.importers.gkf_document import CC, GON, KINDS, MM, NEVER_MM, Axes
 
 ELEMENTS = {kind: name for name, kind in KINDS.items()}
 K = ObservationKind
@@ -74,7 +74,8 @@ def gkf_text(network: Network) -> str:
     """
     network = _with_azimuths(network)
     axes = Axes(network.axes, network.left_handed)
-    tolerance = "" if network.tolerance_m is None else f' tol-abs="{network.tolerance_m / MM!r}"'
+    limit = NEVER_MM if network.tolerance_m is None else network.tolerance_m / MM
+    tolerance = f' tol-abs="{limit!r}"'
     hand = "left-handed" if network.left_handed else "right-handed"
     actual = "aposteriori" if network.scaled_by_residuals else "apriori"
     lines = [

@@ -19,6 +19,8 @@ GON = math.pi / 200.0
 CC = GON * 1e-4
 ARCSEC = math.pi / 648000.0
 MM = 1e-3
+NEVER_MM = 1e9
+"""``tol-abs`` of a network in which nothing is left out, however far it misses."""
 AXES = ("ne", "sw", "es", "wn", "en", "nw", "se", "ws")
 KINDS = {
     "direction": ObservationKind.DIRECTION,

@@ -17,7 +17,7 @@ from surveyapp.domain.observations import CorrelatedBlock, Observation, Observat
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network
 from surveyapp.errors import SurveyError
-from surveyapp.io.importers.gkf_document import DEFAULTS, KINDS, MM, Cluster, GkfDocument
+from surveyapp.io.importers.gkf_document import DEFAULTS, KINDS, MM, NEVER_MM, Cluster, GkfDocument
 from surveyapp.io.importers.gkf_points import declared_only, network_point, without_idle
 
 ANGLES = frozenset(
@@ -352,7 +352,7 @@ def network_from(document: GkfDocument) -> Network:
             sigma_apriori=builder.sigma_apriori,
             confidence=probability,
             scaled_by_residuals=actual == "aposteriori",
-            tolerance_m=tolerance * MM,
+            tolerance_m=None if tolerance >= NEVER_MM else tolerance * MM,
             name=document.name,
             description="".join(document.description).strip(),
             axes=document.axes.xy,

@@ -131,11 +131,15 @@ def _sigmas(
     """Sigmas of the header: told, from the file itself, or assumed and told as such."""
     angle, first = _angle_sigma(options.sigma_angle_arcsec, face_precision(sets))
     distance, second = _distance_sigma(options.sigma_distance, distance_precision(sets))
-    centring = f"centring {ASSUMED_CENTRING_MM:g} mm of instrument and target is assumed"
+    centring = (
+        f"{ASSUMED_CENTRING_MM:g} mm are assumed for centring and for the height of instrument and "
+        "target, each once for a set-up"
+    )
     table: dict[str, object] = {
         "sigma_angle_arcsec": float(angle),
         "sigma_distance": {"mm": float(distance[0]), "ppm": float(distance[1])},
         "centring_mm": {"instrument": ASSUMED_CENTRING_MM, "target": ASSUMED_CENTRING_MM},
+        "sigma_height_mm": {"instrument": ASSUMED_CENTRING_MM, "target": ASSUMED_CENTRING_MM},
     }
     return table, [*first, *second, ResultWarning("sigma_assumed", centring)]
 

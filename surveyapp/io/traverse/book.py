@@ -83,6 +83,16 @@ def _read_traverse(
     return traverse
 
 
+def _heights(table: Table) -> tuple[float, float]:
+    """``sigma_height_mm = { instrument, target }`` [m]."""
+    inner = table.table("sigma_height_mm")
+    if inner is None:
+        return 0.0, 0.0
+    values = [(inner.number(key, low=0.0) or 0.0) * MM for key in ("instrument", "target")]
+    inner.warn_unknown()
+    return values[0], values[1]
+
+
 def _header(table: Table, number: int) -> Traverse:
     name = table.text("name", required=True) or f"number {number}"
     table.where = f"{PROJECT_FILE}, [[traverse]] {name}"
@@ -101,6 +111,7 @@ def _header(table: Table, number: int) -> Traverse:
         0.0 if centring is None else (centring.number("target", low=0.0) or 0.0) * MM,
         table.boolean("atmosphere_applied") if "atmosphere_applied" in table else None,
         table.boolean("constant_applied") if "constant_applied" in table else None,
+        _heights(table),
     )
     for part in (distance, centring):
         if part is not None:

@@ -20,6 +20,7 @@ from surveyapp.errors import SurveyError
 from surveyapp.observation.practice import Practice
 from surveyapp.observation.session import SessionDesk
 from surveyapp.tui import texts
+from surveyapp.tui.cable_keys import ask_instrument
 from surveyapp.tui.drafts import Draft
 from surveyapp.tui.entry_desk import Desk, NotWrittenError, Pending, problem_text
 from surveyapp.tui.messages import ResultWanted, SessionLeft
@@ -185,6 +186,16 @@ class SessionScreen(Screen[None]):
         if self.refused("F5"):
             return
         self.attempt(self.desk.missed)
+
+    def action_instrument(self, *, follow: bool = False) -> None:
+        """Read the total station on the cable into the line."""
+        work = ask_instrument(self.app, self.query_one(EntryLine), self.desk, follow=follow)
+        if work is not None:
+            self.run_worker(work, thread=True, exclusive=True, group="cable")
+
+    def action_follow(self) -> None:
+        """Follow a turning point by the total station on the cable."""
+        self.action_instrument(follow=True)
 
     def action_undo(self) -> None:
         """Clear the line; an empty one: strike the latest reading."""

@@ -188,6 +188,22 @@ KEY_KIND: Final = "Kind"
 KEY_FACE: Final = "Face"
 KEY_TARGET: Final = "Target"
 KEY_MISSED: Final = "Missed"
+KEY_INSTRUMENT: Final = "Read"
+KEY_FOLLOW: Final = "Follow"
+INSTRUMENT_NONE: Final = (
+    "No instrument is known: surveyapp instrument PROTOCOL:PORT --remember names one."
+)
+INSTRUMENT_ASKED: Final = "The instrument is asked ..."
+INSTRUMENT_FOLLOWING: Final = "Follow the mark through the turn: {seconds:.0f} s ..."
+INSTRUMENT_NO_ANGLE: Final = "No angle is asked for here: nothing was taken over."
+INSTRUMENT_NO_ZENITH: Final = "The instrument gave no zenith angle: nothing was taken over."
+INSTRUMENT_FACE: Final = (
+    "The instrument stands in face {read}, face {asked} is asked for: F3 changes it, or turn the "
+    "telescope. Nothing was taken over."
+)
+INSTRUMENT_READ: Final = "{source}: circle {hz}, zenith {v}, distance {length}. Enter confirms."
+INSTRUMENT_TURN: Final = 'Turn from {readings} readings, ±{sigma:.1f}". Enter confirms.'
+INSTRUMENT_BUSY: Final = "Something stands in the line: Enter it or clear it, then read."
 KEY_STRIKE: Final = "Strike"
 KEY_UNDO: Final = "Undo"
 KEY_NEXT: Final = "Next"

@@ -1,0 +1,86 @@
+"""Rounds of one set-up share its centring and its heights: against the full covariance by hand."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from surveyapp import api
+from surveyapp_models.angles import ARCSEC
+from tests.formats.importing import project
+
+STATIONS = """
+[[station]]
+name = "A"
+e = 0.0
+n = 0.0
+h = 0.0
+fixed = true
+[[station]]
+name = "B"
+e = 0.0
+n = 100.0
+h = 0.0
+fixed = true
+[[station]]
+name = "C"
+[[traverse]]
+name = "main"
+book = "observations/main.csv"
+sigma_angle_arcsec = 4.0
+sigma_distance = { mm = 1.0, ppm = 0.0 }
+centring_mm = { instrument = 1.0, target = 2.0 }
+sigma_height_mm = { instrument = 1.5, target = 0.5 }
+"""
+
+
+def book(rounds: int, setup: str = "1/") -> str:
+    lines = ["kind,at,from,to,value,unit,set,hi,ht"]
+    for k in range(rounds):
+        turn = 15.0 * k
+        name = f"{setup}{k + 1}"
+        lines += [
+            f"direction,A,,B,{turn},deg,{name},1.5,1.4",
+            f"direction,A,,C,{turn + 90.0},deg,{name},1.5,1.4",
+            f"slope_distance,A,,C,50.0,m,{name},1.5,1.4",
+            f"zenith,A,,C,90.0,deg,{name},1.5,1.4",
+        ]
+    return "\n".join(lines) + "\n"
+
+
+def sigmas(folder: Path, text: str) -> tuple[float, float, float]:
+    project(folder, STATIONS)
+    (folder / "observations").mkdir()
+    (folder / "observations" / "main.csv").write_text(text, encoding="utf-8")
+    point = api.adjust(folder).point("C")
+    return point.sigma_e or 0.0, point.sigma_n or 0.0, point.sigma_h or 0.0
+
+
+@pytest.mark.parametrize("rounds", [1, 4, 16])
+def test_rounds_make_the_reading_smaller_and_never_the_centring(
+    tmp_path: Path, rounds: int
+) -> None:
+    e, n, h = sigmas(tmp_path / "p", book(rounds))
+    # C lies 50 m east: its east is the distance, its north the angle B-A-C over 50 m
+    centring_e = math.hypot(1.0, 2.0) * 1e-3
+    # instrument and target shift the angle: towards C by dn / 50, towards B by de / 100
+    shared = np.array([1e-3 / 50, 1e-3 / 100, 2e-3 / 50, 2e-3 / 100])
+    angle = math.sqrt((4.0 * ARCSEC) ** 2 / rounds + float(shared @ shared))
+    assert e == pytest.approx(math.sqrt(1e-6 / rounds + centring_e**2), rel=1e-3)
+    assert n == pytest.approx(50.0 * angle, rel=1e-3)
+    heights = math.hypot(1.5e-3, 0.5e-3)
+    assert h == pytest.approx(math.hypot(50 * 4 * ARCSEC / math.sqrt(rounds), heights), rel=1e-3)
+
+
+def test_sets_without_a_set_up_stay_independent(tmp_path: Path) -> None:
+    e, _, _ = sigmas(tmp_path / "p", book(4, setup=""))
+    assert e == pytest.approx(math.sqrt((1e-6 + 5e-6) / 4), rel=1e-3)
+
+
+def test_two_set_ups_share_nothing(tmp_path: Path) -> None:
+    second = book(1, setup="2/").split("\n", 1)[1]
+    e, _, _ = sigmas(tmp_path / "p", book(1, setup="1/") + second)
+    assert e == pytest.approx(math.sqrt((1e-6 + 5e-6) / 2), rel=1e-3)
