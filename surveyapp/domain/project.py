@@ -265,10 +265,18 @@ class Project:
     tables: dict[str, object] = field(default_factory=dict)
     sensor_logs: tuple[SensorLogEntry, ...] = ()
     warnings: tuple[ResultWarning, ...] = ()
+    _stations: dict[str, Station] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
+    _sessions: dict[str, OrientationSession] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     def station(self, name: str) -> Station:
         """Station by name; io has made sure that every name used exists."""
-        return next(station for station in self.stations if station.name == name)
+        if not self._stations:
+            self._stations.update({item.name: item for item in reversed(self.stations)})
+        return self._stations[name]
 
     def instrument(self, identity: str) -> Instrument:
         """Instrument by id; io has made sure that every id used exists."""
@@ -276,7 +284,9 @@ class Project:
 
     def session(self, identity: str) -> OrientationSession:
         """Session by id."""
-        return next(item for item in self.sessions if item.id == identity)
+        if not self._sessions:
+            self._sessions.update({item.id: item for item in reversed(self.sessions)})
+        return self._sessions[identity]
 
     def traverse(self, name: str) -> Traverse:
         """Traverse by name."""

@@ -106,12 +106,13 @@ def refuse_two_convergences(
     stations: Sequence[Station], sessions: Sequence[OrientationSession], findings: Findings
 ) -> None:
     """A station has one convergence, whoever states it."""
+    by_station: dict[str, list[tuple[str, StatedConvergence]]] = {}
+    for session in sessions:
+        if session.convergence is not None:
+            found = (f"session {session.id}", session.convergence)
+            by_station.setdefault(session.station, []).append(found)
     for station in stations:
-        stated = [
-            (f"session {session.id}", session.convergence)
-            for session in sessions
-            if session.station == station.name and session.convergence is not None
-        ]
+        stated = by_station.get(station.name, [])
         if station.convergence is not None:
             stated.insert(0, (f"station {station.name}", station.convergence))
         if len(stated) < 2:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from surveyapp.core.orientation.instrument_constant import Calibration
 from surveyapp.core.orientation.known_azimuth import KnownError, known_error
 from surveyapp.core.orientation.lines import LineGeometry, known_astronomic
-from surveyapp.core.orientation.sequence import phase_of, session_moments, surveys_before
+from surveyapp.core.orientation.sequence import SessionOrder
 from surveyapp.core.statistics.repeated import RunScatter
 from surveyapp.core.swing.automatic import stated_rounds
 from surveyapp.core.swing.session import ReducedSession
@@ -36,11 +36,7 @@ def calibrations_of(
     A session is unusable, and a warning says so, where the grid azimuth of its line is not known,
     where there is no grid to form astronomic terms, or where it yields no gyro azimuth.
     """
-    keys = session_moments(project, instrument)
-    surveys = [
-        keys[s.id] for s in project.sessions if s.instrument == instrument and s.purpose == "survey"
-    ]
-    distinct = len({key[0] for key in keys.values()}) > 1
+    order = SessionOrder.of(project, instrument)
     found: list[Calibration] = []
     warnings: list[ResultWarning] = []
     for item in reduced:
@@ -71,9 +67,9 @@ def calibrations_of(
                     station=session.station,
                     target=target.target,
                     value=value.shifted(wrap_pi(value.value) - value.value),
-                    phase=phase_of(keys[session.id], surveys),
-                    block=surveys_before(keys[session.id], surveys),
-                    moment=keys[session.id][0] if distinct else None,
+                    phase=order.phase(session.id),
+                    block=order.block(session.id),
+                    moment=order.moment(session.id),
                     rounds=rounds_of(item),
                     known_azimuth=grid_azimuth,
                     from_coordinates=bearing,

@@ -106,6 +106,8 @@ class InstrumentConstant:
     line_agreement, phase_agreement : Agreement or None
     known : Uncertain or None
         Known beforehand.
+    pooled : Uncertain or None
+        Mean of all determinations; a disagreement enters its sigma.
     average : Uncertain or None
         Constant over the campaign, averaged over the base model and its rivals; None where there
         are too few determinations to predict from.
@@ -117,6 +119,7 @@ class InstrumentConstant:
     line_agreement: Agreement | None
     phase_agreement: Agreement | None
     known: Uncertain | None
+    pooled: Uncertain | None
     average: Uncertain | None = None
 
     @property
@@ -131,21 +134,6 @@ class InstrumentConstant:
         """False where lines or epochs disagree; None where nothing can tell."""
         tests = [test for test in (self.line_agreement, self.phase_agreement) if test is not None]
         return all(test.agree for test in tests) if tests else None
-
-    @property
-    def pooled(self) -> Uncertain | None:
-        """Mean of all determinations; a disagreement enters its sigma."""
-        if not self.calibrations:
-            return None
-        mean = weighted_mean([item.value for item in self.calibrations])
-        return self._with_disagreement(mean)
-
-    def _with_disagreement(self, mean: Uncertain) -> Uncertain:
-        for name, test in (("lines", self.line_agreement), ("epochs", self.phase_agreement)):
-            if test is not None and not test.agree and test.scatter > 0.0:
-                source = Source("constant instability", self.instrument.id, float(test.dof), name)
-                mean = mean.with_part(source, test.scatter)
-        return mean
 
 
 def compare_groups(groups: Sequence[tuple[str, Uncertain]]) -> Agreement | None:
@@ -201,14 +189,31 @@ def determine(instrument: Instrument, calibrations: Sequence[Calibration]) -> In
     if instrument.known_constant is not None:
         value, sigma = instrument.known_constant
         known = Uncertain(value, {Source("known constant", instrument.id): sigma})
+    of_lines = compare_groups(lines)
+    of_epochs = compare_groups(epochs) if same_lines else None
+    pooled = None
+    if calibrations:
+        pooled = weighted_mean([item.value for item in calibrations])
+        pooled = _with_disagreement(pooled, instrument.id, of_lines, of_epochs)
     return InstrumentConstant(
         instrument=instrument,
         calibrations=tuple(calibrations),
         lines=lines,
-        line_agreement=compare_groups(lines),
-        phase_agreement=compare_groups(epochs) if same_lines else None,
+        line_agreement=of_lines,
+        phase_agreement=of_epochs,
         known=known,
+        pooled=pooled,
     )
+
+
+def _with_disagreement(
+    mean: Uncertain, instrument: str, lines: Agreement | None, epochs: Agreement | None
+) -> Uncertain:
+    for name, test in (("lines", lines), ("epochs", epochs)):
+        if test is not None and not test.agree and test.scatter > 0.0:
+            source = Source("constant instability", instrument, float(test.dof), name)
+            mean = mean.with_part(source, test.scatter)
+    return mean
 
 
 def _epoch_name(number: int, blocks: Mapping[int, Sequence[Calibration]]) -> str:

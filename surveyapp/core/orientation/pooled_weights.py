@@ -40,19 +40,32 @@ def with_pooled_weights(reduced: Sequence[ReducedSession]) -> tuple[ReducedSessi
             found = _Scatter(item.session.id, unit.sigma**2, unit.dof)
             groups.setdefault((item.session.instrument, unit.source), []).append(found)
     ratios = {
-        (scatter.session, source): _ratio(scatter, group)
+        (scatter.session, source): _ratio(scatter, *rest)
         for (_, source), group in groups.items()
-        for scatter in group
+        for scatter, rest in zip(group, _of_the_others(group), strict=True)
         if len(group) > 1
     }
     return tuple(_weighted(item, ratios) for item in reduced)
 
 
-def _ratio(own: _Scatter, group: Sequence[_Scatter]) -> float:
+def _of_the_others(group: Sequence[_Scatter]) -> list[tuple[float, float]]:
+    """Degrees of freedom and their sum of squares of all runs but each one, in one pass.
+
+    Sums from the front and from the back, so that nothing is subtracted.
+    """
+    found = [(0.0, 0.0)] * len(group)
+    for order in (range(len(group)), range(len(group) - 1, -1, -1)):
+        dof = squares = 0.0
+        for place in order:
+            found[place] = (found[place][0] + dof, found[place][1] + squares)
+            dof += group[place].dof
+            squares += group[place].dof * group[place].variance
+    return found
+
+
+def _ratio(own: _Scatter, dof: float, squares: float) -> float:
     """Pooled sigma divided by one's own; 1 where the run differs from the others significantly."""
-    others = [item for item in group if item is not own]
-    dof = math.fsum(item.dof for item in others)
-    rest = math.fsum(item.dof * item.variance for item in others) / dof
+    rest = squares / dof
     larger = own.variance > rest
     numerator, denominator = (own.dof, dof) if larger else (dof, own.dof)
     quotient = own.variance / rest if larger else rest / own.variance

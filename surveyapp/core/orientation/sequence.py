@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from bisect import bisect_left
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from surveyapp.core.orientation.instrument_constant import Phase
@@ -38,30 +39,47 @@ def session_timestamp(session: OrientationSession) -> float | None:
     return sum(stamps) / len(stamps) if stamps else None
 
 
-def phase_of(key: tuple[float, int], surveys: Sequence[tuple[float, int]]) -> Phase:
-    """Tell whether a session stands before, between or after the survey sessions."""
-    if not surveys or key < min(surveys):
-        return "before"
-    return "after" if key > max(surveys) else "between"
-
-
 @dataclass(frozen=True, slots=True)
 class SessionOrder:
-    """When the sessions of one instrument took place, and which of them are surveys."""
+    """When the sessions of one instrument took place, and which of them are surveys.
+
+    Parameters
+    ----------
+    keys : mapping
+        Comparable key of each session.
+    surveys : tuple of keys
+        Those of the survey sessions, sorted.
+    distinct : bool
+        Whether anything tells the moments apart.
+    """
 
     keys: Mapping[str, tuple[float, int]]
-    surveys: frozenset[str]
+    surveys: tuple[tuple[float, int], ...]
+    distinct: bool
+
+    @classmethod
+    def of(cls, project: Project, instrument: str) -> SessionOrder:
+        """Order of the sessions of one instrument."""
+        keys = session_moments(project, instrument)
+        surveys = sorted(
+            keys[session.id]
+            for session in project.sessions
+            if session.instrument == instrument and session.purpose == "survey"
+        )
+        distinct = len({key[0] for key in keys.values()}) > 1
+        return cls(keys, tuple(surveys), distinct)
 
     def moment(self, session: str) -> float | None:
         """Abscissa for interpolation, None where nothing tells the moments apart."""
-        distinct = len({key[0] for key in self.keys.values()}) > 1
-        return self.keys[session][0] if distinct else None
+        return self.keys[session][0] if self.distinct else None
 
     def block(self, session: str) -> int:
-        """Number of survey sessions before a session."""
-        return surveys_before(self.keys[session], [self.keys[name] for name in self.surveys])
+        """Number of survey sessions before a session; calibrations that share it are one block."""
+        return bisect_left(self.surveys, self.keys[session])
 
-
-def surveys_before(key: tuple[float, int], surveys: Sequence[tuple[float, int]]) -> int:
-    """Number of survey sessions before a session; calibrations that share it are one block."""
-    return sum(other < key for other in surveys)
+    def phase(self, session: str) -> Phase:
+        """Whether a session stands before, between or after the survey sessions."""
+        key = self.keys[session]
+        if not self.surveys or key < self.surveys[0]:
+            return "before"
+        return "after" if key > self.surveys[-1] else "between"

@@ -11,7 +11,7 @@ from surveyapp.core.orientation.instrument_constant import Chosen, InstrumentCon
 from surveyapp.core.orientation.lines import LineGeometry, OrientedLine, Round, orient_line
 from surveyapp.core.orientation.predicted_constant import leaves_out
 from surveyapp.core.orientation.predicted_lines import Key, PredictedLine, survey_groups
-from surveyapp.core.orientation.sequence import SessionOrder, session_moments
+from surveyapp.core.orientation.sequence import SessionOrder
 from surveyapp.core.statistics.repeated import RunScatter
 from surveyapp.core.swing.session import ReducedSession
 from surveyapp.core.uncertain import Uncertain
@@ -64,7 +64,7 @@ class SurveyedLines:
             constant.instrument.id: (
                 constant,
                 self.scatters[constant.instrument.id],
-                _order(self.project, constant.instrument.id),
+                SessionOrder.of(self.project, constant.instrument.id),
             )
             for constant in self.constants
         }
@@ -104,13 +104,6 @@ class SurveyedLines:
         if problems:
             raise SurveyError(problems)
         return tuple(lines), warnings
-
-
-def _order(project: Project, instrument: str) -> SessionOrder:
-    surveys = [
-        s.id for s in project.sessions if s.instrument == instrument and s.purpose == "survey"
-    ]
-    return SessionOrder(session_moments(project, instrument), frozenset(surveys))
 
 
 def _round(

@@ -40,7 +40,7 @@ from surveyapp.core.orientation.lines import (
 )
 from surveyapp.core.orientation.pooled_weights import with_pooled_weights
 from surveyapp.core.orientation.predicted_lines import predicted_lines
-from surveyapp.core.orientation.sequence import session_moments, surveys_before
+from surveyapp.core.orientation.sequence import SessionOrder
 from surveyapp.core.orientation.survey_lines import SurveyedLines
 from surveyapp.core.statistics.repeated import RunScatter, run_scatter
 from surveyapp.core.swing.goodness import Judge
@@ -293,12 +293,7 @@ def _latitude_warnings(
 
 def _scatter_of(project: Project, reduced: Sequence[ReducedSession], instrument: str) -> RunScatter:
     """Scatter between the runs of one line and epoch: a drift between epochs is not scatter."""
-    keys = session_moments(project, instrument)
-    surveys = [
-        keys[session.id]
-        for session in project.sessions
-        if session.instrument == instrument and session.purpose == "survey"
-    ]
+    order = SessionOrder.of(project, instrument)
     groups: dict[tuple[str, str, str], list[Uncertain]] = {}
     for item in reduced:
         if item.session.instrument != instrument:
@@ -307,7 +302,7 @@ def _scatter_of(project: Project, reduced: Sequence[ReducedSession], instrument:
             if target.gyro_azimuth is not None:
                 phase: str = item.session.purpose
                 if phase == "calibration":
-                    phase = f"block {surveys_before(keys[item.session.id], surveys)}"
+                    phase = f"block {order.block(item.session.id)}"
                 key = (item.session.station, target.target, phase)
                 groups.setdefault(key, []).append(target.gyro_azimuth)
     return run_scatter([aligned(group) for group in groups.values()])

@@ -144,11 +144,35 @@ def student_quantile(probability: float, dof: float) -> float:
     normal = _NORMAL.inv_cdf(probability)
     if math.isinf(dof) or dof > 1e7:
         return normal
+    near = _student_series(normal, dof)
+    if dof >= MANY_DOF and normal <= MOST_NORMAL:
+        return near
     tail = 1.0 - probability
-    high = normal + 1.0
+    low, high = 0.0, normal + 1.0
+    if dof >= FEW_DOF and student_tail(0.99 * near, dof) > tail > student_tail(1.01 * near, dof):
+        low, high = 0.99 * near, 1.01 * near
     while student_tail(high, dof) > tail:
         high *= 2.0
-    return _root(lambda value: math.log(student_tail(value, dof) / tail), 0.0, high)
+    return _root(lambda value: math.log(student_tail(value, dof) / tail), low, high)
+
+
+FEW_DOF = 3.0
+"""From here on the series lies within a few per cent at usual probabilities."""
+MANY_DOF = 1000.0
+MOST_NORMAL = 5.0
+"""The first term left out is below 1e-12 of the quantile there."""
+
+
+def _student_series(z: float, dof: float) -> float:
+    """Student quantile in powers of 1/dof (Abramowitz and Stegun 1964, eq. 26.7.5)."""
+    q = z * z
+    return z * (
+        1.0
+        + (q + 1.0) / (4.0 * dof)
+        + ((5.0 * q + 16.0) * q + 3.0) / (96.0 * dof**2)
+        + (((3.0 * q + 19.0) * q + 17.0) * q - 15.0) / (384.0 * dof**3)
+        + ((((79.0 * q + 776.0) * q + 1482.0) * q - 1920.0) * q - 945.0) / (92160.0 * dof**4)
+    )
 
 
 @lru_cache(maxsize=4096)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 from xml.sax.saxutils import escape
@@ -17,14 +17,19 @@ from surveyapp.report.faces import base_face, wide_face
 from surveyapp.report.typeface import Face, is_wide, language_of, runs
 
 BASE: Final = "SurveySans"
+UNIT: Final = 1000.0
+"""Size [points] at which widths are kept: those of a face are whole numbers there."""
 _CID: Final = {"zh": "STSong-Light", "ja": "HeiseiKakuGo-W5", "ko": "HYGothic-Medium"}
 
 
 @dataclass(frozen=True, slots=True)
 class Faces:
-    """Faces in order of preference."""
+    """Faces in order of preference; what a text needs is found once and kept."""
 
     embedded: tuple[Face, ...]
+    _splits: dict[str, list[tuple[str, str]]] = field(default_factory=dict, repr=False)
+    _widths: dict[str, float] = field(default_factory=dict, repr=False)
+    _base: set[str] = field(default_factory=set, repr=False)
 
     def of(self, text: str) -> tuple[Face, ...]:
         """Faces for a text: the embedded ones, and a CID face where those lack a wide character."""
@@ -37,9 +42,11 @@ class Faces:
 
     def split(self, text: str) -> list[tuple[str, str]]:
         """Runs of a text, each with the name of the face that draws it."""
-        if self.is_base(text) and text.isprintable():
-            return [(BASE, text)]
-        return runs(text, self.of(text))
+        known = self._splits.get(text)
+        if known is None:
+            base = self.is_base(text) and text.isprintable()
+            known = self._splits[text] = [(BASE, text)] if base else runs(text, self.of(text))
+        return known
 
     def markup(self, text: str) -> str:
         """Text with a font tag for every run that the base face cannot draw."""
@@ -51,11 +58,18 @@ class Faces:
 
     def width(self, text: str, size: float) -> float:
         """Width of a text [points]."""
-        return float(sum(pdfmetrics.stringWidth(run, name, size) for name, run in self.split(text)))
+        known = self._widths.get(text)
+        if known is None:
+            parts = (pdfmetrics.stringWidth(run, name, UNIT) for name, run in self.split(text))
+            known = self._widths[text] = float(sum(parts))
+        return known * size / UNIT
 
     def is_base(self, text: str) -> bool:
         """Whether the base face alone draws a text."""
-        return all(self.embedded[0].has(ord(c)) for c in text)
+        letters = set(text)
+        if not letters <= self._base:
+            self._base.update(c for c in letters if self.embedded[0].has(ord(c)))
+        return letters <= self._base
 
 
 def face_has(faces: Sequence[Face], code: int) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any, Final
 
 from reportlab.lib import colors
@@ -22,6 +23,7 @@ TINT: Final = colors.HexColor("#eef1f4")
 ACCENT: Final = colors.HexColor("#1f4e79")
 
 
+@lru_cache(maxsize=256)
 def style_of(size: float, **more: Any) -> ParagraphStyle:
     """A paragraph style of a size [points], with what differs from the usual."""
     settings: dict[str, Any] = {
