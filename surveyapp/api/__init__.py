@@ -49,7 +49,7 @@ from surveyapp.api.project import (
     open_project,
     simulate,
 )
-from surveyapp.api.rate import motion, north, plan_fog_station, spectrum
+from surveyapp.api.rate import motion, north, plan_fog_station, plan_north_stops, spectrum
 from surveyapp.api.sensors import LogOptions, calibrate, open_sensor_log
 from surveyapp.api.shafts import shaft
 from surveyapp.domain.adjustment import AdjustmentResult
@@ -92,6 +92,7 @@ __all__ = [
     "diagnose_instrument",
     "calibrate",
     "plan_fog_station",
+    "plan_north_stops",
     "north",
     "spectrum",
     "motion",
