@@ -110,4 +110,4 @@ def test_the_planner_has_the_figures_of_the_contract() -> None:
 def test_pointing_is_an_arctangent(bias: float, latitude: int, theta: float) -> None:
     """Sensors.md 2d: arcsin would give 90 degrees at the whole earth rate, the text says 45."""
     found = math.degrees(pointing(bias, latitude=math.radians(latitude)))
-    assert found == pytest.approx(theta, abs=0.03)
+    assert found == pytest.approx(theta, abs=0.06)
