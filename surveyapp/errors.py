@@ -58,16 +58,33 @@ class SurveyError(Exception):
     """
 
     def __init__(self, problems: Problem | Iterable[Problem]) -> None:
-        self.problems: tuple[Problem, ...] = (
+        self.problems: tuple[Problem, ...] = _listed(
             (problems,) if isinstance(problems, Problem) else tuple(problems)
         )
         super().__init__("\n".join(str(problem) for problem in self.problems))
 
 
+_MOST_PROBLEMS = 200
+_MOST_NAMES = 60
+"""More names are counted: comparing and listing thousands helps nobody."""
+
+
+def _listed(problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
+    """The first problems; of a file of another kind every line would be one."""
+    if len(problems) <= _MOST_PROBLEMS:
+        return problems
+    rest = len(problems) - _MOST_PROBLEMS
+    return (*problems[:_MOST_PROBLEMS], Problem(f"{rest} further problems"))
+
+
 def nearest_names(name: str, known: Iterable[str]) -> str:
     """Name the nearest known names, then all of them: the hint for an unknown name."""
     names = sorted(known)
-    close = difflib.get_close_matches(name, names, n=2, cutoff=0.5)
+    if len(names) > _MOST_NAMES:
+        close = [n for n in names if n.casefold() == name.casefold()][:2]
+        names = [*names[:_MOST_NAMES], f"{len(names) - _MOST_NAMES} more"]
+    else:
+        close = difflib.get_close_matches(name[:80], names, n=2, cutoff=0.5)
     listing = ", ".join(names) if names else "none"
     if close:
         return f"Did you mean {' or '.join(close)}? Known: {listing}"

@@ -16,10 +16,17 @@ if TYPE_CHECKING:
     from surveyapp.workflows.diagnosing import Diagnosed
 
 
-def check(source: Source) -> Verdicts:
+def check(source: Source, *, seal: str | None = None) -> Verdicts:
     """Apply every limit and test that the project's data can answer.
 
     The same verdicts stand in the result of ``orient``, on the screens and in the record.
+
+    Parameters
+    ----------
+    source : Project, path or Computed
+    seal : str or None
+        A head that a signed record prints: one check more tells whether the ledger holds it and
+        what was sealed then is as it was.
 
     Raises
     ------
@@ -35,7 +42,14 @@ def check(source: Source) -> Verdicts:
         made = oriented(project, even_unfinished=bool(project.traverses))
         found = judged(made, software=SOFTWARE)
     told = tuple(w for w in found.result.warnings if w.code == "session_unfinished")
-    return Verdicts(found.result.checks, told)
+    checks = found.result.checks
+    if seal is not None:
+        from surveyapp.core.checks.filing_checks import seal_check
+        from surveyapp.io.filing.seals import sealed_by
+
+        folder = Path(found.project.path)
+        checks = (*checks, seal_check(*sealed_by(folder, seal)))
+    return Verdicts(checks, told)
 
 
 def diagnose(

@@ -169,11 +169,16 @@ def blank_form(method: str, output: Folder, *, font: Folder | None = None) -> Re
 
 
 def _record(found: Computed, extras: tuple[Extra, ...]) -> tuple[Document, tuple[str, ...]]:
+    from surveyapp.io.files import visible
     from surveyapp.report.record import Record, SealShown, record_document
 
     extras = (*_shafts(found), *_traverses(found), *_breakthrough(found), *extras)
     closing = found.project.filing.project_closing
-    seal = None if closing is None else SealShown(closing.at, closing.by, closing.seal)
+    seal = (
+        None
+        if closing is None
+        else SealShown(closing.at, visible(closing.by), closing.head, closing.seal)
+    )
     return record_document(Record(found.project, found.result, found.project.rules, seal, extras))
 
 

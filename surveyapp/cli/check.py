@@ -11,6 +11,7 @@ from surveyapp.cli.output import print_json
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     parser.add_argument("folder", metavar="DIR", help="project folder")
+    parser.add_argument("--seal", metavar="HEAD", help="verify the seal of a signed record")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 
@@ -18,7 +19,7 @@ def run(options: argparse.Namespace) -> int:
     """Check and print; 1 if a confirmed limit or test is not met."""
     from surveyapp import api
 
-    found = api.check(options.folder)
+    found = api.check(options.folder, seal=options.seal)
     if options.json:
         print_json(found.to_dict())
     else:

@@ -33,7 +33,8 @@ def tell(result: ClosingResult, *, as_json: bool) -> int:
     what = f"session {result.session}" if result.session else "project"
     if result.seal:
         print(f"{what} closed, {result.files} files sealed")
-        print(f"  at    {result.at}\n  seal  {result.seal}")
+        print(f"  at    {result.at}\n  seal  {result.head}")
+        print(f"  surveyapp check DIR --seal {result.head} verifies it")
     else:
         print(f"{what} reopened: {result.reason}\n  at    {result.at}")
         for text in result.found:

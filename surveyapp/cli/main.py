@@ -18,6 +18,7 @@ from typing import NoReturn
 
 from surveyapp import __version__
 from surveyapp.cli.output import print_json
+from surveyapp.cli.safe_output import safe_output
 from surveyapp.errors import Problem, SurveyError, nearest_names
 
 EXIT_GOOD, EXIT_LIMIT, EXIT_INPUT, EXIT_FAULT = 0, 1, 2, 3
@@ -123,6 +124,11 @@ def parser_of(command: Command) -> Parser:
 
 def main(arguments: Sequence[str]) -> int:
     """Run one command and return its exit code."""
+    with safe_output():
+        return _main(arguments)
+
+
+def _main(arguments: Sequence[str]) -> int:
     as_json = "--json" in arguments
     try:
         code = _run(list(arguments))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 
+from surveyapp.cli.terminal import need_terminal
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
@@ -16,11 +18,13 @@ def run(options: argparse.Namespace) -> int:
     from surveyapp.tui.app import run_app
 
     api.open_project(options.folder)
+    need_terminal()
     return run_app(options.folder)
 
 
 def run_home() -> int:
     """Open the screens without a project."""
+    need_terminal()
     from surveyapp.tui.app import run_app
 
     return run_app(None)

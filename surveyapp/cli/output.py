@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 import textwrap
 import unicodedata
@@ -16,6 +17,8 @@ _NARROWEST: Final = 8
 """Columns below which no text is squeezed."""
 
 _GAP: Final = 2
+_UNSEEN: Final = re.compile("[\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069\ufeff]")
+"""What JSON may hold as it is and a terminal may not."""
 
 
 def print_json(value: Mapping[str, Any]) -> None:
@@ -25,6 +28,7 @@ def print_json(value: Mapping[str, Any]) -> None:
     """
     encoding = (getattr(sys.stdout, "encoding", None) or "utf-8").lower().replace("-", "")
     text = json.dumps(value, ensure_ascii=encoding != "utf8", indent=2, allow_nan=False)
+    text = _UNSEEN.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
     print(text.encode("utf-8", "backslashreplace").decode("utf-8"))
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 
+from surveyapp.cli.terminal import need_terminal
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
@@ -25,6 +27,7 @@ def run(options: argparse.Namespace) -> int:
     from surveyapp.observation import practice as api_practice
     from surveyapp.tui.app import run_practice
 
+    need_terminal()
     practice = api_practice.begin(
         api_practice.practice_folder(),
         method=options.method,

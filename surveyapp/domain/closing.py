@@ -15,6 +15,8 @@ class Closing:
         Its id; empty: the project as a whole.
     at, by, seal : str
         When and by whom it was closed; head of the hash chain.
+    head : str
+        Of the ledger's chain at this closing, 20 characters: what the signed record prints.
     changed : tuple of str
         What is no longer as it was then, in words; empty where nothing is.
     """
@@ -23,6 +25,7 @@ class Closing:
     at: str
     by: str
     seal: str
+    head: str = ""
     changed: tuple[str, ...] = ()
 
 

@@ -31,6 +31,8 @@ class ClosingResult:
         What had been changed when it was reopened.
     entry : int
         Number of the ledger entry.
+    head : str
+        Of the ledger's chain, 20 characters in groups: what ``check --seal`` verifies.
     """
 
     action: str
@@ -43,6 +45,7 @@ class ClosingResult:
     files: int
     found: tuple[str, ...]
     entry: int
+    head: str = ""
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON, schema ``surveyapp.closing/1``."""
@@ -55,6 +58,7 @@ class ClosingResult:
             "by": self.by,
             "reason": self.reason,
             "seal": self.seal or None,
+            "head": self.head or None,
             "files": self.files,
             "found": list(self.found),
             "entry": self.entry,

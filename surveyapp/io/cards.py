@@ -21,7 +21,7 @@ from surveyapp.domain.instrument import (
     ValidRange,
 )
 from surveyapp.errors import Problem, SurveyError, nearest_names
-from surveyapp.io.files import read_text, shown
+from surveyapp.io.files import decode, read_inside, shown
 from surveyapp.io.tables import Findings, Table, as_number, parse_toml
 from surveyapp_models.angles import ARCSEC
 
@@ -107,7 +107,7 @@ def load_card(
     ``where`` is the place that names the card.
     """
     try:
-        text = _card_text(name_or_path, base, where)
+        text = card_text(name_or_path, base=base, where=where)
         data = parse_toml(text, where=f"card {shown(name_or_path)}")
     except SurveyError as error:
         findings.absorb(error)
@@ -119,9 +119,11 @@ def load_card(
     return card if len(findings.problems) == before else None
 
 
-def _card_text(name: str, base: Path, where: str) -> str:
+def card_text(name: str, base: Path, where: str) -> str:
+    """Text of a card, installed or of one's own inside ``base``; ``where`` names it."""
     if is_path(name):
-        return read_text(base / name, where=f"{where}, card {shown(name)}".lstrip(", "))
+        place = f"{where}, card {shown(name)}".lstrip(", ")
+        return decode(read_inside(base, name, where=place), where=place)
     known = installed_card_ids()
     if name not in known:
         raise SurveyError(

@@ -17,7 +17,7 @@ from surveyapp.domain.project import Centring, Project, ResultWarning
 from surveyapp.domain.rulebook import RuleBook
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.cards import is_path
-from surveyapp.io.files import decode, read_bytes, shown, shown_path
+from surveyapp.io.files import decode, read_inside, shown, shown_path
 from surveyapp.io.filing.seals import changed_after_closing, read_filing
 from surveyapp.io.grid_tables import read_mine_grid, refuse_two_convergences
 from surveyapp.io.priors import with_priors
@@ -119,7 +119,7 @@ def _project_text(files: ProjectFiles) -> str:
             empty = next(folder.iterdir(), None) is None
             what = "the folder is empty" if empty else f"the folder holds no {PROJECT_FILE}"
         else:
-            data = read_bytes(path, where=PROJECT_FILE)
+            data = read_inside(folder, PROJECT_FILE, where=PROJECT_FILE)
             files.contents[PROJECT_FILE] = data
             return decode(data, where=PROJECT_FILE)
     except (OSError, ValueError) as error:
@@ -220,7 +220,7 @@ def _rules(top: _Top) -> tuple[str | None, RuleBook | None]:
     try:
         if is_path(name):
             files.contents[name] = None
-            files.contents[name] = read_bytes(files.path / name, where=where)
+            files.contents[name] = read_inside(files.path, name, where=where)
         return name, read_rule_book(name, base=files.path)
     except SurveyError as error:
         if files.observing:

@@ -10,7 +10,8 @@ from typing import Final
 
 from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import SurveyError
-from surveyapp.io.files import read_bytes, shown
+from surveyapp.io.files import read_inside, shown
+from surveyapp.io.guarded import MAX_LOG_BYTES, open_regular, place_inside
 from surveyapp.io.tables import Findings, Table
 
 PROJECT_FILE: Final = "project.toml"
@@ -41,7 +42,7 @@ class ProjectFiles:
         """Bytes of a file, None with a problem noted."""
         if name not in self.contents:
             try:
-                self.contents[name] = read_bytes(self.path / name, where=where)
+                self.contents[name] = read_inside(self.path, name, where=where)
             except SurveyError as error:
                 self.findings.absorb(error)
                 self.contents[name] = None
@@ -50,16 +51,21 @@ class ProjectFiles:
     def read_log(self, name: str, table: Table) -> None:
         """Take a sensor log into the digest that nobody pinned; a missing one is a warning."""
         digest = hashlib.sha256()
+        why = "cannot be read"
         try:
-            path = self.path / name
-            if not path.is_file():
+            path = place_inside(self.path, name)
+            if path is None:
+                why = "lies outside of the project folder: only --allow-outside reads it"
                 raise FileNotFoundError(name)
-            with path.open("rb") as stream:
+            if path.stat().st_size > MAX_LOG_BYTES:
+                why = f"is larger than {MAX_LOG_BYTES // 1024**2} MB and was not read"
+                raise OSError(name)
+            with os.fdopen(open_regular(path, os.O_RDONLY), "rb") as stream:
                 while block := stream.read(1 << 20):
                     digest.update(block)
         except (OSError, ValueError):
             self.contents[name] = None
-            text = f"{table.where}: the file {shown(name)} cannot be read"
+            text = f"{table.where}: the file {shown(name)} {why}"
             self.findings.warnings.append(ResultWarning("missing_file", text))
             return
         self.contents[name] = digest.digest()
@@ -78,7 +84,7 @@ class ProjectFiles:
 def inside(name: str, table: Table) -> bool:
     """Whether a path stays in the project folder; notes a problem where it does not."""
     path = os.path.normpath(name.replace("\\", "/"))
-    if Path(path).is_absolute() or path == ".." or path.startswith("../"):
+    if Path(path).is_absolute() or ":" in path[:2] or path == ".." or path.startswith("../"):
         table.problem(
             "the book lies outside of the project folder",
             name,

@@ -16,7 +16,7 @@ from surveyapp.core.tolerance.quantities import QUANTITIES, UNITS
 from surveyapp.domain.rulebook import Limit, RuleBook, Sense
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.cards import is_path
-from surveyapp.io.files import read_text, shown
+from surveyapp.io.files import decode, read_inside, shown
 from surveyapp.io.tables import Findings, Table, as_number, parse_toml
 
 SENSES: Final = ("at most", "at least")
@@ -38,7 +38,7 @@ def rule_book_text(name_or_path: str, *, base: Path) -> str:
     """
     where = f"rule book {shown(name_or_path)}"
     if is_path(name_or_path):
-        return read_text(base / name_or_path, where=where)
+        return decode(read_inside(base, name_or_path, where=where), where=where)
     known = installed_rule_book_ids()
     if name_or_path not in known:
         raise SurveyError(

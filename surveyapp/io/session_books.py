@@ -13,6 +13,7 @@ from surveyapp.domain.subject import Subject
 from surveyapp.errors import SurveyError
 from surveyapp.io.fieldbook.reading import interpret, move_tail_aside, split_tail
 from surveyapp.io.files import shown
+from surveyapp.io.guarded import place_inside
 from surveyapp.io.project_files import PROJECT_FILE, ProjectFiles, inside
 from surveyapp.io.project_tables import Names, read_session, unique
 from surveyapp.io.tables import Findings, Table
@@ -91,12 +92,15 @@ def _repair(folder: Path, name: str, torn: tuple[int, bytes], repair: bool | Non
     if repair is False:
         return False
     size, tail = torn
+    path = place_inside(folder, name)
+    if path is None:
+        return False
     if repair:
-        return move_tail_aside(folder / name, size=size, tail=tail)
+        return move_tail_aside(path, size=size, tail=tail)
     from surveyapp.io.filing.lock import ProjectLock
 
     with ProjectLock(folder) as lock:
-        return lock.writable and move_tail_aside(folder / name, size=size, tail=tail)
+        return lock.writable and move_tail_aside(path, size=size, tail=tail)
 
 
 def _warn_shared_books(paths: list[str], findings: Findings) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import datetime as dt
 import math
+import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -16,11 +17,13 @@ from typing import Final
 
 from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
-from surveyapp.io.files import has_control, shown
+from surveyapp.io.files import has_steering, shown
 from surveyapp_models.angles import TWO_PI, AngleError, AngleUnit, parse_angle
 
 _LONGEST_NAME: Final = 200
 _SMALLEST: Final = 1e-9
+_DEEPEST: Final = 24
+_DEEP_KEY: Final = re.compile(r"(?<![A-Za-z0-9_-])(?:[A-Za-z0-9_-]+[ \t]*\.[ \t]*){24}")
 
 
 @dataclass(slots=True)
@@ -48,7 +51,12 @@ def parse_toml(text: str, *, where: str) -> dict[str, object]:
     SurveyError
     """
     try:
-        return tomllib.loads(text)
+        deep = _DEEP_KEY.search(text)
+        if deep is not None:
+            raise RecursionError
+        data = tomllib.loads(text)
+        _check_depth(data)
+        return data
     except tomllib.TOMLDecodeError as error:
         raise SurveyError(
             Problem(
@@ -63,6 +71,22 @@ def parse_toml(text: str, *, where: str) -> dict[str, object]:
         raise SurveyError(
             Problem("this is no usable TOML: a number or a nesting is beyond all bounds", where)
         ) from None
+
+
+def _check_depth(data: object) -> None:
+    """Refuse nesting that no reader of a project needs, before anything descends into it."""
+    level: list[object] = [data]
+    for _ in range(_DEEPEST):
+        below: list[object] = []
+        for item in level:
+            if isinstance(item, dict):
+                below += item.values()
+            elif isinstance(item, list):
+                below += item
+        level = [item for item in below if isinstance(item, dict | list)]
+        if not level:
+            return
+    raise RecursionError
 
 
 class Table:
@@ -109,7 +133,7 @@ class Table:
             self.problem(f"{key} is no text", value, "a text in double quotes")
             return None
         if (not value.strip() and required) or (
-            not multiline and (has_control(value) or "\n" in value or len(value) > _LONGEST_NAME)
+            has_steering(value) or (not multiline and ("\n" in value or len(value) > _LONGEST_NAME))
         ):
             self.problem(f"{key} is no usable text", value, "one line of printable characters")
             return None

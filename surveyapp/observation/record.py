@@ -6,6 +6,7 @@ from pathlib import Path
 
 from surveyapp import api
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.guarded import checked_inside
 
 
 def write_record(folder: api.Folder) -> str:
@@ -16,6 +17,7 @@ def write_record(folder: api.Folder) -> str:
     SurveyError
         If the project cannot be used or the folder cannot be written to.
     """
+    checked_inside(Path(folder), "results/record.pdf", where="results")
     path = Path(folder) / "results"
     try:
         path.mkdir(exist_ok=True)

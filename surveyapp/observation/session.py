@@ -33,6 +33,7 @@ from surveyapp.io.fieldbook.clock import SessionClock, Stamp, local_now, steady_
 from surveyapp.io.fieldbook.problems import edited_problem, moment_problems, read_only_problem
 from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.io.filing.seals import is_closed
+from surveyapp.io.guarded import checked_inside
 from surveyapp.io.project import read_project
 from surveyapp.observation.aim import Aim
 from surveyapp.observation.half_swing import half_swing_of
@@ -118,8 +119,9 @@ class SessionDesk:
 
     @property
     def path(self) -> Path:
-        """The field book's file."""
-        return self.folder / self.session.book_path
+        """The field book's file, which lies in the project folder."""
+        name = self.session.book_path
+        return checked_inside(self.folder, name, where=self.session_id)
 
     def _file_mark(self) -> tuple[int, int, int] | None:
         """What tells one state of the file from another."""

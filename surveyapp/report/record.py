@@ -36,12 +36,15 @@ class SealShown:
     at, by : str
         When and by whom it was closed.
     seal : str
-        Head of the hash chain.
+        Head of the ledger's chain, 20 characters.
+    files : str
+        Head of the chain over the sealed files.
     """
 
     at: str
     by: str
     seal: str
+    files: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,21 +84,26 @@ class Section:
     blocks: Callable[[Record], tuple[Block, ...]]
 
 
+def _signed(shown: SealShown | None) -> tuple[tuple[str, str], ...]:
+    """What the first page says of the closing."""
+    if shown is None:
+        return (("signed", "not signed: the project is open"),)
+    return (("signed", f"{shown.by or '-'}, {shown.at}"), ("seal", shown.seal))
+
+
 def _extras(record: Record) -> tuple[Block, ...]:
     return tuple(block for extra in record.extras for block in extra.blocks)
 
 
 SECTIONS: Final[tuple[Section, ...]] = (
-    Section("head", lambda r: head.blocks(r.project, r.result, r.rule_book)),
+    Section("head", lambda r: head.blocks(r.project, r.result, r.rule_book, _signed(r.seal))),
     Section("azimuths", lambda r: azimuths.blocks(r.project, r.result)),
     Section("constants", lambda r: constants.blocks(r.result)),
     Section("reduction", lambda r: reduction.blocks(r.project, r.result)),
     Section("fieldbook", lambda r: fieldbook.blocks(r.project)),
     Section("extras", _extras),
     Section("checks", lambda r: checks.blocks(r.result)),
-    Section(
-        "seal", lambda r: () if r.seal is None else seal.blocks(r.seal.at, r.seal.by, r.seal.seal)
-    ),
+    Section("seal", lambda r: () if r.seal is None else seal.blocks(r.seal)),
     Section("signature", lambda _: signature.blocks()),
     Section("full_numbers", lambda r: full_numbers.blocks(r.result)),
 )

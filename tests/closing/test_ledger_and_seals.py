@@ -20,7 +20,8 @@ from surveyapp.cli.main import main
 from surveyapp.core.checks.filing_checks import filing_checks
 from surveyapp.errors import SurveyError
 from surveyapp.io.filing.ledger import LEDGER_FILE, append_entry, parse_ledger, read_ledger
-from surveyapp.io.filing.seals import is_closed, project_file_names, read_filing
+from surveyapp.io.filing.sealed_files import project_file_names
+from surveyapp.io.filing.seals import is_closed, read_filing
 from surveyapp.io.template import create_project
 from surveyapp.io.tomltext import atomic_write
 from surveyapp.observation.session import SessionDesk
@@ -32,7 +33,7 @@ name = "Шахта 潼金矿"
 rule_book = "own.toml"
 [[instrument]]
 id = "G1"
-card = "../cards/own-card.toml"
+card = "cards/own-card.toml"
 [[station]]
 name = "A"
 lat = 34.5
@@ -67,7 +68,7 @@ def make(parent: Path) -> Path:
         "mine/sensors/swing.csv": "t,x\n0,1\n",
         "mine/own.toml": rule_book(),
         "mine/notes/remarks.txt": "wet\n",
-        "cards/own-card.toml": CARD,
+        "mine/cards/own-card.toml": CARD,
     }.items():
         path = parent / name
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -119,7 +120,7 @@ def test_everything_is_sealed(closed: Path) -> None:
         "sensors/swing.csv",
         "own.toml",
         "notes/remarks.txt",
-        "../cards/own-card.toml",
+        "cards/own-card.toml",
     }
     entry = read_ledger(closed).entries[-1]
     assert [row["name"] for row in entry.data["files"]] == list(names)
@@ -208,7 +209,9 @@ def test_a_session_is_closed_by_itself(folder: Path) -> None:
     observation.close()
     text = PROJECT.replace('name = "A"\nlat = 34.5', 'name = "A"\nlat = 34.6')
     (folder / "project.toml").write_text(text, encoding="utf-8")
-    assert not found_by_check(folder), "another table of project.toml is not the session's"
+    assert found_by_check(folder), "the azimuth depends on the position of its station"
+    (folder / "project.toml").write_text(PROJECT, encoding="utf-8")
+    assert not found_by_check(folder)
     changed = PROJECT.replace('method = "tracking"', 'method = "tracking"\nobserver = "X"')
     (folder / "project.toml").write_text(changed, encoding="utf-8")
     assert found_by_check(folder)
@@ -345,4 +348,64 @@ def test_a_ledger_in_which_nothing_was_closed_adds_no_check(folder: Path) -> Non
     assert api.check(folder) == before
     path = folder / LEDGER_FILE
     path.write_bytes(path.read_bytes().replace(b'"n":1', b'"n":3'))
+    assert found_by_check(folder)
+
+
+def test_the_head_of_the_signed_record_is_verified(folder: Path) -> None:
+    head = api.close(folder, by="Μ", now=now).head
+    assert len(head.replace("-", "")) == 20
+    assert api.check(folder, seal=head)[-1].passed
+    assert api.check(folder, seal=head.lower().replace("-", " "))[-1].passed
+    other = head[:-1] + ("0" if head[-1] != "0" else "1")
+    assert api.check(folder, seal=other)[-1].passed is False
+    assert main(["check", str(folder), "--seal", other]) == 1
+    assert main(["check", str(folder), "--seal", "short"]) == 2
+    (folder / "notes" / "remarks.txt").write_text("dry\n", encoding="utf-8")
+    assert api.check(folder, seal=head)[-1].passed is False
+
+
+@pytest.mark.parametrize("scope", [None, "run"])
+def test_who_forges_the_whole_ledger_is_found_by_the_paper(folder: Path, scope: str | None) -> None:
+    head = api.close(folder, session=scope, now=now).head
+    for name in (LEDGER_FILE, "closings.txt"):
+        (folder / name).unlink()
+    book = folder / "observations" / "run.csv"
+    book.write_text(book.read_text("utf-8") + "\n", encoding="utf-8")
+    forged = api.close(folder, session=scope, now=now).head
+    assert forged != head
+    assert api.check(folder, seal=head)[-1].passed is False
+
+
+@pytest.mark.parametrize("scope", [None, "run"])
+@pytest.mark.parametrize("keep", [0, 1])
+def test_a_ledger_that_was_deleted_or_cut_is_missed(
+    folder: Path, scope: str | None, keep: int
+) -> None:
+    append_entry(folder, "diagnosis", {"p": 0.5}, at="2026-02-01", software="s")
+    api.close(folder, session=scope, now=now)
+    lines = (folder / LEDGER_FILE).read_bytes().splitlines(keepends=True)
+    (folder / LEDGER_FILE).write_bytes(b"".join(lines[:keep]))
+    if not keep:
+        (folder / LEDGER_FILE).unlink()
+    assert found_by_check(folder)
+    assert main(["check", str(folder)]) == 1
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("lat = 34.5", "lat = 34.6"),
+        ('id = "G1"', 'id = "G1"\nscale_value_arcsec = 601.0'),
+        ('rule_book = "own.toml"', 'rule_book = "own.toml"\nangle_unit = "dms"'),
+    ],
+)
+def test_the_seal_of_a_session_covers_what_its_azimuth_depends_on(
+    folder: Path, old: str, new: str
+) -> None:
+    api.close(folder, session="run", now=now)
+    assert not found_by_check(folder)
+    (folder / "project.toml").write_text(PROJECT.replace(old, new), encoding="utf-8")
+    assert found_by_check(folder)
+    (folder / "project.toml").write_text(PROJECT, encoding="utf-8")
+    (folder / "cards" / "own-card.toml").write_text(CARD + "# changed\n", encoding="utf-8")
     assert found_by_check(folder)

@@ -41,6 +41,20 @@ def filing_checks(filing: Filing) -> tuple[Check, ...]:
     return tuple(checks)
 
 
+def seal_check(head: str, found: Sequence[str], good: str) -> Check:
+    """Whether the head that a signed record prints stands in the ledger, and holds.
+
+    Parameters
+    ----------
+    head : str
+    found : sequence of str
+        What is not as it was then; empty where everything is.
+    good : str
+        What it seals, in words.
+    """
+    return _check("closing.seal", found, Subject.of("ledger", LEDGER), where=head, good=good)
+
+
 def _subject(closing: Closing) -> Subject:
     return Subject.session(closing.session) if closing.session else Subject.project()
 

@@ -1,12 +1,13 @@
 """A project as one zip file for hand-over: the same project, the same bytes.
 
 Everything that a closing would seal, the ledger, and a manifest with the sha256 of each file.
-Files outside of the folder are stored below ``outside/``; the manifest tells their names.
+Links and what lies outside of the folder are never packed.
 """
 
 from __future__ import annotations
 
 import io
+import os
 import shutil
 import zipfile
 from pathlib import Path
@@ -14,7 +15,8 @@ from typing import Final
 
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.filing.ledger import LEDGER_FILE
-from surveyapp.io.filing.seals import hash_file, project_file_names
+from surveyapp.io.filing.sealed_files import WITNESS_FILE, hash_inside, project_file_names
+from surveyapp.io.guarded import is_regular, open_regular
 
 MANIFEST: Final = "MANIFEST.sha256"
 _MOMENT: Final = (1980, 1, 1, 0, 0, 0)
@@ -38,14 +40,13 @@ def archive(folder: Path) -> tuple[bytes, int]:
         If a file cannot be read.
     """
     names = list(project_file_names(folder))
-    if (folder / LEDGER_FILE).is_file():
-        names.append(LEDGER_FILE)
+    names += [name for name in (LEDGER_FILE, WITNESS_FILE) if is_regular(folder / name)]
     stream = io.BytesIO()
     manifest = []
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED, compresslevel=6) as packed:
         for number, name in enumerate(names, start=1):
             stored = stored_name(name, number)
-            item = hash_file(folder / name, name)
+            item = hash_inside(folder, name)
             remark = "" if stored == name else f"  (named {name})"
             manifest.append(f"{item.sha256}  {stored}{remark}")
             _store(packed, folder / name, f"{folder.resolve().name}/{stored}")
@@ -63,7 +64,8 @@ def _info(name: str) -> zipfile.ZipInfo:
 
 def _store(packed: zipfile.ZipFile, path: Path, name: str) -> None:
     try:
-        with path.open("rb") as source, packed.open(_info(name), "w") as target:
+        source = os.fdopen(open_regular(path, os.O_RDONLY), "rb")
+        with source, packed.open(_info(name), "w") as target:
             shutil.copyfileobj(source, target, 1 << 20)
     except OSError as error:
         raise SurveyError(

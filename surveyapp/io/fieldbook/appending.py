@@ -16,6 +16,7 @@ from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.fieldbook.reading import judge, move_tail_aside, split_tail
 from surveyapp.io.fieldbook.rows import COLUMNS
 from surveyapp.io.files import has_control, read_bytes, shown, shown_path
+from surveyapp.io.guarded import open_regular
 from surveyapp.io.tomltext import sync_folder
 from surveyapp_models.angles import AngleUnit
 
@@ -129,7 +130,7 @@ def _append(path: Path, line: bytes) -> None:
     new = not path.exists()
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        book = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o644)
+        book = open_regular(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT)
     except OSError as error:
         raise _not_written(path, error) from None
     try:

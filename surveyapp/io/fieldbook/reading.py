@@ -19,6 +19,7 @@ from surveyapp.domain.readings import SWING_KINDS, FieldBook, Place, Reading, Re
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.fieldbook.rows import RawBook, parse_rows
 from surveyapp.io.files import decode, read_bytes, shown
+from surveyapp.io.guarded import open_regular
 from surveyapp_models.angles import AngleUnit
 
 _MOST_PROBLEMS: Final = 100
@@ -254,11 +255,13 @@ def move_tail_aside(path: Path, *, size: int, tail: bytes) -> bool:
     bool
         Whether the tail was moved; False in a read-only folder.
     """
+    append = os.O_WRONLY | os.O_APPEND | os.O_CREAT
+    beside = path.with_name(path.name + ".torn")
     try:
-        with path.open("r+b") as book:
+        with os.fdopen(open_regular(path, os.O_RDWR), "r+b") as book:
             if os.fstat(book.fileno()).st_size != size:
                 return False
-            with path.with_name(path.name + ".torn").open("ab") as aside:
+            with os.fdopen(open_regular(beside, append), "ab") as aside:
                 aside.write(tail + b"\n")
                 aside.flush()
                 os.fsync(aside.fileno())

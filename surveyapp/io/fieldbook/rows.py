@@ -16,7 +16,7 @@ from typing import Final
 
 from surveyapp.domain.readings import QUANTITY, Dimension, Face, Reading, ReadingKind, Side
 from surveyapp.errors import Problem, nearest_names
-from surveyapp.io.files import has_control, shown
+from surveyapp.io.files import MAX_COLUMNS, has_control, shown, too_many_columns, visible
 from surveyapp_models.angles import ARCSEC, TWO_PI, AngleError, AngleUnit, parse_angle
 
 COLUMNS: Final = (
@@ -118,6 +118,8 @@ def parse_rows(text: str, *, angle_unit: AngleUnit, where: str) -> RawBook:
 
 
 def _header_problems(header: Sequence[str], line: str, place: str) -> list[Problem]:
+    if len(header) > MAX_COLUMNS:
+        return [too_many_columns(len(header), place)]
     if ";" in line and "," not in line:
         return [
             Problem(
@@ -233,7 +235,7 @@ class _RowReader:
             temperature_c=self._optional_number(
                 cell["temperature_c"], "temperature_c", *_LIMITS[Dimension.TEMPERATURE]
             ),
-            note=cell["note"],
+            note=visible(cell["note"]),
             line=self.line,
             strikes=self._strikes(cell["value"]) if kind in _STRIKING else None,
         )

@@ -14,6 +14,7 @@ from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.filing.ledger import append_entry, read_ledger
 from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.io.filing.seals import CLOSING, REOPENING, changes, closings_in_force, seal_of
+from surveyapp.io.filing.witness import add_witness, head_of
 from surveyapp.io.project import read_project
 
 
@@ -57,6 +58,7 @@ def close_project(
         data = {**seal_of(folder, ledger, session), "by": by, "note": note}
         data["input_sha256"] = project.digest
         entry = append_entry(folder, CLOSING, data, at=at, software=software)
+        add_witness(folder, entry)
     return ClosingResult(
         action=CLOSING,
         scope=str(data["scope"]),
@@ -65,6 +67,7 @@ def close_project(
         by=by,
         reason=note,
         seal=str(data["seal"]),
+        head=head_of(entry.sha256),
         files=len(data["files"]),
         found=(),
         entry=entry.seq,
@@ -103,6 +106,7 @@ def reopen_project(
             "found": found,
         }
         entry = append_entry(folder, REOPENING, data, at=at, software=software)
+        add_witness(folder, entry)
     return ClosingResult(
         action=REOPENING,
         scope=str(data["scope"]),

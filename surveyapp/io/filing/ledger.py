@@ -7,6 +7,7 @@ next writer moves it aside. Nothing here decides what an entry means.
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import json
 import os
@@ -18,9 +19,11 @@ from typing import Any, Final
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.fieldbook.reading import move_tail_aside
 from surveyapp.io.files import shown
+from surveyapp.io.guarded import open_regular
 from surveyapp.io.tomltext import sync_folder
 
 LEDGER_FILE: Final = "ledger.jsonl"
+MAX_LEDGER_BYTES: Final = 64 * 1024 * 1024
 _KEYS: Final = frozenset({"at", "data", "kind", "previous", "seq", "sha256", "software"})
 
 
@@ -99,7 +102,10 @@ def _parse(line: bytes) -> LedgerEntry | None:
         if not isinstance(value, dict) or set(value) != _KEYS or canonical(value) != text:
             return None
         own = value.pop("sha256")
+        texts = ("at", "kind", "previous", "software")
         if own != digest_of(value) or not isinstance(value["data"], dict):
+            return None
+        if any(not isinstance(value[key], str) for key in texts) or type(value["seq"]) is not int:
             return None
         return LedgerEntry(sha256=own, **value)
     except (ValueError, TypeError, RecursionError):
@@ -116,12 +122,25 @@ def read_ledger(folder: Path) -> Ledger:
     """
     path = folder / LEDGER_FILE
     try:
-        data = path.read_bytes() if path.exists() else b""
+        data = _ledger_bytes(path)
     except OSError as error:
         raise SurveyError(
             Problem(f"the ledger cannot be read ({error.strerror or error})", LEDGER_FILE)
         ) from None
     return parse_ledger(data)
+
+
+def _ledger_bytes(path: Path) -> bytes:
+    """The whole ledger, empty where there is none."""
+    try:
+        handle = open_regular(path, os.O_RDONLY)
+    except FileNotFoundError:
+        return b""
+    with os.fdopen(handle, "rb") as stream:
+        data = stream.read(MAX_LEDGER_BYTES + 1)
+    if len(data) > MAX_LEDGER_BYTES:
+        raise OSError(errno.EFBIG, f"it is larger than {MAX_LEDGER_BYTES // 1024**2} MB")
+    return data
 
 
 def parse_ledger(data: bytes) -> Ledger:
@@ -208,20 +227,24 @@ def append_entries(
 
 
 def _lines(path: Path) -> int:
-    return path.read_bytes().count(b"\n") if path.exists() else 0
+    return _ledger_bytes(path).count(b"\n")
 
 
 def _append(path: Path, data: bytes) -> None:
-    """Append and fsync; a failed append is taken back."""
+    """Append in one write and fsync; what could not be written in whole is cut off again."""
     new = not path.exists()
-    with path.open("ab") as stream:
-        size = os.fstat(stream.fileno()).st_size
+    handle = open_regular(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT)
+    try:
+        size = os.fstat(handle).st_size
         try:
-            stream.write(data)
-            stream.flush()
-            os.fsync(stream.fileno())
+            written = os.write(handle, data)
+            if written != len(data):
+                raise OSError(errno.ENOSPC, f"{written} of {len(data)} bytes")
+            os.fsync(handle)
         except OSError:
-            os.ftruncate(stream.fileno(), size)
+            os.ftruncate(handle, size)
             raise
+    finally:
+        os.close(handle)
     if new:
         sync_folder(path.parent)

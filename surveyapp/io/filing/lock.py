@@ -5,9 +5,12 @@ Whoever comes second, and whoever stands before a read-only folder, reads. Nothi
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Final
+
+from surveyapp.io.guarded import is_regular
 
 if TYPE_CHECKING:
     from filelock import BaseFileLock
@@ -49,7 +52,8 @@ class ProjectLock:
             self._acquire()
 
     def _acquire(self) -> None:
-        if not self.folder.is_dir():
+        path = self.folder / LOCK_FILE
+        if not self.folder.is_dir() or (os.path.lexists(path) and not is_regular(path)):
             return
         import filelock
 

@@ -13,8 +13,8 @@ from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
 from surveyapp.domain.rulebook import RuleBook
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.io.files import decode, read_bytes, read_text, shown
-from surveyapp.io.filing.seals import hash_file, project_file_names
+from surveyapp.io.files import decode, read_inside, read_text, shown
+from surveyapp.io.filing.sealed_files import hash_inside, project_file_names
 
 _SCHEMAS = ("surveyapp.snapshot/1", "surveyapp.orient/1")
 
@@ -26,9 +26,9 @@ def folder_snapshot(
     folder = Path(project.path)
     files, texts = {}, {}
     for name in project_file_names(folder):
-        files[name] = hash_file(folder / name, name).sha256
+        files[name] = hash_inside(folder, name).sha256
         try:
-            data = decode(read_bytes(folder / name, where=name), where=name)
+            data = decode(read_inside(folder, name, where=name), where=name)
         except SurveyError:
             continue
         texts[name] = tuple(data.splitlines())

@@ -11,12 +11,15 @@ Source: GNU Gama manual, ch. 2, XML input data format; schema gama-local.xsd 1.0
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from surveyapp.core.network.collector import paused_collection
 from surveyapp.domain.traverse import Network
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.files import MAX_BYTES
+from surveyapp.io.guarded import open_regular
 from surveyapp.io.importers.gkf_document import GkfDocument
 from surveyapp.io.importers.gkf_network import network_from
 
@@ -91,7 +94,9 @@ def _parse(path: Path, document: GkfDocument) -> None:
     parser.setFeature(feature_external_ges, False)
     parser.setContentHandler(_handler(document))
     try:
-        with path.open("rb") as stream:
+        with os.fdopen(open_regular(path, os.O_RDONLY, follow=True), "rb") as stream:
+            if os.fstat(stream.fileno()).st_size > MAX_BYTES:
+                raise OSError(f"it is larger than {MAX_BYTES // 1024**2} MB")
             parser.parse(stream)
     except OSError as failure:
         found = failure.strerror or str(failure)

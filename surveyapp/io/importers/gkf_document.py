@@ -22,6 +22,10 @@ MM = 1e-3
 NEVER_MM = 1e9
 """``tol-abs`` of a network in which nothing is left out, however far it misses."""
 AXES = ("ne", "sw", "es", "wn", "en", "nw", "se", "ws")
+MOST_ELEMENTS = 150_000
+DEEPEST = 16
+MOST_PROBLEMS = 200
+"""Beyond these a file is read no further."""
 KINDS = {
     "direction": ObservationKind.DIRECTION,
     "distance": ObservationKind.DISTANCE,
@@ -131,6 +135,7 @@ class GkfDocument:
         self._path: list[str] = []
         self._cluster: Cluster | None = None
         self._line = 0
+        self._elements = 0
         self._actions: dict[str, Callable[[dict[str, str]], None]] = {
             "network": self._network,
             "parameters": self._parameters,
@@ -155,6 +160,17 @@ class GkfDocument:
         """Take the start of an element."""
         self._path.append(name)
         self._line = line
+        self._elements += 1
+        if self._elements > MOST_ELEMENTS or len(self._path) > DEEPEST:
+            self.problem(
+                "The file is no network of this size",
+                line,
+                f"{self._elements} elements, {len(self._path)} deep",
+                f"at most {MOST_ELEMENTS} elements, {DEEPEST} deep",
+            )
+            raise SurveyError(self.problems)
+        if len(self.problems) > MOST_PROBLEMS:
+            raise SurveyError(self.problems)
         if not all(value.isascii() for value in attributes.values()):
             attributes = {k: unicodedata.normalize("NFC", v) for k, v in attributes.items()}
         known = ATTRIBUTES.get(name)

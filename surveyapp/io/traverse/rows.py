@@ -13,7 +13,7 @@ from typing import Final
 from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.traverse_book import TraverseRow
 from surveyapp.errors import Problem, nearest_names
-from surveyapp.io.files import shown
+from surveyapp.io.files import MAX_COLUMNS, shown, too_many_columns, visible
 from surveyapp_models.angles import ARCSEC, AngleError, AngleUnit, parse_angle
 
 COLUMNS: Final = (
@@ -212,7 +212,7 @@ def parse_traverse(
     problems: list[Problem] = []
     rows: list[TraverseRow] = []
     header: list[str] | None = None
-    reader = csv.reader(text.splitlines(), strict=True)
+    reader = csv.reader(visible(text).splitlines(), strict=True)
     try:
         for cells in reader:
             stripped = [cell.strip() for cell in cells]
@@ -220,6 +220,9 @@ def parse_traverse(
                 continue
             if header is None:
                 header = [name.lower() for name in stripped]
+                if len(header) > MAX_COLUMNS:
+                    problems.append(too_many_columns(len(header), where))
+                    break
                 if not _header(header, ",".join(cells), where, problems):
                     return rows, problems
                 continue

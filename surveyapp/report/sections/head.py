@@ -14,9 +14,12 @@ _LONGEST_CRS = 160
 
 
 def blocks(
-    project: Project, result: OrientationResult, rule_book: RuleBook | None
+    project: Project,
+    result: OrientationResult,
+    rule_book: RuleBook | None,
+    signed: tuple[tuple[str, str], ...] = (),
 ) -> tuple[Block, ...]:
-    """Blocks of the head."""
+    """Blocks of the head; ``signed`` is what it says of the closing, name and text."""
     facts = [("project", project.name)]
     facts += [("instrument", _instrument(project, item.id)) for item in project.instruments]
     facts += [
@@ -34,6 +37,8 @@ def blocks(
     still = sum(check.passed is None for check in result.checks)
     verdict = f"{met} met, {broken} NOT MET, {warned} warnings, {still} open for want of data"
     facts.append(("checks", verdict))
+    facts += signed
+    facts.insert(1, ("verdict", _verdict(broken, still)))
     return (
         KeyValues(tuple(facts)),
         *_stations(project),
@@ -44,6 +49,13 @@ def blocks(
             "small",
         ),
     )
+
+
+def _verdict(broken: int, still: int) -> str:
+    if broken:
+        return f"NOT MET: {broken} confirmed {'check' if broken == 1 else 'checks'}"
+    open_ones = f"; {still} open for want of data" if still else ""
+    return f"every confirmed check that could be answered is met{open_ones}"
 
 
 def observers(project: Project) -> list[str]:

@@ -2,17 +2,30 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from surveyapp.report.blocks import Block, Heading, KeyValues, Paragraph
 
+if TYPE_CHECKING:
+    from surveyapp.report.record import SealShown
 
-def blocks(at: str, by: str, seal: str) -> tuple[Block, ...]:
+
+def blocks(shown: SealShown) -> tuple[Block, ...]:
     """Blocks of the closing."""
     return (
         Heading("Closing"),
-        KeyValues((("closed at", at), ("closed by", by or "-"), ("seal", seal))),
+        KeyValues(
+            (
+                ("closed at", shown.at),
+                ("closed by", shown.by or "-"),
+                ("seal", shown.seal),
+                ("sha256 of the files", shown.files or "-"),
+            )
+        ),
         Paragraph(
-            "The seal is the head of a hash chain over project.toml, books, own cards and rule "
-            "books, sensor logs and the ledger; a changed byte is found by the command check.",
+            "The seal is the head of the ledger's hash chain at this closing; the closing holds "
+            "the sha256 of project.toml, books, own cards and rule books and logs. "
+            f"surveyapp check DIR --seal {shown.seal} tells whether all of it is as it was signed.",
             "small",
         ),
     )

@@ -1,0 +1,141 @@
+"""Files of a folder that a stranger made: nothing outside of it is read or written through it.
+
+A path of a project resolves inside its folder, whatever links, ``..`` or drive letters it is made
+of. What is opened is a regular file of bounded size: no device, no pipe, and for writing no link.
+Flags that a system does not have are left away; nothing here needs POSIX.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+import stat
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+
+from surveyapp.errors import Problem, SurveyError
+
+MAX_LOG_BYTES: Final = 256 * 1024 * 1024
+"""Largest file that is hashed or packed."""
+
+_COMMON: Final = (
+    getattr(os, "O_BINARY", 0)
+    | getattr(os, "O_CLOEXEC", 0)
+    | getattr(os, "O_NONBLOCK", 0)
+    | getattr(os, "O_NOCTTY", 0)
+)
+_DRIVE: Final = re.compile(r"[A-Za-z]:")
+_OUTSIDE_HINT: Final = "copy the file into the project folder and name it there"
+
+
+def place_inside(folder: Path, name: str) -> Path | None:
+    """Real path of a file that a project names, None where it does not lie in the folder.
+
+    Parameters
+    ----------
+    folder : Path
+    name : str
+        As written; the file need not exist.
+    """
+    plain = name.replace("\\", "/")
+    if not name or "\0" in name or plain.startswith("/") or _DRIVE.match(plain):
+        return None
+    try:
+        root = os.path.realpath(folder)
+        real = os.path.realpath(folder / name)
+    except (OSError, ValueError):
+        return None
+    within = os.path.commonpath([root, real]) == root if _same_drive(root, real) else False
+    return Path(real) if within and real != root else None
+
+
+def _same_drive(first: str, second: str) -> bool:
+    return os.path.splitdrive(first)[0].lower() == os.path.splitdrive(second)[0].lower()
+
+
+def checked_inside(folder: Path, name: str, *, where: str) -> Path:
+    """As ``place_inside``.
+
+    Raises
+    ------
+    SurveyError
+        If the path leads out of the folder.
+    """
+    real = place_inside(folder, name)
+    if real is None:
+        problem = outside_problem(name, where=where)
+        if _is_special(folder / name):
+            problem = replace(problem, what=f"{problem.what} and is no regular file")
+        raise SurveyError(problem)
+    return real
+
+
+def _is_special(path: Path) -> bool:
+    try:
+        mode = path.stat().st_mode
+    except (OSError, ValueError):
+        return False
+    return not stat.S_ISREG(mode) and not stat.S_ISDIR(mode)
+
+
+def outside_problem(name: str, *, where: str) -> Problem:
+    """A path leads out of the project folder."""
+    from surveyapp.io.files import shown
+
+    return Problem(
+        "the path leads out of the project folder",
+        where,
+        shown(name),
+        "a file below the project folder, reached by no link to the outside",
+        _OUTSIDE_HINT,
+    )
+
+
+def open_regular(path: Path, flags: int, *, follow: bool = False) -> int:
+    """Open a regular file and return its descriptor.
+
+    Parameters
+    ----------
+    path : Path
+    flags : int
+        Of ``os.open``.
+    follow : bool
+        Whether a link at the end of the path may be followed.
+
+    Raises
+    ------
+    OSError
+        Also for a link, a folder, a device and a pipe.
+    """
+    _refuse_irregular(path, follow=follow)
+    if not follow:
+        flags |= getattr(os, "O_NOFOLLOW", 0)
+    handle = os.open(path, flags | _COMMON, 0o644)
+    if not stat.S_ISREG(os.fstat(handle).st_mode):
+        os.close(handle)
+        raise OSError(errno.EINVAL, "no regular file")
+    return handle
+
+
+def _refuse_irregular(path: Path, *, follow: bool) -> None:
+    """Look before opening: opening a pipe or a device may already do something."""
+    try:
+        mode = (path.stat() if follow else path.lstat()).st_mode
+    except FileNotFoundError:
+        return
+    if stat.S_ISLNK(mode):
+        raise OSError(errno.ELOOP, "this is a link")
+    if stat.S_ISDIR(mode):
+        raise OSError(errno.EISDIR, "this is a folder")
+    if not stat.S_ISREG(mode):
+        raise OSError(errno.EINVAL, "this is no regular file")
+
+
+def is_regular(path: Path) -> bool:
+    """Whether a path is a regular file itself, and no link to one."""
+    try:
+        return stat.S_ISREG(path.lstat().st_mode)
+    except (OSError, ValueError):
+        return False
