@@ -38,7 +38,13 @@ from surveyapp.api.orientation import (
     plan,
     unfinished,
 )
-from surveyapp.api.penetration import cluster_executor, predict
+from surveyapp.api.penetration import (
+    Trial,
+    cluster_executor,
+    has_breakthrough,
+    predict,
+    trial,
+)
 from surveyapp.api.pooling import diagnose_instrument
 from surveyapp.api.project import (
     SOFTWARE,
@@ -51,7 +57,7 @@ from surveyapp.api.project import (
 )
 from surveyapp.api.rate import motion, north, plan_fog_station, plan_north_stops, spectrum
 from surveyapp.api.sensors import LogOptions, calibrate, open_sensor_log
-from surveyapp.api.shafts import shaft
+from surveyapp.api.shafts import has_shafts, shaft
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.fieldfile import ImportResult
@@ -85,6 +91,10 @@ __all__ = [
     "SubjectKeyword",
     "predict",
     "cluster_executor",
+    "Trial",
+    "has_breakthrough",
+    "has_shafts",
+    "trial",
     "shaft",
     "subjects",
     "check",

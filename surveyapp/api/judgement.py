@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from surveyapp.api.orientation import Source, oriented
 from surveyapp.api.project import SOFTWARE, Folder, opened
+from surveyapp.domain.advance import Advance, silent
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import Verdicts
 from surveyapp.domain.subject import SubjectKeyword
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from surveyapp.workflows.diagnosing import Diagnosed
 
 
-def check(source: Source, *, seal: str | None = None) -> Verdicts:
+def check(source: Source, *, seal: str | None = None, advance: Advance = silent) -> Verdicts:
     """Apply every limit and test that the project's data can answer.
 
     The same verdicts stand in the result of ``orient``, on the screens and in the record.
@@ -39,7 +40,7 @@ def check(source: Source, *, seal: str | None = None) -> Verdicts:
         found = source
     else:
         project = opened(source)
-        made = oriented(project, even_unfinished=bool(project.traverses))
+        made = oriented(project, even_unfinished=bool(project.traverses), advance=advance)
         found = judged(made, software=SOFTWARE)
     told = tuple(w for w in found.result.warnings if w.code == "session_unfinished")
     checks = found.result.checks

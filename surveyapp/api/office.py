@@ -16,6 +16,7 @@ from surveyapp.api.judgement import diagnose, subjects
 from surveyapp.api.network import adjust, network
 from surveyapp.api.orientation import Source, compute, orient
 from surveyapp.api.project import SOFTWARE, Folder
+from surveyapp.domain.advance import Advance, silent
 from surveyapp.errors import SurveyError
 
 if TYPE_CHECKING:
@@ -38,6 +39,7 @@ def report(
     font: Folder | None = None,
     extras: tuple[Extra, ...] = (),
     diagnosis: bool = False,
+    advance: Advance = silent,
 ) -> ReportResult:
     """Write the survey record as PDF; the same input gives the same bytes.
 
@@ -53,17 +55,19 @@ def report(
         Sections from elsewhere, before the checks.
     diagnosis : bool
         Diagnose every run and campaign of the project and show what was found.
+    advance : callable
+        Told how far it is.
 
     Raises
     ------
     SurveyError
         If the project cannot be used, the face cannot be embedded or the file not be written.
     """
-    found = compute(source)
+    found = compute(source, advance=advance)
     if diagnosis:
-        extras = (*extras, *_diagnoses(found))
+        extras = (*extras, *_diagnoses(found, advance))
     document, sections = _record(found, extras)
-    return _write_document(document, sections, Path(output), font)
+    return _write_document(document, sections, Path(output), font, advance)
 
 
 def _traverses(found: Computed) -> tuple[Extra, ...]:
@@ -123,14 +127,16 @@ def _refused(title: str, error: SurveyError) -> tuple[Block, ...]:
     return (Heading(title), *(Paragraph(str(p), "warning") for p in error.problems))
 
 
-def _diagnoses(found: Computed) -> tuple[Extra, ...]:
+def _diagnoses(found: Computed, advance: Advance) -> tuple[Extra, ...]:
     """A section for every subject that can be diagnosed; too few observations are passed over."""
     from surveyapp.report.record import Extra
     from surveyapp.report.sections import diagnosis as section
 
     unit = found.project.angle_unit
     extras = []
-    for option, identity in subjects(found):
+    chosen = subjects(found)
+    for place, (option, identity) in enumerate(chosen):
+        advance("subjects diagnosed", place, len(chosen))
         try:
             if option == "session":
                 made = diagnose(found, session=identity, log=False)
@@ -183,13 +189,17 @@ def _record(found: Computed, extras: tuple[Extra, ...]) -> tuple[Document, tuple
 
 
 def _write_document(
-    document: Document, sections: tuple[str, ...], output: Path, font: Folder | None
+    document: Document,
+    sections: tuple[str, ...],
+    output: Path,
+    font: Folder | None,
+    advance: Advance = silent,
 ) -> ReportResult:
     from surveyapp.io.tomltext import atomic_write
     from surveyapp.report.pdf import write_pdf
     from surveyapp.report.written import ReportResult
 
-    written = write_pdf(document, face=None if font is None else Path(font))
+    written = write_pdf(document, face=None if font is None else Path(font), advance=advance)
     atomic_write(output, written.data)
     digest = hashlib.sha256(written.data).hexdigest()
     return ReportResult(str(output), written.pages, sections, digest)

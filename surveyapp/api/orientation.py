@@ -6,6 +6,7 @@ from os import PathLike
 from typing import TYPE_CHECKING, Union
 
 from surveyapp.api.project import SOFTWARE, Folder, open_project, opened, require
+from surveyapp.domain.advance import Advance, silent
 from surveyapp.domain.project import Project, ResultWarning
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import Problem, SurveyError
@@ -22,7 +23,12 @@ Source = Union[Project, Folder, "Computed"]
 
 
 def compute(
-    source: Source, *, session: str | None = None, estimator: str | None = None
+    source: Source,
+    *,
+    session: str | None = None,
+    estimator: str | None = None,
+    even_unfinished: bool = False,
+    advance: Advance = silent,
 ) -> Computed:
     """Orient and judge a project, once: every other function takes what this returns.
 
@@ -35,6 +41,10 @@ def compute(
         calibration sessions.
     estimator : str or None
         ``least-squares``, ``schuler``, ``amplitude`` or ``transit``; None for the default.
+    even_unfinished : bool
+        Whether a project may have no finished session at all; it has no line then.
+    advance : callable
+        Told how far it is: what is done, how many, of how many.
 
     Raises
     ------
@@ -45,7 +55,14 @@ def compute(
 
     if session is None and estimator is None and not isinstance(source, Project | str | PathLike):
         return source
-    found = oriented(source, session=session, estimator=estimator)
+    found = oriented(
+        source,
+        session=session,
+        estimator=estimator,
+        even_unfinished=even_unfinished,
+        advance=advance,
+    )
+    advance("checks", 0, 0)
     return judged(found, software=SOFTWARE, session=session)
 
 
@@ -71,6 +88,7 @@ def oriented(
     estimator: str | None = None,
     keep: tuple[str, ...] = (),
     even_unfinished: bool = False,
+    advance: Advance = silent,
 ) -> OrientedProject:
     """Orient a project without judging it.
 
@@ -90,7 +108,12 @@ def oriented(
         require(session, [item.id for item in project.sessions], "session")
         keep = (*keep, session)
     return oriented_project(
-        project, estimator=estimator, session=session, keep=keep, all_if_none=not even_unfinished
+        project,
+        estimator=estimator,
+        session=session,
+        keep=keep,
+        all_if_none=not even_unfinished,
+        advance=advance,
     )
 
 
@@ -100,6 +123,7 @@ def orient(
     session: str | None = None,
     line: str | tuple[str, str] | None = None,
     estimator: str | None = None,
+    advance: Advance = silent,
 ) -> OrientationResult:
     """Reduce the sessions of a project and orient its lines.
 
@@ -124,7 +148,7 @@ def orient(
     -----
     Sessions that are still being observed are left out, with a warning ``session_unfinished``.
     """
-    found = compute(source, session=session, estimator=estimator)
+    found = compute(source, session=session, estimator=estimator, advance=advance)
     return found.result if line is None else with_line(found, line)
 
 

@@ -5,11 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 from surveyapp.api.orientation import Source, oriented
 from surveyapp.api.project import SOFTWARE
 from surveyapp.domain.penetration_result import Prediction
+from surveyapp.domain.project import Project
+
+if TYPE_CHECKING:
+    from surveyapp.core.penetration.mine import Mine
+    from surveyapp.core.penetration.what_if import WhatIf
+    from surveyapp.workflows.predicting import ReadyMine
 
 
 @contextmanager
@@ -52,21 +59,10 @@ def predict(
         If there is no ``[penetration]``, or with every reason why it cannot be predicted.
     """
     from surveyapp.core.penetration.planning import candidates_of, plan_sides
-    from surveyapp.core.penetration.prediction import prediction
-    from surveyapp.workflows.predicting import ready_mine
     from surveyapp.workflows.simulating import simulated
 
-    computed = oriented(source, even_unfinished=True)
-    kept = computed.orientation.project
-    ready = ready_mine(kept, computed.result() if kept.sessions else None, plan_sides=plan)
-    found = prediction(
-        ready.mine,
-        ready.rule_book,
-        project=kept.name,
-        software=SOFTWARE,
-        digest=kept.digest,
-        warnings=ready.warnings,
-    )
+    ready = _ready(source, plan)
+    found = _predicted(ready, ready.mine)
     if plan is not None:
         allowed = None if found.tolerance is None else found.tolerance.lateral_m
         candidates = candidates_of(ready.mine, ready.defaults)
@@ -75,3 +71,92 @@ def predict(
     if monte_carlo:
         return replace(found, simulated=simulated(ready.mine, executor))
     return found
+
+
+def _ready(source: Source, plan: int | None = None) -> ReadyMine:
+    """The mine of a project, ready for prediction."""
+    from surveyapp.workflows.predicting import ready_mine
+
+    computed = oriented(source, even_unfinished=True)
+    kept = computed.orientation.project
+    return ready_mine(kept, computed.result() if kept.sessions else None, plan_sides=plan)
+
+
+def _predicted(ready: ReadyMine, mine: Mine) -> Prediction:
+    from surveyapp.core.penetration.prediction import prediction
+
+    return prediction(
+        mine,
+        ready.rule_book,
+        project=ready.project,
+        software=SOFTWARE,
+        digest=ready.digest,
+        warnings=ready.warnings,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """What is tried on a mine, and what it makes of the prediction: a value, changed by copies.
+
+    Parameters
+    ----------
+    ready : ReadyMine
+    tried : WhatIf
+    prediction : Prediction
+        With everything that is tried.
+    """
+
+    ready: ReadyMine
+    tried: WhatIf
+    prediction: Prediction
+
+    def changed(self, tried: WhatIf) -> Trial:
+        """Another trial on the same mine."""
+        return Trial(self.ready, tried, _predicted(self.ready, tried.changed()))
+
+    def add_side(self) -> Trial:
+        """One more gyro side where it gains most."""
+        return self.changed(self.tried.with_best_side())
+
+    def remove_side(self) -> Trial:
+        """Without the side that was added last."""
+        return self.changed(self.tried.without_last_side())
+
+    def both_ends(self) -> Trial:
+        """Every gyro side from both ends, or no longer."""
+        return self.changed(replace(self.tried, both_ends=not self.tried.both_ends))
+
+    def better_angles(self) -> Trial:
+        """Angles with 5/7 of the sigma, or no longer."""
+        return self.changed(replace(self.tried, better_angles=not self.tried.better_angles))
+
+    def better_gyro(self) -> Trial:
+        """Gyro sides with 2/3 of the sigma, or no longer."""
+        return self.changed(replace(self.tried, better_gyro=not self.tried.better_gyro))
+
+    def survey(self) -> Trial:
+        """One independent survey more, from three on none again."""
+        more = (self.tried.more_surveys + 1) % 3
+        return self.changed(replace(self.tried, more_surveys=more))
+
+
+def has_breakthrough(project: Project) -> bool:
+    """Whether a project holds ``[penetration]``."""
+    from surveyapp.workflows.predicting import has_penetration
+
+    return has_penetration(project)
+
+
+def trial(source: Source) -> Trial:
+    """Begin to try things on a project's mine; nothing is tried yet.
+
+    Raises
+    ------
+    SurveyError
+        As ``predict``.
+    """
+    from surveyapp.core.penetration.what_if import WhatIf
+
+    ready = _ready(source)
+    return Trial(ready, WhatIf(ready.mine, ready.defaults), _predicted(ready, ready.mine))

@@ -7,6 +7,13 @@ from surveyapp.domain.project import Project
 from surveyapp.domain.shaft_result import ShaftResult
 
 
+def has_shafts(project: Project) -> bool:
+    """Whether a project holds a ``[[shaft]]``."""
+    from surveyapp.io.shafts.table import shaft_tables
+
+    return bool(shaft_tables(project))
+
+
 def shaft(project: Project | Folder) -> ShaftResult:
     """Orient through every shaft of a project.
 

@@ -19,7 +19,7 @@ def run(options: argparse.Namespace) -> int:
     """Check and print; 1 if a confirmed limit or test is not met."""
     from surveyapp import api
 
-    found = api.check(options.folder, seal=options.seal)
+    found = api.check(options.folder, seal=options.seal, advance=options.advance)
     if options.json:
         print_json(found.to_dict())
     else:

@@ -19,6 +19,7 @@ from typing import NoReturn
 from surveyapp import __version__
 from surveyapp.cli.output import print_json
 from surveyapp.cli.safe_output import safe_output
+from surveyapp.cli.waiting import Waiting
 from surveyapp.errors import Problem, SurveyError, nearest_names
 
 EXIT_GOOD, EXIT_LIMIT, EXIT_INPUT, EXIT_FAULT = 0, 1, 2, 3
@@ -31,33 +32,56 @@ class Command:
     name: str
     module: str
     summary: str
+    waits: bool = True
+    """Whether a bar is shown while it runs; screens and those with a bar of their own have none."""
 
 
 COMMANDS: tuple[Command, ...] = (
-    Command("open", "open_project", "open the terminal screens on one project"),
+    Command("open", "open_project", "open the terminal screens on one project", waits=False),
     Command("orient", "orient", "field book to gyro north, constant and grid azimuth"),
     Command("check", "check", "apply every limit and test that the data can answer"),
     Command("adjust", "adjust", "traverse or .gkf network to coordinates, sigmas and tests"),
     Command("report", "report", "the survey record as PDF, or a blank field-book form"),
     Command("diagnose", "diagnose", "which effect does the model lack, and how sure is that"),
-    Command("calibrate", "calibrate", "a sensor log to parameters, sigmas and a sensor card"),
-    Command("spectrum", "spectrum", "interference lines of a record, and a magnetic bias budget"),
-    Command("motion", "motion", "state of motion of a vehicle, and its path"),
-    Command("north", "north", "north by a rate sensor: on a total station, indexed, turned"),
+    Command(
+        "calibrate",
+        "calibrate",
+        "a sensor log to parameters, sigmas and a sensor card",
+        waits=False,
+    ),
+    Command(
+        "spectrum",
+        "spectrum",
+        "interference lines of a record, and a magnetic bias budget",
+        waits=False,
+    ),
+    Command("motion", "motion", "state of motion of a vehicle, and its path", waits=False),
+    Command(
+        "north", "north", "north by a rate sensor: on a total station, indexed, turned", waits=False
+    ),
     Command("close", "close", "seal a project or a session with a hash chain in the ledger"),
     Command("reopen", "reopen", "open what was closed; the ledger keeps the reason"),
     Command("compare", "compare", "what changed between two results, and because of what"),
-    Command("import", "import_file", "field files of total stations and gyros into a project"),
-    Command("instrument", "instrument", "read a total station on the cable"),
+    Command(
+        "import",
+        "import_file",
+        "field files of total stations and gyros into a project",
+        waits=False,
+    ),
+    Command("instrument", "instrument", "read a total station on the cable", waits=False),
     Command("export", "export", "results and projects as csv, json or zip"),
-    Command("batch", "batch", "many projects, one row each; failures are told, not fatal"),
+    Command(
+        "batch", "batch", "many projects, one row each; failures are told, not fatal", waits=False
+    ),
     Command("new", "new", "make a new project folder"),
     Command("models", "models", "instrument cards and what is known of them"),
     Command("predict", "predict", "how far two headings will miss each other, and what helps"),
     Command("shaft", "shaft", "orientation through one shaft or two, joined with the gyro"),
     Command("plan", "plan", "method, points and minutes for a wanted interval at this latitude"),
     Command("simulate", "simulate", "a simulated project with any effect, its truth apart"),
-    Command("practise", "practise", "observe a simulated instrument, then see the truth"),
+    Command(
+        "practise", "practise", "observe a simulated instrument, then see the truth", waits=False
+    ),
     Command("demo", "demo", "orient the measured samples: printed against computed"),
 )
 
@@ -191,10 +215,13 @@ def _run(arguments: list[str]) -> int:
                 hint=nearest_names(first, names),
             )
         )
-    parser = parser_of(names[first])
+    command = names[first]
+    parser = parser_of(command)
     options = parser.parse_strictly(arguments[1:])
     try:
-        return int(_module(names[first].module).run(options))
+        with Waiting(first, sys.stderr if command.waits else None) as waiting:
+            options.advance = waiting.advance
+            return int(_module(command.module).run(options))
     except SurveyError as error:
         raise SurveyError([parser.as_typed(problem) for problem in error.problems]) from None
 

@@ -39,7 +39,11 @@ def run(options: argparse.Namespace) -> int:
 
     project = api.open_project(options.folder)
     result = api.orient(
-        project, session=options.session, line=options.line, estimator=options.estimator
+        project,
+        session=options.session,
+        line=options.line,
+        estimator=options.estimator,
+        advance=options.advance,
     )
     if options.json:
         print_json(result.to_dict())

@@ -36,7 +36,11 @@ def run(options: argparse.Namespace) -> int:
         written = api.blank_form(options.blank, options.output, font=options.font)
     else:
         written = api.report(
-            options.folder, options.output, font=options.font, diagnosis=options.diagnosis
+            options.folder,
+            options.output,
+            font=options.font,
+            diagnosis=options.diagnosis,
+            advance=options.advance,
         )
     if options.json:
         print_json(written.to_dict())

@@ -184,6 +184,22 @@ class ShaftBudgetLine:
 
 
 @dataclass(frozen=True, slots=True)
+class ShaftDrawing:
+    """What a picture of a shaft shows.
+
+    Parameters
+    ----------
+    swings : tuple of (wire, axis, readings)
+        Turning points in order [mm].
+    triangles : tuple of (place, points)
+        Names with east and north of each connecting triangle [m].
+    """
+
+    swings: tuple[tuple[str, str, tuple[float, ...]], ...] = ()
+    triangles: tuple[tuple[str, tuple[tuple[str, float, float], ...]], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class ShaftOrientation:
     """One shaft, or one pair of shafts.
 
@@ -203,6 +219,8 @@ class ShaftOrientation:
     combined : JointAzimuth
     budget : tuple of ShaftBudgetLine
     checks : tuple of PlumbingCheck
+    drawing : ShaftDrawing
+        Not in the JSON.
     """
 
     id: str
@@ -219,6 +237,7 @@ class ShaftOrientation:
     combined: JointAzimuth
     budget: tuple[ShaftBudgetLine, ...]
     checks: tuple[PlumbingCheck, ...] = ()
+    drawing: ShaftDrawing = field(default_factory=ShaftDrawing)
 
     @property
     def passed(self) -> bool:

@@ -17,6 +17,7 @@ from surveyapp.core.network.traverse_network import network_of
 from surveyapp.core.orientation.outcome import outcome
 from surveyapp.core.orientation.unfinished import waiting_sides, without_unfinished
 from surveyapp.core.orientation.whole_project import Orientation, orient_project
+from surveyapp.domain.advance import Advance, silent
 from surveyapp.domain.project import Project, ResultWarning
 from surveyapp.domain.results import OrientationResult
 from surveyapp.domain.traverse import GyroConstant, Network, OrientedLine
@@ -110,6 +111,7 @@ def oriented(
     session: str | None = None,
     keep: Collection[str] = (),
     all_if_none: bool = True,
+    advance: Advance = silent,
 ) -> OrientedProject:
     """Orient the finished sessions of a project.
 
@@ -124,6 +126,8 @@ def oriented(
         Sessions that stay although they are not finished: their error is told.
     all_if_none : bool
         Where no session is finished, whether all are tried, so that what they lack is an error.
+    advance : callable
+        Told how far it is.
 
     Raises
     ------
@@ -139,7 +143,12 @@ def oriented(
 
         run_model = modelled_run
     found = orient_project(
-        kept, generator_of(project), estimator=estimator, only=session, run_model=run_model
+        kept,
+        generator_of(project),
+        estimator=estimator,
+        only=session,
+        run_model=run_model,
+        advance=advance,
     )
     sides, constants, warnings = oriented_lines([line.result for line in found.lines])
     left_out = kept.warnings[len(project.warnings) :]

@@ -45,6 +45,8 @@ class ReadyMine:
     rule_book: RuleBook | None
     defaults: dict[str, tuple[str, float]]
     warnings: tuple[ResultWarning, ...]
+    project: str = ""
+    digest: str = ""
 
 
 @dataclass(slots=True)
@@ -119,7 +121,7 @@ def ready_mine(
     mine = build_mine(plan, stations, constants, gathered.measured)
     warnings = (*project.warnings, *gathered.findings.warnings, *unknown, *lost, *fed)
     warnings = (*warnings, *carried(plan, stations))
-    return ReadyMine(mine, project.rules, defaults, warnings)
+    return ReadyMine(mine, project.rules, defaults, warnings, project.name, project.digest)
 
 
 def _measure(
@@ -173,7 +175,9 @@ def _constants(
         if name not in known:
             continue
         result, stated = calibrated.get(name), known[name].known_constant
-        sigma = None if result is None or result.value is None else result.sigma
+        sigma = _in_force(name, orientation)  # what an adjustment of these lines takes
+        if sigma is None and result is not None and result.value is not None:
+            sigma = result.sigma
         if sigma is None or not math.isfinite(sigma):
             sigma = None if stated is None else stated[1]
         if sigma is None and observes:
@@ -184,6 +188,19 @@ def _constants(
             warnings.append(ResultWarning("constant_sigma_unknown", text))
         found[name] = sigma or 0.0
     return found, warnings
+
+
+def _in_force(name: str, orientation: OrientationResult | None) -> float | None:
+    """Sigma of the constant with which the lines of a gyro were oriented [rad]."""
+    lines = () if orientation is None else orientation.lines
+    found = [
+        line.constant_sigma
+        for line in lines
+        if line.instrument == name and line.constant_sigma is not None
+    ]
+    if not found:
+        return None
+    return math.sqrt(sum(sigma**2 for sigma in found) / len(found))
 
 
 def _used(

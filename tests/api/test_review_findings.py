@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -68,7 +69,7 @@ def tracked(
     return timed(entries)
 
 
-def orient(folder: Path, **options: str) -> Mapping[str, object]:
+def orient(folder: Path, **options: Any) -> Mapping[str, object]:
     return api.orient(folder, **options).to_dict()
 
 

@@ -57,6 +57,7 @@ from surveyapp.core.swing.session import (
 )
 from surveyapp.core.swing.sights import SightSet, tripod_twist, zenith_angle
 from surveyapp.core.uncertain import Uncertain, aligned
+from surveyapp.domain.advance import Advance, silent
 from surveyapp.domain.project import (
     OrientationSession,
     Project,
@@ -94,6 +95,7 @@ def orient_project(
     estimator: str | None = None,
     only: str | None = None,
     run_model: RunModel | None = None,
+    advance: Advance = silent,
 ) -> Orientation:
     """Reduce every session, determine the constants, orient every line.
 
@@ -109,6 +111,8 @@ def orient_project(
         calibrations.
     run_model : callable or None
         Estimates runs with adopted effects.
+    advance : callable
+        Told how many sessions are reduced.
 
     Raises
     ------
@@ -125,7 +129,7 @@ def orient_project(
     tested = sum(session.method != "automatic" for session in project.sessions)
     judge = Judge(sessions=tested)
     setting = _Setting(project, positions, stations, judge, estimator, run_model)
-    reduced, sigmas = _reduce_all(setting)
+    reduced, sigmas = _reduce_all(setting, advance)
     measured = reduced = with_pooled_weights(reduced)
     for instrument in project.instruments:
         reduced, found = apply_adopted(instrument, reduced, positions)
@@ -184,7 +188,9 @@ class _Setting:
     run_model: RunModel | None
 
 
-def _reduce_all(setting: _Setting) -> tuple[tuple[ReducedSession, ...], dict[str, SightSigma]]:
+def _reduce_all(
+    setting: _Setting, advance: Advance
+) -> tuple[tuple[ReducedSession, ...], dict[str, SightSigma]]:
     problems: list[Problem] = []
     sights: dict[str, dict[str, SightSet]] = {}
     for session in setting.project.sessions:
@@ -195,7 +201,8 @@ def _reduce_all(setting: _Setting) -> tuple[tuple[ReducedSession, ...], dict[str
             problems += error.problems
     sigmas = _sight_sigmas(setting.project, sights)
     reduced = []
-    for session in setting.project.sessions:
+    for place, session in enumerate(setting.project.sessions):
+        advance("sessions reduced", place, len(setting.project.sessions))
         if session.id not in sights:
             continue
         try:

@@ -108,7 +108,7 @@ def _text(test: Closure) -> str:
     lateral, along = (abs(t or 0.0) for t in test.t[:2])
     text = (
         "The miss is larger than the declared errors make. One number does not name its cause: "
-        "every line below would make it alone."
+        "every line of the list would make it alone."
     )
     if along >= CRITICAL_T > lateral:
         text += " A longitudinal miss without a lateral one points to the scale of the lengths."

@@ -143,18 +143,18 @@ def measures(mine: Mine) -> tuple[Measure, ...]:
     found = [
         (
             "angles",
-            _scaled(mine, RowKind.ANGLE, BETTER_ANGLES),
+            scaled(mine, RowKind.ANGLE, BETTER_ANGLES),
             0,
             "angles with 5/7 of the sigma",
         )
     ]
     if gyro:
-        mirrored, more = _reciprocal(mine)
+        mirrored, more = reciprocal(mine)
         rounds = {name: sigma / math.sqrt(2.0) for name, sigma in mine.gyros().items()}
         found += [
             (
                 "gyro",
-                _scaled(mine, RowKind.GYRO, BETTER_GYRO),
+                scaled(mine, RowKind.GYRO, BETTER_GYRO),
                 0,
                 "gyro sides with 2/3 of the sigma",
             ),
@@ -190,7 +190,7 @@ def _with_rows(mine: Mine, rows: Sequence[tuple[Row, ...]], more: Mapping[str, f
     return assemble(mine.plan, headings, {**mine.gyros(), **more}, mine.calibrated)
 
 
-def _scaled(mine: Mine, kind: RowKind, ratio: float) -> Mine:
+def scaled(mine: Mine, kind: RowKind, ratio: float) -> Mine:
     """All readings of one kind better by a ratio."""
     rows = [
         tuple(replace(r, reading=r.reading * ratio) if r.kind is kind else r for r in h.rows)
@@ -199,7 +199,7 @@ def _scaled(mine: Mine, kind: RowKind, ratio: float) -> Mine:
     return _with_rows(mine, rows, {})
 
 
-def _reciprocal(mine: Mine) -> tuple[Mine, int]:
+def reciprocal(mine: Mine) -> tuple[Mine, int]:
     """Every gyro side also from its other end; how many determinations that costs."""
     rows, more = [], 0
     for heading in mine.headings:

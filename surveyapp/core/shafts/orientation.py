@@ -32,6 +32,7 @@ from surveyapp.domain.shaft_result import (
     JointAzimuth,
     ScaleCheck,
     ShaftBudgetLine,
+    ShaftDrawing,
     ShaftOrientation,
     SideAzimuth,
     TriangleCheck,
@@ -128,6 +129,7 @@ def orient_shaft(
         combined=combined,
         budget=_budget(join, (upper, plumb, lower)),
         checks=shaft.checks,
+        drawing=_drawing(join, triangles),
     )
     return found, (*told, *_warnings(shaft, distance, triangles))
 
@@ -297,6 +299,26 @@ def _wires(shaft: Shaft) -> tuple[tuple[WireRest, ...], list[ResultWarning]]:
     period = period_s(shaft.depth_m)
     found = tuple(WireRest(w, *part(w, "x"), *part(w, "y"), period) for w in shaft.wires)
     return found, warnings
+
+
+def _drawing(join: _Join, triangles: Sequence[TriangleCheck]) -> ShaftDrawing:
+    """Swings as read, and the connecting triangles in their own frames."""
+    shaft = join.shaft
+    swings = []
+    for wire in shaft.wires:
+        for axis in ("x", "y"):
+            values = [r.value for r in shaft.of_kind(K.SWING) if r.at == wire and r.set == axis]
+            if values:
+                swings.append((wire, axis, tuple(values)))
+    nets = {"surface": join.surface.places, "underground": join.underground.places}
+    shown = tuple(
+        (
+            item.place,
+            tuple((name, *nets[item.place][name]) for name in (item.station, *shaft.wires)),
+        )
+        for item in triangles
+    )
+    return ShaftDrawing(tuple(swings), shown)
 
 
 def _budget(join: _Join, parts: tuple[Floats, float, Floats]) -> tuple[ShaftBudgetLine, ...]:

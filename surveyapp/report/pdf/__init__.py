@@ -31,6 +31,7 @@ from reportlab.platypus import PageBreak as NewPage
 from reportlab.platypus import Paragraph as Text
 from reportlab.platypus import Table as Grid
 
+from surveyapp.domain.advance import Advance, silent
 from surveyapp.report.blocks import (
     Block,
     Document,
@@ -67,7 +68,9 @@ class Written:
     pages: int
 
 
-def write_pdf(document: Document, *, face: Path | None = None) -> Written:
+def write_pdf(
+    document: Document, *, face: Path | None = None, advance: Advance = silent
+) -> Written:
     """Write a document as PDF.
 
     Parameters
@@ -75,6 +78,8 @@ def write_pdf(document: Document, *, face: Path | None = None) -> Written:
     document : Document
     face : Path or None
         TrueType face for what the embedded face lacks; None: one found on the system.
+    advance : callable
+        Told how many pages are made.
 
     Raises
     ------
@@ -112,6 +117,7 @@ def write_pdf(document: Document, *, face: Path | None = None) -> Written:
 
     def furniture(canvas: Canvas, _: object) -> None:
         pages[0] = canvas.getPageNumber()
+        advance("pages", pages[0], 0)
         _draw_furniture(canvas, document, faces)
 
     template.addPageTemplates([PageTemplate(id="page", frames=[frame], onPage=furniture)])

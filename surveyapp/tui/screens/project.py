@@ -52,6 +52,10 @@ class ProjectScreen(Screen[None]):
         Binding("n", "new", texts.KEY_NEW, tooltip=texts.LONG_NEW),
         Binding("d", "diagnose", texts.KEY_DIAGNOSE, tooltip=texts.LONG_DIAGNOSE),
         Binding("t", "traverses", texts.KEY_TRAVERSE, tooltip=texts.LONG_TRAVERSES, show=False),
+        Binding(
+            "p", "breakthrough", texts.KEY_PENETRATION, tooltip=texts.LONG_PENETRATION, show=False
+        ),
+        Binding("s", "shafts", texts.KEY_SHAFTS, tooltip=texts.LONG_SHAFTS, show=False),
         Binding("f5", "reload", texts.KEY_RELOAD, tooltip=texts.LONG_RELOAD),
         Binding("escape", "back", texts.KEY_BACK, tooltip=texts.LONG_BACK),
     ]
@@ -198,6 +202,28 @@ class ProjectScreen(Screen[None]):
             self.app.push_screen(TraverseScreen(self.folder, names, self.project.angle_unit))
         else:
             self.notify(texts.NO_TRAVERSE, severity="warning", markup=False)
+
+    def action_breakthrough(self) -> None:
+        """Show the breakthrough, if there is one."""
+        if self.project is None:
+            return
+        from surveyapp.tui.screens.penetration import PenetrationScreen
+
+        if api.has_breakthrough(self.project):
+            self.app.push_screen(PenetrationScreen(self.folder))
+        else:
+            self.notify(texts.NO_PENETRATION, severity="warning", markup=False)
+
+    def action_shafts(self) -> None:
+        """Show the shafts, if there are any."""
+        if self.project is None:
+            return
+        from surveyapp.tui.screens.shaft import ShaftScreen
+
+        if api.has_shafts(self.project):
+            self.app.push_screen(ShaftScreen(self.folder, self.project.angle_unit))
+        else:
+            self.notify(texts.NO_SHAFT, severity="warning", markup=False)
 
     def _diagnosed(self, _: None) -> None:
         self.action_reload()

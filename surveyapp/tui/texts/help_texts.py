@@ -180,8 +180,8 @@ its field book stands.
 
 Verdicts are words: met, NOT MET, warning (a limit that nobody has
 confirmed), open (nothing to compare with). D asks what the model
-lacks, T shows the adjusted traverses, F5 reads the folder again after
-an edit by hand.
+lacks, T shows the adjusted traverses, P the breakthrough, S the shafts,
+F5 reads the folder again after an edit by hand.
 """
 _RESULT_PAGE: Final = """\
 From the reading to the azimuth, one correction a line with its value,
@@ -205,6 +205,27 @@ project, after a question; F5 asks again.
    residuals   + - + - + -      amplitude channel: side times residual
                + + + - - -      midpoint channel: Schuler means
 """
+_BREAKTHROUGH: Final = """\
+How far two headings will miss each other. 1 to 4 show the plan, the
+budget, the evaluation and the six steps.
+
+What if? A adds the gyro side that gains most, X takes it away again,
+R observes every gyro side from both ends, S adds an independent
+survey, W better angles (5/7 of the sigma), G a better gyro (2/3).
+The number in the title changes at once. Nothing is written.
+
+        ■──●──G──●──●◯●──●──G──●──■
+        A            K            B
+"""
+
+_SHAFTS: Final = """\
+The orientation through shafts. 1 to 4 show the azimuth with its
+checks, the swings of the wires with their rest, the connecting
+triangles, and the checks of the plumbing. T shows the next shaft.
+
+          C ──────── A ── B      gamma at C is small
+"""
+
 _TRAVERSE: Final = """\
 The traverse after the adjustment: plan with ellipses, points with
 their sigmas, observations with residual and test, closures, checks.
@@ -232,6 +253,8 @@ PAGES: Final = {
     "ResultScreen": ("The result", _RESULT_PAGE),
     "DiagnosisScreen": ("What the model lacks", _DIAGNOSIS),
     "TraverseScreen": ("Traverses", _TRAVERSE),
+    "PenetrationScreen": ("Breakthrough", _BREAKTHROUGH),
+    "ShaftScreen": ("Shafts", _SHAFTS),
     "PractiseScreen": ("Practice", _PRACTICE),
 }
 """Heading and words of each screen that is no step of an observation, by the name of its class."""

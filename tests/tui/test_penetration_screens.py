@@ -1,0 +1,126 @@
+"""The breakthrough and the shafts on the screen: numbers of the API, what-if at once."""
+
+from __future__ import annotations
+
+import shutil
+import time
+from pathlib import Path
+
+import pytest
+from textual.widgets import DataTable, Static, TabbedContent
+
+from surveyapp import api
+from surveyapp.core.penetration.what_if import WhatIf
+from surveyapp.tui import texts
+from surveyapp.tui.app import SurveyApp
+from surveyapp.tui.screens.penetration import PAGES, PenetrationScreen
+from surveyapp.tui.screens.project import ProjectScreen
+from surveyapp.tui.screens.shaft import ShaftScreen
+from surveyapp.tui.views import penetration as view
+from surveyapp.tui.widgets.heading_plan import GYRO, HeadingPlan
+from surveyapp.tui.widgets.shaft_pictures import SwingPictures, TrianglePictures
+from surveyapp.tui.widgets.titlebar import TitleBar
+from surveyapp_models.angles import ARCSEC
+from tests.penetration.mines import straight
+
+SAMPLE = Path(__file__).resolve().parents[2] / "projects" / "synthetic-breakthrough"
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
+    return Path(shutil.copytree(SAMPLE, tmp_path / "mine"))
+
+
+async def settle(app: SurveyApp, pilot) -> None:  # type: ignore[no-untyped-def]
+    for _ in range(4):
+        await app.workers.wait_for_complete()
+        await pilot.pause()
+
+
+@pytest.mark.parametrize("size", [(80, 24), (120, 40)])
+async def test_the_number_follows_every_key(size: tuple[int, int], folder: Path) -> None:
+    app = SurveyApp(str(folder))
+    expected = api.trial(folder)
+    async with app.run_test(size=size) as pilot:
+        await settle(app, pilot)
+        assert isinstance(app.screen, ProjectScreen)
+        await pilot.press("p")
+        await settle(app, pilot)
+        screen = app.screen
+        assert isinstance(screen, PenetrationScreen)
+        bar = screen.query_one(TitleBar)
+        assert bar.state == view.state_text(expected.prediction)
+        picture = screen.query_one(HeadingPlan).render().plain
+        assert sum(line.count(GYRO) for line in picture.splitlines()[:-1]) == 3
+        for key, after in (
+            ("a", expected.add_side()),
+            ("r", expected.add_side().both_ends()),
+            ("s", expected.add_side().both_ends().survey()),
+            ("w", expected.add_side().both_ends().survey().better_angles()),
+            ("g", expected.add_side().both_ends().survey().better_angles().better_gyro()),
+        ):
+            await pilot.press(key)
+            await settle(app, pilot)
+            assert bar.state == view.state_text(after.prediction)
+        assert screen.query_one("#tried", Static).visual is not None
+        assert texts.P_SURVEY in view.tried_text(after, expected.prediction)
+        for key, page in enumerate(tuple(PAGES)[1:], 2):
+            await pilot.press(str(key))
+            await pilot.pause()
+            assert screen.query_one(TabbedContent).active == page
+        table = screen.query_one("#budget DataTable", DataTable)
+        assert table.row_count == len(after.prediction.budget) + 1
+        await pilot.press("escape")
+        await settle(app, pilot)
+        assert isinstance(app.screen, ProjectScreen)
+    assert (folder / "project.toml").read_bytes() == (SAMPLE / "project.toml").read_bytes()
+
+
+async def test_the_shaft_shows_azimuths_swings_and_triangles(folder: Path) -> None:
+    app = SurveyApp(str(folder))
+    (shaft,) = api.shaft(folder).shafts
+    async with app.run_test(size=(80, 24)) as pilot:
+        await settle(app, pilot)
+        await pilot.press("s")
+        await settle(app, pilot)
+        screen = app.screen
+        assert isinstance(screen, ShaftScreen)
+        table = screen.query_one("#azimuth DataTable", DataTable)
+        assert next(str(c) for c in table.get_row_at(2)) == texts.S_TOGETHER
+        assert shaft.combined.consistent
+        await pilot.press("2")
+        await settle(app, pilot)
+        swings = screen.query_one(SwingPictures).render().plain
+        assert swings.count("rest") == 4
+        await pilot.press("3")
+        await settle(app, pilot)
+        triangles = screen.query_one(TrianglePictures).render().plain
+        assert "surface" in triangles
+        assert "W1" in triangles
+
+
+async def test_a_project_without_them_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
+    folder = api.new_project(tmp_path / "empty")
+    app = SurveyApp(str(folder))
+    async with app.run_test(size=(80, 24)) as pilot:
+        await settle(app, pilot)
+        for key in "ps":
+            await pilot.press(key)
+            await settle(app, pilot)
+            assert isinstance(app.screen, ProjectScreen)
+
+
+def test_a_trial_of_two_hundred_sides_takes_less_than_a_tenth_of_a_second() -> None:
+    from surveyapp.core.penetration.prediction import prediction
+
+    mine = straight(200, (0, 50, 100, 150, 199), shared=8.0)
+    tried = WhatIf(mine, {"A": ("G", 15 * ARCSEC)})
+    prediction(mine, None, project="", software="", digest="")
+    began = time.process_time()
+    changed = tried.with_best_side().changed()
+    prediction(changed, None, project="", software="", digest="")
+    assert time.process_time() - began < 0.1
