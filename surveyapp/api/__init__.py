@@ -9,7 +9,7 @@ from __future__ import annotations
 from surveyapp.api.batch import batch, batch_rows
 from surveyapp.api.importing import export_survey, import_file
 from surveyapp.api.instruments import follow_turn, read_instrument
-from surveyapp.api.judgement import check, diagnose, subjects
+from surveyapp.api.judgement import check, diagnose, diagnose_sensor, subjects
 from surveyapp.api.network import (
     adjust,
     adjust_network,
@@ -99,6 +99,7 @@ __all__ = [
     "subjects",
     "check",
     "diagnose",
+    "diagnose_sensor",
     "diagnose_instrument",
     "calibrate",
     "plan_fog_station",

@@ -21,6 +21,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--session", metavar="ID", help="the turning points of this session")
     parser.add_argument("--campaign", metavar="INSTRUMENT", help="its repeated determinations")
     parser.add_argument("--traverse", metavar="NAME", help="the conditions of this traverse")
+    parser.add_argument("--sensor", metavar="ID", help="the stops of this [[sensor_log]]")
+    parser.add_argument(
+        "--allow-outside", action="store_true", help="read a log outside the project folder"
+    )
     parser.add_argument(
         "--instrument", metavar="ID", help="all its runs and campaigns together, pooled"
     )
@@ -51,6 +55,8 @@ def run(options: argparse.Namespace) -> int:
     """Diagnose and print; 0 with any verdict reached."""
     from surveyapp import api
 
+    if options.sensor is not None:
+        return _sensor(options)
     if options.instrument is not None:
         return _instrument(options)
     _refuse_archive(options)
@@ -71,6 +77,34 @@ def run(options: argparse.Namespace) -> int:
         print(diagnosis_text(found.diagnosis, found.words))
         for place in found.written:
             print(f"written: {place}")
+    return 0
+
+
+def _sensor(options: argparse.Namespace) -> int:
+    """The log of a sensor."""
+    from surveyapp import api
+    from surveyapp.errors import Problem, SurveyError
+
+    others = ("session", "campaign", "traverse", "confirm", "instrument")
+    named = [f"--{name}" for name in others if getattr(options, name) is not None]
+    if named:
+        found = f"--sensor and {', '.join(named)}"
+        raise SurveyError(Problem("one subject at a time", "diagnose", found, "--sensor alone"))
+    if options.adopt:
+        hint = "follow the remedy; what a card holds is written by calibrate --card"
+        raise SurveyError(
+            Problem("an effect of a sensor is not adopted into a project", "--adopt", hint=hint)
+        )
+    found_sensor = api.diagnose_sensor(
+        options.folder,
+        options.sensor,
+        effects=options.effects,
+        allow_outside=options.allow_outside,
+    )
+    if options.json:
+        print_json(found_sensor.to_dict())
+    else:
+        print(diagnosis_text(found_sensor.diagnosis, found_sensor.words))
     return 0
 
 

@@ -159,6 +159,20 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
     )
 
 
+def force_model(forces: Floats, options: MultiPositionOptions) -> ForceModel:
+    """The accelerometer model that predicts left-out stops best.
+
+    Parameters
+    ----------
+    forces : ndarray, shape (n, 3)
+        Outputs of the stops [m/s2].
+    options : MultiPositionOptions
+    """
+    models = _force_models(forces, options.gravity)
+    held = {m.level: left_out(forces, level=m.level, gravity=options.gravity) for m in models}
+    return _chosen(models, held)
+
+
 def _force_models(forces: Floats, gravity: float) -> list[ForceModel]:
     return [
         fit_forces(forces, level=level, gravity=gravity)
