@@ -8,10 +8,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from surveyapp.api.judgement import diagnose
 from surveyapp.api.orientation import Source, oriented
 from surveyapp.api.project import SOFTWARE
 from surveyapp.domain.penetration_result import Prediction
 from surveyapp.domain.project import Project
+from surveyapp.errors import SurveyError
 
 if TYPE_CHECKING:
     from surveyapp.core.penetration.mine import Mine
@@ -62,7 +64,7 @@ def predict(
     from surveyapp.workflows.simulating import simulated
 
     ready = _ready(source, plan)
-    found = _predicted(ready, ready.mine)
+    found = _explained(source, ready, _predicted(ready, ready.mine))
     if plan is not None:
         allowed = None if found.tolerance is None else found.tolerance.lateral_m
         candidates = candidates_of(ready.mine, ready.defaults)
@@ -71,6 +73,30 @@ def predict(
     if monte_carlo:
         return replace(found, simulated=simulated(ready.mine, executor))
     return found
+
+
+def _explained(source: Source, ready: ReadyMine, found: Prediction) -> Prediction:
+    """The prediction with what the residuals of the traverses say of a measured miss."""
+    from surveyapp.core.penetration.explaining import HeadingResiduals, NamedEffect, explain
+
+    miss = ready.mine.plan.measured
+    if miss is None or found.measured is None or found.measured.consistent:
+        return found
+    residuals = []
+    for number, heading in enumerate(ready.mine.plan.headings):
+        if not heading.traverse:
+            continue
+        try:
+            made = diagnose(source, traverse=heading.traverse, log=False).diagnosis
+        except SurveyError:
+            continue  # nothing controls this traverse
+        if made is not None:
+            named = tuple(
+                NamedEffect(item.effect, item.coefficients[0].value) for item in made.adopted
+            )
+            verdict = str(made.verdict)
+            residuals.append(HeadingResiduals(number, heading.traverse, verdict, named))
+    return replace(found, measured=explain(ready.mine, miss, found.measured, residuals))
 
 
 def _ready(source: Source, plan: int | None = None) -> ReadyMine:

@@ -167,8 +167,12 @@ def _line(line: LineResult, unit: AngleUnit) -> str:
         budget = [
             [item.source, number(to_arcsec(item.sigma), 2), f"{item.share:.0%}"]
             for item in line.budget
+            if item.sigma > 0.0
         ]
         text += "\n" + table(["  budget", '±"', "share"], [["  " + b[0], *b[1:]] for b in budget])
+        zero = [item.source for item in line.budget if item.sigma == 0.0]
+        if zero:
+            text += "\n" + paragraph(f"zero: {', '.join(zero)}", indent=4)
     return text
 
 

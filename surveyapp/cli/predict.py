@@ -168,6 +168,11 @@ def _measured(result: Prediction) -> str:
     ]
     if test.text:
         lines.append(paragraph(test.text))
+    lines += [
+        f"  residuals of traverse {item.traverse}: {item.verdict.replace('_', ' ')}"
+        + (f" ({', '.join(item.effects)})" if item.effects else "")
+        for item in test.residuals
+    ]
     rows = [
         [
             f"{item.effect.replace('_', ' ')} {item.subject}".strip(),

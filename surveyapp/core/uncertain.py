@@ -33,6 +33,9 @@ class Source:
         Degrees of freedom of its estimate; infinite where it was stated beforehand.
     detail : str
         Tells several errors of one kind and entity apart.
+    pool : str
+        Sources of one name and pool have one estimate of their sigma: its degrees of freedom
+        count once, however many of them there are. Empty: an estimate of its own.
     weight_ratio : float
         By which the contribution is multiplied where weights are made of it, and nowhere else.
     """
@@ -42,6 +45,7 @@ class Source:
     dof: float = math.inf
     detail: str = ""
     weight_ratio: float = 1.0
+    pool: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,10 +94,18 @@ class Uncertain:
 
     @property
     def dof(self) -> float:
-        """Effective degrees of freedom (Welch-Satterthwaite)."""
-        denominator = math.fsum(
-            part**4 / source.dof for source, part in self.parts.items() if source.dof < math.inf
-        )
+        """Effective degrees of freedom (Welch-Satterthwaite); a pooled estimate counts once."""
+        shared: dict[tuple[str, str], tuple[float, float]] = {}
+        denominator = 0.0
+        for source, part in self.parts.items():
+            if source.dof == math.inf:
+                continue
+            if not source.pool:
+                denominator += part**4 / source.dof
+                continue
+            before, dof = shared.get((source.name, source.pool), (0.0, source.dof))
+            shared[source.name, source.pool] = (before + part * part, min(dof, source.dof))
+        denominator += math.fsum(total**2 / dof for total, dof in shared.values())
         return self.variance**2 / denominator if denominator > 0.0 else math.inf
 
     @property

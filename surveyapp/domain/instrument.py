@@ -48,12 +48,33 @@ class ReadingSigmas:
         One scale reading [div].
     time_s : float or None
         One timed passage [s].
+    level : float or None
+        Tilt of the standing axis of one set-up, each direction [rad].
+    graduation : float or None
+        Graduation of the circle: one direction on it [rad].
+    twist : float or None
+        Turning of tripod or pillar where no second sights tell it [rad].
+    refraction : float or None
+        Lateral refraction of one sight [rad].
+    observer : float or None
+        What one observer reads east and west alike wrong [rad].
+    temperature : float or None
+        Change of the constant with temperature [rad/degree Celsius].
+    latitude : float or None
+        k of the change k sec(latitude) of the constant [rad].
     """
 
     reversal: float | None = None
     azimuth: float | None = None
     scale_div: float | None = None
     time_s: float | None = None
+    level: float | None = None
+    graduation: float | None = None
+    twist: float | None = None
+    refraction: float | None = None
+    observer: float | None = None
+    temperature: float | None = None
+    latitude: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,12 +91,15 @@ class TapeZeroCard:
         What is ADDED to gyro north per division [rad/div] (= -lambda mu) at ``latitude``.
     latitude : float or None
         [rad].
+    correction_sigma : float or None
+        Standard deviation of ``correction_per_div`` [rad/div].
     """
 
     limit_div: float | None = None
     div_per_tilt: float | None = None
     correction_per_div: float | None = None
     latitude: float | None = None
+    correction_sigma: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,8 +140,10 @@ class InstrumentCard:
     periods : Periods or None
     torsion_lambda : float or None
         lambda = D/M at ``periods.latitude`` [-].
-    transit_c : float or None
-        C at ``periods.latitude`` [rad/(div s)].
+    torsion_sigma : float or None
+        Standard deviation of a stated lambda [-].
+    transit_c, transit_c_sigma : float or None
+        C at ``periods.latitude`` and its standard deviation [rad/(div s)].
     sigma : ReadingSigmas
     tape_zero : TapeZeroCard
     valid : ValidRange
@@ -136,7 +162,9 @@ class InstrumentCard:
     scale_value: float | None = None
     periods: Periods | None = None
     torsion_lambda: float | None = None
+    torsion_sigma: float | None = None
     transit_c: float | None = None
+    transit_c_sigma: float | None = None
     sigma: ReadingSigmas = field(default_factory=ReadingSigmas)
     tape_zero: TapeZeroCard = field(default_factory=TapeZeroCard)
     valid: ValidRange = field(default_factory=ValidRange)
@@ -207,8 +235,8 @@ class Instrument:
     known_constant : tuple of (float, float) or None
         Instrument constant known beforehand and its sigma [rad].
     constant_choice : str or None
-        predicted | pooled | interpolated | nearest | line:A-B | known; None = nobody chose:
-        predicted where there are determinations enough, else pooled.
+        predicted | pooled | interpolated | nearest | running:5 | line:A-B | known;
+        None = nobody chose: predicted where there are determinations enough, else pooled.
     effects : tuple of AdoptedEffect
     priors : Priors or None
         How often each cause is at work in this instrument, learned from its archive.

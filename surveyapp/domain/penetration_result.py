@@ -191,6 +191,19 @@ class HeadingShare:
 
 
 @dataclass(frozen=True, slots=True)
+class ResidualVerdict:
+    """What the diagnosis of a heading's traverse says of its residuals."""
+
+    traverse: str
+    verdict: str
+    effects: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON."""
+        return {"traverse": self.traverse, "verdict": self.verdict, "effects": list(self.effects)}
+
+
+@dataclass(frozen=True, slots=True)
 class MissTest:
     """The measured miss against its prediction.
 
@@ -205,6 +218,8 @@ class MissTest:
     distribution : tuple of HeadingShare
     text : str
         What it means, in the trade's words.
+    residuals : tuple of ResidualVerdict
+        What the residuals of the traverses say.
     """
 
     t: tuple[float | None, float | None, float | None]
@@ -215,6 +230,7 @@ class MissTest:
     candidates: tuple[MissCandidate, ...]
     distribution: tuple[HeadingShare, ...] = ()
     text: str = ""
+    residuals: tuple[ResidualVerdict, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""
@@ -228,6 +244,7 @@ class MissTest:
             "verdict": self.verdict,
             "candidates": [item.to_dict() for item in self.candidates],
             "distribution": [item.to_dict() for item in self.distribution],
+            "residuals": [item.to_dict() for item in self.residuals],
             "text": self.text,
         }
 

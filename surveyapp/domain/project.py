@@ -25,6 +25,8 @@ Purpose = Literal["calibration", "survey"]
 
 DEFAULT_DEFLECTION_SIGMA = 5.0 * ARCSEC
 """Sigma of an unknown deflection of the vertical, each component (design.md section 2)."""
+DEFLECTION_LENGTH_M = 20_000.0
+"""Distance over which the correlation of unknown deflections falls to 1/e: a default of reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,6 +151,8 @@ class OrientationSession:
         As the record prints it.
     recentred : bool
         The instrument was centred anew for this session: its centring error is its own.
+    refraction_sigma : float or None
+        Lateral refraction of its sights, along a wall or over a shaft [rad].
     override : tuple of (str, object)
         Further keys of the table, kept for those who know them.
     """
@@ -174,6 +178,7 @@ class OrientationSession:
     effects: tuple[AdoptedEffect, ...] = ()
     convergence: StatedConvergence | None = None
     recentred: bool = False
+    refraction_sigma: float | None = None
     override: tuple[tuple[str, object], ...] = ()
 
 
@@ -223,6 +228,8 @@ class Project:
         As written.
     grid : MineGrid or None
         The mine's own grid; wins over ``crs``, which is then its base.
+    deflection_length_m : float
+        Correlation length of unknown deflections of the vertical [m]; 0: independent.
     station_sigma_m : float or None
         Standard deviation of a station's coordinates where it states none [m].
     angle_unit : AngleUnit
@@ -253,6 +260,7 @@ class Project:
     traverses: tuple[Traverse, ...] = ()
     crs: str | None = None
     grid: MineGrid | None = None
+    deflection_length_m: float = DEFLECTION_LENGTH_M
     station_sigma_m: float | None = None
     angle_unit: AngleUnit = AngleUnit.DMS
     angle_typing: str = "separated"

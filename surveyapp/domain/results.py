@@ -139,6 +139,7 @@ class BudgetLine:
     source: str
     sigma: float
     share: float
+    origin: str = ""
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""
@@ -146,6 +147,7 @@ class BudgetLine:
             "source": self.source,
             "sigma_arcsec": to_arcsec(self.sigma),
             "share": finite(self.share),
+            "origin": self.origin,
         }
 
 

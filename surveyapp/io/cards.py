@@ -161,7 +161,8 @@ def _card(table: Table) -> InstrumentCard:
             "a number that is not 0: at least 0.1 either way",
         )
         scale_value = None
-    torsion, transit = _torsion(table, periods), _transit(table, periods)
+    torsion, torsion_sigma = _torsion(table, periods)
+    transit, transit_sigma = _transit(table, periods)
     _check_agreement(table, periods, torsion, (transit, scale_value))
     due = table.date("calibration_due")
     card = InstrumentCard(
@@ -175,7 +176,9 @@ def _card(table: Table) -> InstrumentCard:
         scale_value=scale_value,
         periods=periods,
         torsion_lambda=torsion,
+        torsion_sigma=torsion_sigma,
         transit_c=transit,
+        transit_c_sigma=transit_sigma,
         sigma=_sigmas(table),
         tape_zero=_tape_zero(table),
         valid=_range(table),
@@ -213,26 +216,28 @@ def _periods(card: Table) -> Periods | None:
     return None if latitude is None else Periods(latitude, *values)
 
 
-def _torsion(card: Table, periods: Periods | None) -> float | None:
+def _torsion(card: Table, periods: Periods | None) -> tuple[float | None, float | None]:
     table = card.table("torsion")
     if table is None:
-        return None
+        return None, None
     value = table.number("lambda", high=100.0, positive=True)
+    sigma = table.number("sigma", low=0.0, high=100.0)
     table.warn_unknown()
     if value is not None and periods is None:
         card.problem("torsion.lambda stands without its latitude", value, "[period] latitude_deg")
-    return value
+    return value, sigma
 
 
-def _transit(card: Table, periods: Periods | None) -> float | None:
+def _transit(card: Table, periods: Periods | None) -> tuple[float | None, float | None]:
     table = card.table("transit")
     if table is None:
-        return None
+        return None, None
     value = _scaled(table, "c_arcsec_per_div_s", low=-1e4, high=1e4)
+    sigma = _scaled(table, "sigma_arcsec_per_div_s", low=0.0, high=1e4)
     table.warn_unknown()
     if value is not None and periods is None:
         card.problem("transit.c_arcsec_per_div_s stands without its latitude", "", "[period]")
-    return value
+    return value, sigma
 
 
 def _check_agreement(
@@ -283,6 +288,13 @@ def _sigmas(card: Table) -> ReadingSigmas:
         azimuth=_scaled(table, "azimuth_arcsec", positive=True),
         scale_div=table.number("scale_div", high=1e4, positive=True),
         time_s=table.number("time_s", high=1e4, positive=True),
+        level=_scaled(table, "level_arcsec", high=36000.0),
+        graduation=_scaled(table, "graduation_arcsec", high=36000.0),
+        twist=_scaled(table, "twist_arcsec", high=36000.0),
+        refraction=_scaled(table, "refraction_arcsec", high=36000.0),
+        observer=_scaled(table, "observer_arcsec", high=36000.0),
+        temperature=_scaled(table, "temperature_arcsec_per_c", high=36000.0),
+        latitude=_scaled(table, "latitude_arcsec", high=36000.0),
     )
     table.warn_unknown()
     return sigmas
@@ -298,6 +310,7 @@ def _tape_zero(card: Table) -> TapeZeroCard:
         div_per_tilt=None if tilt is None else tilt / ARCSEC,
         correction_per_div=_scaled(table, "correction_arcsec_per_div", low=-36000.0, high=36000.0),
         latitude=_latitude(table),
+        correction_sigma=_scaled(table, "correction_sigma_arcsec_per_div", high=36000.0),
     )
     table.warn_unknown()
     return values

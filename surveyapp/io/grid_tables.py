@@ -5,10 +5,16 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final
 
 from surveyapp.domain.mine_grid import MineGrid, StatedConvergence
-from surveyapp.domain.project import OrientationSession, Station
+from surveyapp.domain.project import (
+    DEFLECTION_LENGTH_M,
+    Deflection,
+    OrientationSession,
+    Station,
+)
 from surveyapp.errors import Problem
 from surveyapp.io.tables import Findings, Table
 from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, AngleUnit, wrap_pi
@@ -77,6 +83,32 @@ def _origin(grid: Table, *, based: bool) -> dict[str, float]:
         table.problem("the origin does not tell where it lies", "", f"origin = {{ {wanted} }}")
     table.warn_unknown()
     return found
+
+
+def with_regional_deflection(
+    top: Table, stations: Sequence[Station]
+) -> tuple[list[Station], float]:
+    """``deflection = { sigma_arcsec, correlation_km }`` of the region.
+
+    Returns
+    -------
+    stations, length
+        Stations without a deflection of their own with the regional sigma; correlation length [m].
+    """
+    table = top.table("deflection")
+    if table is None:
+        return list(stations), DEFLECTION_LENGTH_M
+    sigma = table.number("sigma_arcsec", low=0.0, high=300.0)
+    length = table.number("correlation_km", low=0.0, high=2000.0)
+    table.warn_unknown()
+    found = list(stations)
+    if sigma is not None:
+        regional = Deflection(sigma=sigma * ARCSEC)
+        found = [
+            replace(station, deflection=regional) if station.deflection == Deflection() else station
+            for station in stations
+        ]
+    return found, DEFLECTION_LENGTH_M if length is None else length * 1000.0
 
 
 def read_convergence(table: Table, unit: AngleUnit) -> StatedConvergence | None:

@@ -18,8 +18,13 @@ from surveyapp.domain.rulebook import RuleBook
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.cards import is_path
 from surveyapp.io.files import decode, read_inside, shown, shown_path
+from surveyapp.io.filing.journal import unsettled
 from surveyapp.io.filing.seals import changed_after_closing, read_filing
-from surveyapp.io.grid_tables import read_mine_grid, refuse_two_convergences
+from surveyapp.io.grid_tables import (
+    read_mine_grid,
+    refuse_two_convergences,
+    with_regional_deflection,
+)
 from surveyapp.io.priors import with_priors
 from surveyapp.io.project_files import PROJECT_FILE, ProjectFiles, inside
 from surveyapp.io.project_tables import (
@@ -76,6 +81,10 @@ def read_project(folder: Path, *, repair: bool | None = None, observing: bool = 
         With every problem of project.toml and of all its books; in a closed project also with what
         was changed since it was closed.
     """
+    if repair is None and unsettled(folder):
+        from surveyapp.io.filing.lock import ProjectLock
+
+        ProjectLock(folder, even_closed=True).release()  # whoever takes the lock settles
     try:
         return _read(folder, repair=repair, observing=observing)
     except SurveyError as error:
@@ -187,6 +196,7 @@ def _read_tables(top: _Top, repair: bool | None) -> Project:
     crs = table.text("crs", multiline=True)
     refuse_two_convergences(stations, sessions, files.findings)
     sensor_logs = read_sensor_logs(table, top.lines.get("sensor_log", ()))
+    stations, length = with_regional_deflection(table, stations)
     project = Project(
         name=table.text("name") or files.path.resolve().name,
         stations=tuple(stations),
@@ -195,6 +205,7 @@ def _read_tables(top: _Top, repair: bool | None) -> Project:
         traverses=traverses,
         crs=crs,
         grid=read_mine_grid(table, unit, crs),
+        deflection_length_m=length,
         station_sigma_m=_station_sigma(table, rules),
         angle_unit=unit,
         angle_typing=table.choice("angle_typing", ANGLE_TYPING) or ANGLE_TYPING[0],

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Literal, cast
 
+from surveyapp.domain.constant_choice import CHOICES, running_count
 from surveyapp.domain.instrument import Instrument, InstrumentCard
 from surveyapp.domain.project import (
     DEFAULT_DEFLECTION_SIGMA,
@@ -35,7 +36,6 @@ from surveyapp_models.angles import ARCSEC, AngleUnit
 
 METHODS: Final = ("tracking", "amplitude", "transit", "automatic")
 PURPOSES: Final = ("calibration", "survey")
-CHOICES: Final = ("predicted", "pooled", "interpolated", "nearest", "known")
 
 _GRID_LIMIT_M: Final = 1e8
 _HEIGHT_LIMITS_M: Final = (-12000.0, 12000.0)
@@ -88,9 +88,9 @@ class Names:
                 choice,
                 "constant = { arcsec = ..., sigma_arcsec = ... } in [[instrument]]",
             )
-        if choice in CHOICES:
+        if choice in CHOICES or running_count(choice) is not None:
             return
-        expected = " | ".join(CHOICES) + " | line:A-B"
+        expected = " | ".join(CHOICES) + " | running:5 | line:A-B"
         if not choice.startswith("line:"):
             hint = nearest_names(choice, CHOICES)
             table.problem("constant_choice is not known", choice, expected, hint)
@@ -248,6 +248,7 @@ def read_session(table: Table, names: Names) -> OrientationSession:
     azimuth = table.angle("azimuth_known", names.unit)
     if azimuth is not None and purpose is None and "purpose" not in table:
         table.problem("azimuth_known stands without purpose", "", " | ".join(PURPOSES))
+    refraction = table.number("refraction_sigma_arcsec", low=0.0, high=36000.0)
     sigma = table.number("azimuth_known_sigma_arcsec", low=0.0, high=36000.0)
     if sigma is not None and azimuth is None and purpose == "survey":
         table.problem("azimuth_known_sigma_arcsec stands in a survey session", "", "a calibration")
@@ -274,6 +275,7 @@ def read_session(table: Table, names: Names) -> OrientationSession:
         effects=tuple(read_effect(t) for t in table.tables("effect")),
         convergence=read_convergence(table, names.unit),
         recentred=table.boolean("recentred"),
+        refraction_sigma=None if refraction is None else refraction * ARCSEC,
         override=_session_override(table),
     )
     table.warn_unknown("rounds", "sigma_arcsec", "level_division_arcsec")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -59,12 +60,18 @@ def write_simulated(
                     expected="a folder that does not exist or is empty",
                 )
             )
+        part = folder.with_name(f".{folder.name}.part")
+        if part.is_dir() and not part.is_symlink():
+            shutil.rmtree(part)  # of a simulation that was interrupted
         for name, text in files.items():
-            path = folder / name
+            path = part / name
             path.parent.mkdir(parents=True, exist_ok=True)
             atomic_write(path, text.encode())
         text = json.dumps(truth, indent=2, ensure_ascii=False) + "\n"
-        atomic_write(folder / TRUTH_FILE, text.encode())
+        atomic_write(part / TRUTH_FILE, text.encode())
+        if folder.exists():
+            folder.rmdir()
+        part.rename(folder)
     except OSError as error:
         reason = error.strerror or str(error)
         raise SurveyError(

@@ -7,6 +7,7 @@ from typing import Final
 
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import has_control, shown, shown_path
+from surveyapp.io.guarded import is_regular
 from surveyapp.io.tomltext import atomic_write, toml_value
 from surveyapp_models.angles import AngleUnit
 
@@ -32,7 +33,7 @@ angle_unit = {angle_unit}    # dms | gon | deg: how angles are written here and 
 # card = "wild-gak1"
 # serial = "3139"
 # constant = {{ arcsec = -9.7, sigma_arcsec = 3.0 }}    # if it is known beforehand
-# constant_choice = "predicted" # predicted | pooled | interpolated | nearest | line:A-B | known
+# constant_choice = "predicted"    # or pooled, interpolated, nearest, running:5, line:A-B, known
 
 # One table for each station, targets included. Position: e and n in metres of the grid, or y_west
 # and x_south, or lat and lon in degrees. Every position is optional.
@@ -65,6 +66,20 @@ angle_unit = {angle_unit}    # dms | gon | deg: how angles are written here and 
 """
 
 
+def _only_leftovers(folder: Path) -> bool:
+    """Whether a folder is empty, but for what a killed ``new`` leaves; that is taken away."""
+    left = list(folder.iterdir())
+    ours = [item for item in left if item.name.startswith(".project.toml.") and is_regular(item)]
+    rest = [item for item in left if item not in ours]
+    if any(item.name != "observations" or item.is_symlink() for item in rest):
+        return False
+    if any(not item.is_dir() or next(item.iterdir(), None) is not None for item in rest):
+        return False
+    for item in ours:
+        item.unlink()
+    return True
+
+
 def create_project(
     folder: Path, *, name: str, crs: str | None = None, angle_unit: AngleUnit = AngleUnit.DMS
 ) -> Path:
@@ -95,7 +110,7 @@ def create_project(
             Problem("this is no name for a project", "name", shown(name), "one line of text")
         )
     try:
-        if folder.exists() and (not folder.is_dir() or next(folder.iterdir(), None) is not None):
+        if folder.exists() and (not folder.is_dir() or not _only_leftovers(folder)):
             raise SurveyError(
                 Problem(
                     "a new project needs a folder of its own",

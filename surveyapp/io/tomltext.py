@@ -11,12 +11,14 @@ import math
 import os
 import re
 import tempfile
+import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import shown, shown_path
 
+_WAITS_S = (0.05, 0.1, 0.2, 0.4, 0.8)
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 _TOKEN = re.compile(
     r'"""(?:\\.|[^\\])*?"{3,5}'
@@ -61,7 +63,7 @@ def atomic_write(path: Path, data: bytes) -> None:
             os.fsync(stream.fileno())
         mode = path.stat().st_mode & 0o777 if path.exists() else 0o644
         Path(temporary).chmod(mode)
-        Path(temporary).replace(path)
+        _replace(Path(temporary), path)
         temporary = None
         sync_folder(path.parent)
     except OSError as error:
@@ -77,6 +79,19 @@ def atomic_write(path: Path, data: bytes) -> None:
     finally:
         if temporary is not None:
             Path(temporary).unlink(missing_ok=True)
+
+
+def _replace(temporary: Path, path: Path) -> None:
+    """Replace a file, a few times where another program (a sync service, a viewer) holds it."""
+    for wait in (*_WAITS_S, None):
+        try:
+            temporary.replace(path)
+        except PermissionError:
+            if wait is None:
+                raise
+            time.sleep(wait)
+        else:
+            return
 
 
 def comments(text: str) -> list[str]:

@@ -120,6 +120,22 @@ def append_subtables(
     mappings: Sequence[Mapping[str, object]],
 ) -> None:
     """Append several ``[[parent.name]]`` in one writing, all or none; as ``append_subtable``."""
+    atomic_write(project_toml, with_subtables(project_toml, parent, name, mappings))
+
+
+def with_subtables(
+    project_toml: Path,
+    parent: tuple[str, str],
+    name: str,
+    mappings: Sequence[Mapping[str, object]],
+) -> bytes:
+    """What project.toml will be with several ``[[parent.name]]`` more.
+
+    Raises
+    ------
+    SurveyError
+        As ``append_subtable``.
+    """
     kind, identity = parent
     text, data = _read(project_toml)
     expected = copy.deepcopy(data)
@@ -138,7 +154,8 @@ def append_subtables(
     before = text[:place].rstrip("\n")
     after = text[place:]
     new = f"{before}\n\n{added}" + (f"\n{after}" if after else "")
-    _write_checked(project_toml, text, new, expected)
+    _check(project_toml, text, new, expected)
+    return new.encode("utf-8")
 
 
 def _end_of_table(text: str, start: int, kind: str) -> int:
@@ -223,12 +240,16 @@ def _read(path: Path) -> tuple[str, dict[str, object]]:
 
 def _write_checked(path: Path, old: str, new: str, expected: Mapping[str, object]) -> None:
     """Write the new text if it says what was meant and still says what its owner wrote."""
+    _check(path, old, new, expected)
+    atomic_write(path, new.encode("utf-8"))
+
+
+def _check(path: Path, old: str, new: str, expected: Mapping[str, object]) -> None:
     if parse_toml(new, where=path.name) != expected:
         raise _refused(path, "the new text does not hold the intended data")
     lost = Counter(comments(old)) - Counter(comments(new))
     if lost:
         raise _refused(path, f"a comment would be lost: {shown(next(iter(lost)))}")
-    atomic_write(path, new.encode("utf-8"))
 
 
 def _refused(path: Path, why: str) -> SurveyError:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
+import contextlib
+import signal
 from collections.abc import Callable, Iterable
 from datetime import datetime
 from functools import partial
@@ -76,6 +79,7 @@ class SurveyApp(App[int]):
 
     def on_mount(self) -> None:
         """Show the first screen."""
+        self._end_by_signal()
         for theme in THEMES:
             self.register_theme(theme)
         known = [theme.name for theme in THEMES]
@@ -86,6 +90,17 @@ class SurveyApp(App[int]):
                 self.observe_practice(self.practice)
         else:
             self.open_folder(self.folder)
+
+    def _end_by_signal(self) -> None:
+        """Give the terminal back as it was when the system ends the program."""
+        if self.is_headless:
+            return
+        loop = asyncio.get_running_loop()
+        for name in ("SIGTERM", "SIGHUP", "SIGQUIT"):
+            number = getattr(signal, name, None)  # Windows has not all of them
+            if number is not None:
+                with contextlib.suppress(NotImplementedError, RuntimeError, ValueError):
+                    loop.add_signal_handler(number, self.exit, 128 + int(number))
 
     def get_system_commands(self, screen: Screen[object]) -> Iterable[SystemCommand]:
         """Every action of the screen that is open, then those of the program."""
@@ -126,6 +141,10 @@ class SurveyApp(App[int]):
     def on_home_screen_folder_chosen(self, message: HomeScreen.FolderChosen) -> None:
         """Open what was chosen."""
         self.open_folder(message.folder)
+        if message.importing:
+            from surveyapp.tui.screens.exchange import ImportScreen
+
+            self.push_screen(ImportScreen(message.folder))
 
     def open_session(self, session: str) -> None:
         """Open a session of the project for observing."""

@@ -17,9 +17,12 @@ from surveyapp.diagnosis.result import Adoption, Diagnosis
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.domain.project import Project, ResultWarning
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.filing.journal import write_together
 from surveyapp.io.filing.ledger import append_entries
 from surveyapp.io.filing.lock import ProjectLock
-from surveyapp.io.writing import append_subtables, atomic_write
+from surveyapp.io.filing.seals import is_closed
+from surveyapp.io.project import read_project
+from surveyapp.io.writing import with_subtables
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Effect
 
@@ -107,7 +110,7 @@ def _same(wanted: tuple[object, ...], other: AdoptedEffect, effect: Effect, prob
 
 
 def record(
-    folder: Path,
+    project: Project,
     diagnosis: Diagnosis,
     tables: Sequence[Mapping[str, object]],
     *,
@@ -116,8 +119,11 @@ def record(
 ) -> tuple[tuple[str, ...], list[ResultWarning]]:
     """Write the adopted effects and append to the ledger: all of it, or nothing.
 
-    A folder that cannot be written keeps no ledger, and says so; adopting in it is an error.
+    A folder that cannot be written keeps no ledger, and says so; adopting in it is an error, and so
+    is adopting where a session that the effect would change is closed, or where the project is no
+    longer the one that was diagnosed.
     """
+    folder = Path(project.path)
     parent = ("orientation", diagnosis.identity)
     if diagnosis.subject != "reversal_run":
         parent = ("instrument", diagnosis.instrument)
@@ -126,6 +132,7 @@ def record(
     with ProjectLock(folder) as lock:
         if tables:
             _need_writable(lock, folder)
+            _need_unchanged(project, parent)
         if not lock.writable:
             return (), []
         if not tables:
@@ -135,14 +142,10 @@ def record(
                 text = f"The diagnosis is in no ledger: {error.problems[0].what}."
                 return (), [ResultWarning("ledger_not_written", text)]
             return (), []
-        path = folder / "project.toml"
-        before = path.read_bytes()
-        append_subtables(path, parent, "effect", tables)
-        try:
-            append_entries(folder, entries, at=moment, software=software)
-        except SurveyError:
-            atomic_write(path, before)
-            raise
+        after = with_subtables(folder / "project.toml", parent, "effect", tables)
+        write_together(
+            folder, after, lambda: append_entries(folder, entries, at=moment, software=software)
+        )
     place = f"project.toml, {parent[0]} {parent[1]}, effect"
     return tuple(f"{place} {table['id']}" for table in tables), []
 
@@ -201,5 +204,35 @@ def _need_writable(lock: ProjectLock, folder: Path) -> None:
                 "Reopen the project first: it is closed."
                 if lock.closed
                 else "Close the other window and adopt again.",
+            )
+        )
+
+
+def _need_unchanged(project: Project, parent: tuple[str, str]) -> None:
+    """Under the lock: nothing was changed since it was read, and no closed session would be."""
+    folder = Path(project.path)
+    kind, name = parent
+    touched = [s.id for s in project.sessions if name in (s.id, s.instrument)]
+    if kind == "orientation":
+        touched = [name]
+    closed = [session for session in touched if is_closed(folder, session)]
+    if closed:
+        raise SurveyError(
+            Problem(
+                "a closed session would be changed by this effect",
+                f"{kind} {name}",
+                ", ".join(closed),
+                "open sessions",
+                "Reopen the session first; the ledger keeps the reason.",
+            )
+        )
+    if read_project(folder, repair=False).digest != project.digest:
+        raise SurveyError(
+            Problem(
+                "the project was changed while it was diagnosed",
+                str(folder),
+                "other files than those that were read",
+                "the project as it was diagnosed",
+                "Diagnose it again.",
             )
         )

@@ -127,7 +127,9 @@ def diagnose_project(
     if folder is not None and (adopt or log):
         moment = (now or datetime.now(UTC)).isoformat(timespec="seconds")
         stamped = [{**t, "adopted_at": moment, "software": software} for t in tables]
-        written, more = record(folder, diagnosis, stamped, moment=moment, software=software)
+        written, more = record(
+            orientation.project, diagnosis, stamped, moment=moment, software=software
+        )
         notes += more
     told = [note.text for note in notes] + words_of(diagnosis, problem)
     told += [f"Not written: {item}." for item in refused]

@@ -54,14 +54,15 @@ def test_shared_deflection_cancels_and_an_own_one_does_not(tmp_path: Path) -> No
     )
     assert line.grid_azimuth is not None
     assert math.degrees(line.grid_azimuth.value) == pytest.approx(90.0, abs=1e-6)
-    assert [item.source for item in line.budget if item.source == "deflection"] == []
+    assert [item.sigma for item in line.budget if item.source == "deflection"] == [0.0]
 
 
 def test_budget_is_computed_from_the_parts(tmp_path: Path) -> None:
     toml = four_stations() + GYRO
     toml += session("cal", "A", "B", more=[CAL]) + session("run", "C", "D", more=[SURVEY])
     books = {"cal": azimuths("0-00-00", "0-00-02"), "run": azimuths("90-00-00")}
-    line = api.orient(write(tmp_path, toml, books, head=TM)).lines[0].to_dict()
+    independent = TM + "deflection = { correlation_km = 0.0 }\n"
+    line = api.orient(write(tmp_path, toml, books, head=independent)).lines[0].to_dict()
     budget = {row["source"]: row["sigma_arcsec"] for row in line["budget"]}
     rho = 206264.806
     assert budget["rounds"] == pytest.approx(4.0)  # the card's, one round
@@ -74,6 +75,56 @@ def test_budget_is_computed_from_the_parts(tmp_path: Path) -> None:
     total = math.sqrt(sum(value**2 for value in budget.values()))
     assert line["grid_azimuth"]["sigma_arcsec"] == pytest.approx(total, rel=1e-9)
     assert sum(row["share"] for row in line["budget"]) == pytest.approx(1.0)
+
+
+def test_near_stations_have_nearly_the_same_deflection(tmp_path: Path) -> None:
+    # 3 km apart: the difference has sqrt(2 (1 - exp(-3/20))) of the 5" at each, not sqrt(2)
+    toml = station("A", e=0.0, n=N0) + station("B", e=0.0, n=N0 + 200.0)
+    toml += station("C", e=3000.0, n=N0) + station("D", e=3300.0, n=N0) + GYRO
+    toml += session("cal", "A", "B", more=[CAL]) + session("run", "C", "D", more=[SURVEY])
+    books = {"cal": azimuths("0-00-00", "0-00-02"), "run": azimuths("90-00-00")}
+    tangent = math.tan(math.radians(47.825))
+    region = "deflection = {{ sigma_arcsec = {}, correlation_km = {} }}\n"
+    for number, (sigma, length) in enumerate([(5.0, 20.0), (3.0, 5.0), (5.0, 1e-3)]):
+        head = TM + region.format(sigma, length)
+        line = api.orient(write(tmp_path / str(number), toml, books, head=head)).lines[0]
+        found = {row.source: row.sigma for row in line.budget}["deflection"]
+        expected = sigma * tangent * math.sqrt(2.0 * (1.0 - math.exp(-3.0 / length)))
+        assert found * 206264.806 == pytest.approx(expected, rel=5e-3)
+
+
+def test_levelling_is_paid_for_by_steep_sights(tmp_path: Path) -> None:
+    # physics.md 3.8: v cot z, not cancelled by two faces
+    toml = station("A", e=0.0, n=N0) + station("B", e=0.0, n=N0 + 200.0) + GYRO
+    toml += session("run", "A", "B", more=[SURVEY])
+    book = rows("azimuth,0-00-00", "zenith,30-00-00")
+    plain = api.orient(write(tmp_path / "a", toml, {"run": azimuths("0-00-00")}, head=TM)).lines[0]
+    assert {row.source: row.sigma for row in plain.budget}["levelling"] == pytest.approx(0.0)
+    steep = api.orient(write(tmp_path / "b", toml, {"run": book}, head=TM)).lines[0]
+    levelling = {row.source: row.sigma for row in steep.budget}["levelling"]
+    assert levelling * 206264.806 == pytest.approx(10.0 / math.tan(math.radians(30.0)), rel=1e-6)
+
+
+def test_every_term_stands_on_the_budget_with_its_source(tmp_path: Path) -> None:
+    toml = four_stations() + GYRO
+    toml += session("cal", "A", "B", more=[CAL]) + session("run", "C", "D", more=[SURVEY])
+    books = {"cal": azimuths("0-00-00", "0-00-02"), "run": azimuths("90-00-00")}
+    line = api.orient(write(tmp_path, toml, books, head=TM)).lines[0]
+    names = {row.source.removeprefix("constant: ") for row in line.budget}
+    assert {"levelling", "graduation", "twist", "lateral refraction", "observer"} <= names
+    assert all(row.origin for row in line.budget)
+
+
+def test_centring_anew_averages_out(tmp_path: Path) -> None:
+    toml = station("A", e=0.0, n=N0) + station("B", e=0.0, n=N0 + 100.0) + GYRO
+    sigmas = {}
+    for key in ("false", "true"):
+        own = f"recentred = {key}"
+        text = toml + "".join(session(f"run{i}", "A", "B", more=[SURVEY, own]) for i in range(4))
+        books = {f"run{i}": azimuths("0-00-00") for i in range(4)}
+        line = api.orient(write(tmp_path / key, text, books, head=TM)).lines[0]
+        sigmas[key] = {row.source: row.sigma for row in line.budget}["centring"]
+    assert sigmas["true"] == pytest.approx(0.5 * sigmas["false"], rel=1e-9)
 
 
 def test_short_sight_is_paid_for(tmp_path: Path) -> None:

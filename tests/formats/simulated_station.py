@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import pty
+import select
 import threading
 import tty
 from collections.abc import Callable
@@ -26,15 +27,19 @@ class Station:
         self._master, self._slave = pty.openpty()
         tty.setraw(self._slave)
         self.port = os.ttyname(self._slave)
+        self._over = threading.Event()
+        self._pulled = False
         self._thread = threading.Thread(target=self._serve, daemon=True)
         self._thread.start()
 
     def _serve(self) -> None:
         data = b""
-        while True:
+        while not self._over.is_set():
             try:
+                if not select.select([self._master], [], [], 0.05)[0]:
+                    continue
                 data += os.read(self._master, 256)
-            except OSError:
+            except (OSError, ValueError):
                 return
             while b"\n" in data:
                 request, _, data = data.partition(b"\n")
@@ -48,7 +53,9 @@ class Station:
                         return
 
     def pull_cable(self) -> None:
-        """What happens to a port whose cable is pulled out."""
+        """What happens to a port whose cable is pulled out; called by the answering thread."""
+        self._over.set()
+        self._pulled = True
         os.close(self._slave)
         os.close(self._master)
 
@@ -61,11 +68,11 @@ class Station:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        for handle in (self._slave, self._master):
-            try:
-                os.close(handle)
-            except OSError:
-                continue
+        self._over.set()
+        self._thread.join()  # before its handle may be another's
+        if not self._pulled:
+            os.close(self._slave)
+            os.close(self._master)
 
 
 def geocom(hz: Callable[[], float], v: float, length: float | None) -> Callable[[bytes], bytes]:

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,8 +10,15 @@ import pytest
 
 from surveyapp import api
 from surveyapp.cli.main import main
-from surveyapp.core.penetration.covariance import estimator
+from surveyapp.core.penetration.covariance import (
+    contributions,
+    estimator,
+    refraction_columns,
+    total,
+)
 from surveyapp.core.penetration.evaluation import closure_test, distribution, evaluate_miss
+from surveyapp.core.penetration.explaining import HeadingResiduals, NamedEffect, explain
+from surveyapp.core.penetration.mine import assemble
 from surveyapp.core.penetration.simulation import Task, simulate_all
 from surveyapp.domain.penetration import HeadingStart, MeasuredMiss
 from surveyapp_models.angles import ARCSEC
@@ -163,3 +171,65 @@ def test_a_shaft_feeds_the_start_of_a_heading(tmp_path: Path) -> None:
     (folder / "project.toml").write_text(stated, encoding="utf-8")
     rows = {row.source: row for row in api.predict(folder).budget}
     assert rows["start_azimuth"].lateral_m == pytest.approx(10 * ARCSEC * 2000.0, rel=1e-9)
+
+
+def wall_residuals(gradient: float) -> HeadingResiduals:
+    """What a diagnosis names where a wall of this gradient bends the sights: kappa/2 per length."""
+    kappa = curvature_per_gradient(pressure_hpa=1013.25, temperature_c=15.0)
+    bending = 0.5 * kappa * gradient * 100.0 / ARCSEC
+    named = (NamedEffect("lateral_refraction", bending),)
+    return HeadingResiduals(0, "main", "explained", named)
+
+
+def test_a_cause_is_named_only_with_what_separates_it() -> None:
+    """A wall of 0.6 K/m: explained with gyro sides from both ends, else not separable."""
+    for reciprocal, verdict in ((True, "explained"), (False, "not_separable")):
+        mine = straight(40, (0, 20), gradient=0.01, reciprocal=reciprocal)
+        walled = straight(40, (0, 20), gradient=0.6, reciprocal=reciprocal)
+        ((_, column),) = refraction_columns(walled, estimator(walled))
+        miss = MeasuredMiss(lateral_m=0.6 * float(column[0]))
+        test = evaluate_miss(mine, miss)
+        assert not test.consistent
+        told = explain(mine, miss, test, [wall_residuals(0.6)])
+        assert told.verdict == verdict
+        assert told.residuals[0].effects == ("lateral_refraction",)
+        # a coefficient that leaves the miss unexplained names nothing
+        assert explain(mine, miss, test, [wall_residuals(-0.6)]).verdict == "not_separable"
+
+
+def test_a_shifted_gyro_needs_a_second_one() -> None:
+    mine = straight(40, (0, 20), shared=8.0)
+    lever = float(estimator(mine).gain[mine.arrays.instrument == 0, 0].sum())
+    miss = MeasuredMiss(lateral_m=90.0 * ARCSEC * lever)
+    named = (NamedEffect("gyro_constant_shift", 90.0),)
+    residuals = [HeadingResiduals(0, "main", "explained", named)]
+    assert explain(mine, miss, evaluate_miss(mine, miss), residuals).verdict == "not_separable"
+    row = next(r for r in mine.headings[0].rows if r.instrument)
+    second = assemble(mine.plan, mine.headings, {**mine.gyros(), "H": 8 * ARCSEC}, None)
+    both = second.with_rows([(0, replace(row, instrument="H", reading=60 * ARCSEC))])
+    lever = float(estimator(both).gain[both.arrays.instrument >= 0, 0].sum())
+    miss = MeasuredMiss(lateral_m=90.0 * ARCSEC * lever)
+    told = explain(both, miss, evaluate_miss(both, miss), residuals)
+    assert told.verdict == "explained"
+    assert "gyro constant shift" in told.text
+
+
+def test_hanspub_heights() -> None:
+    """Levelling .0346, .0307, trigonometric .0215, transfers .0177 and .0287: .0611, x2 .1223."""
+    transfers = (0.0177 * 2.0 * 2.0**0.5 * 8000.0, 0.0287 * 2.0 * 2.0**0.5 * 8000.0)
+    mine = whole_mine()
+    carried = (math.hypot(0.0346, 0.0307), 0.0215)
+    headings = tuple(
+        replace(
+            item,
+            height_sigma=np.full(item.route.sides, sigma / math.sqrt(item.route.sides)),
+            route=replace(
+                item.route,
+                heading=replace(item.route.heading, height_transfer_m=depth, shaft=""),
+            ),
+        )
+        for item, sigma, depth in zip(mine.headings, carried, transfers, strict=True)
+    )
+    _, variance = total(contributions(replace(mine, headings=headings)))
+    assert math.sqrt(variance) == pytest.approx(0.0611, abs=0.5e-4)
+    assert 2.0 * math.sqrt(variance) == pytest.approx(0.1223, abs=0.5e-4)

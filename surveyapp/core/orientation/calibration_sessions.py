@@ -60,7 +60,8 @@ def calibrations_of(
             if own is not None and bearing is not None:
                 warnings += _contradiction(session, line, wrap_pi(own - bearing))
             gyro = scatter.applied(target.gyro_azimuth, session.id)
-            value = true - gyro + line.centring(centring_of(project, session))
+            centring = line.centring(centring_of(project, session), own=own_centring(session))
+            value = true - gyro + centring
             found.append(
                 Calibration(
                     session=session.id,
@@ -108,6 +109,11 @@ def _assumed(session: OrientationSession, target: str, known: KnownError) -> lis
         "azimuth_known_sigma_arcsec, sigma_m of its stations, or station_sigma_m of the project"
     )
     return [ResultWarning("known_azimuth_sigma_assumed", text)]
+
+
+def own_centring(session: OrientationSession) -> str | None:
+    """The session whose centring error is its own, None where it stands as the others did."""
+    return session.id if session.recentred else None
 
 
 def rounds_of(item: ReducedSession) -> int:

@@ -194,7 +194,7 @@ def determine(instrument: Instrument, calibrations: Sequence[Calibration]) -> In
     pooled = None
     if calibrations:
         pooled = weighted_mean([item.value for item in calibrations])
-        pooled = _with_disagreement(pooled, instrument.id, of_lines, of_epochs)
+        pooled = with_disagreement(pooled, instrument.id, of_lines, of_epochs)
     return InstrumentConstant(
         instrument=instrument,
         calibrations=tuple(calibrations),
@@ -206,9 +206,10 @@ def determine(instrument: Instrument, calibrations: Sequence[Calibration]) -> In
     )
 
 
-def _with_disagreement(
+def with_disagreement(
     mean: Uncertain, instrument: str, lines: Agreement | None, epochs: Agreement | None
 ) -> Uncertain:
+    """A mean of determinations with the disagreement of lines and epochs in its sigma."""
     for name, test in (("lines", lines), ("epochs", epochs)):
         if test is not None and not test.agree and test.scatter > 0.0:
             source = Source("constant instability", instrument, float(test.dof), name)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from surveyapp.core.geodesy import (
     Azimuth,
@@ -18,6 +18,7 @@ from surveyapp.core.geodesy import (
     deflection_term,
 )
 from surveyapp.core.orientation.instrument_constant import Chosen
+from surveyapp.core.orientation.terms import ALWAYS, origin_of
 from surveyapp.core.statistics.repeated import Consistency, consistency, weights_of
 from surveyapp.core.uncertain import Source, Uncertain, aligned, combine
 from surveyapp.domain.mine_grid import StatedConvergence
@@ -49,6 +50,8 @@ class LineGeometry:
     from_south : bool
     convergence_error : Uncertain
         Zero with the uncertainty of the convergence: printed, or a rotation of the mine's grid.
+    deflection_sources : mapping of Source to float
+        Independent sources of each component of the deflection at the station [rad].
     """
 
     start: Station
@@ -60,6 +63,7 @@ class LineGeometry:
     distance_m: float | None
     from_south: bool
     convergence_error: Uncertain = ZERO
+    deflection_sources: Mapping[Source, float] = field(default_factory=dict)
 
     def deflection(self, azimuth: float) -> DeflectionTerm | None:
         """Deflection term at an azimuth [rad], None without a latitude."""
@@ -77,21 +81,22 @@ class LineGeometry:
         term = self.deflection(azimuth)
         if term is None:
             return Uncertain(0.0)
-        sigma = self.start.deflection.sigma
-        return Uncertain(
-            term.value,
-            {
-                Source("deflection", self.start.name, detail="xi"): term.by_xi * sigma,
-                Source("deflection", self.start.name, detail="eta"): term.by_eta * sigma,
-            },
-        )
+        parts: dict[Source, float] = {}
+        for source, sigma in self.deflection_sources.items():
+            parts[replace(source, detail="xi")] = term.by_xi * sigma
+            parts[replace(source, detail="eta")] = term.by_eta * sigma
+        return Uncertain(term.value, parts)
 
-    def centring(self, centring: Centring) -> Uncertain:
-        """Zero with the uncertainty of centring; sets on one line share their marks."""
+    def centring(self, centring: Centring, *, own: str | None = None) -> Uncertain:
+        """Zero with the uncertainty of centring.
+
+        Sets on one line share their marks; ``own`` is the session that was centred anew.
+        """
         if not self.distance_m:
             return Uncertain(0.0)
         sigma = math.hypot(centring.instrument_m, centring.target_m) / self.distance_m
-        return Uncertain(0.0, {Source("centring", f"{self.start.name}-{self.end.name}"): sigma})
+        name = f"{self.start.name}-{self.end.name}"
+        return Uncertain(0.0, {Source("centring", name if own is None else own): sigma})
 
 
 def line_geometry(
@@ -102,6 +107,7 @@ def line_geometry(
     positions: Mapping[str, Position],
     zenith: float | None,
     stated: StatedConvergence | None = None,
+    deflection_sources: Mapping[Source, float] | None = None,
 ) -> LineGeometry:
     """Collect what position and grid say of a line.
 
@@ -136,6 +142,7 @@ def line_geometry(
         distance_m=distance,
         from_south=grid is not None and grid.directions_from_south,
         convergence_error=error,
+        deflection_sources=deflection_sources or {},
     )
 
 
@@ -161,6 +168,7 @@ class Round:
     azimuth: Uncertain
     chosen: Chosen
     rounds: int
+    own_centring: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,9 +210,11 @@ def orient_line(
     agreement_of : sequence of Uncertain
         The rounds before any run-to-run scatter was added: for the test of their agreement.
     """
-    azimuths = aligned([item.azimuth for item in rounds])
+    azimuths = aligned(
+        [item.azimuth + geometry.centring(centring, own=item.own_centring) for item in rounds]
+    )
     weights = weights_of(azimuths)
-    gyro = combine(zip(weights, azimuths, strict=True)) + geometry.centring(centring)
+    gyro = combine(zip(weights, azimuths, strict=True))
     constant = _constant(rounds, weights)
     true = None if constant is None else gyro + constant
     deflection = geometry.deflection_parts((true or gyro).value)
@@ -264,7 +274,10 @@ def _on_grid(
 
 
 def budget(item: Uncertain, calibration_sessions: frozenset[str]) -> tuple[BudgetLine, ...]:
-    """Variance of an azimuth by source, the largest first; shares sum to 1."""
+    """Variance of an azimuth by source, the largest first; shares sum to 1.
+
+    Terms that nobody states stand at its end with zero: what is not counted is seen.
+    """
     by_source: dict[str, float] = {}
     for source, part in item.parts.items():
         name = source.name
@@ -275,8 +288,11 @@ def budget(item: Uncertain, calibration_sessions: frozenset[str]) -> tuple[Budge
     if not 0.0 < total < math.inf:
         return ()
     ordered = sorted(by_source.items(), key=lambda entry: -entry[1])
-    return tuple(
-        BudgetLine(name, math.sqrt(value), value / total)
+    rows = [
+        BudgetLine(name, math.sqrt(value), value / total, origin_of(name))
         for name, value in ordered
         if value > NOTHING * total
-    )
+    ]
+    named = {row.source.removeprefix("constant: ") for row in rows}
+    rows += [BudgetLine(name, 0.0, 0.0, origin_of(name)) for name in ALWAYS if name not in named]
+    return tuple(rows)

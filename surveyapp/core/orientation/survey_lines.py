@@ -6,11 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from surveyapp.core.checks.blunders import azimuth_warnings
-from surveyapp.core.orientation.calibration_sessions import centring_of, rounds_of
+from surveyapp.core.orientation.calibration_sessions import centring_of, own_centring, rounds_of
 from surveyapp.core.orientation.instrument_constant import Chosen, InstrumentConstant, choose
 from surveyapp.core.orientation.lines import LineGeometry, OrientedLine, Round, orient_line
 from surveyapp.core.orientation.predicted_constant import leaves_out
 from surveyapp.core.orientation.predicted_lines import Key, PredictedLine, survey_groups
+from surveyapp.core.orientation.running_constant import running_constant
 from surveyapp.core.orientation.sequence import SessionOrder
 from surveyapp.core.statistics.repeated import RunScatter
 from surveyapp.core.swing.session import ReducedSession
@@ -120,11 +121,17 @@ def _round(
     if choice == "predicted" and predicted is not None:
         chosen = Chosen(predicted.constant, "predicted")
         own = predicted.scatter.applied(azimuth, session.id)
-        return Round(session.id, own, chosen, rounds_of(item))
+        return Round(session.id, own, chosen, rounds_of(item), own_centring(session))
 
     def distance_to(name: str) -> float | None:
         return grid_distance_m(stations[session.station], stations[name])
 
+    running = running_constant(constant, choice, block=order.block(session.id))
+    if running is not None:
+        own = scatter.applied(azimuth, session.id)
+        return Round(
+            session.id, own, Chosen(running, choice), rounds_of(item), own_centring(session)
+        )
     chosen = choose(
         constant,
         choice,
@@ -136,7 +143,8 @@ def _round(
     if predicted is not None and chosen.value is not None and choice != "known":
         told = leaves_out(choice, chosen.value, predicted.constant, f"session {session.id}")
         chosen = replace(chosen, warnings=(*chosen.warnings, told))
-    return Round(session.id, scatter.applied(azimuth, session.id), chosen, rounds_of(item))
+    own = scatter.applied(azimuth, session.id)
+    return Round(session.id, own, chosen, rounds_of(item), own_centring(session))
 
 
 def _line_warnings(line: OrientedLine) -> list[ResultWarning]:

@@ -29,6 +29,13 @@ from surveyapp.core.geodesy import (
 )
 from surveyapp.core.orientation.adopted import apply_adopted
 from surveyapp.core.orientation.calibration_sessions import calibrations_of
+from surveyapp.core.orientation.campaign_columns import session_temperature
+from surveyapp.core.orientation.deflection_field import Field, deflection_field
+from surveyapp.core.orientation.error_terms import (
+    Circumstance,
+    latitude_warnings,
+    with_error_terms,
+)
 from surveyapp.core.orientation.instrument_constant import (
     InstrumentConstant,
     determine,
@@ -39,10 +46,12 @@ from surveyapp.core.orientation.lines import (
     line_geometry,
 )
 from surveyapp.core.orientation.pooled_weights import with_pooled_weights
+from surveyapp.core.orientation.pooled_zeros import with_pooled_tape_zeros
 from surveyapp.core.orientation.predicted_lines import predicted_lines
-from surveyapp.core.orientation.sequence import SessionOrder
+from surveyapp.core.orientation.repeated_runs import run_groups, scatter_of
+from surveyapp.core.orientation.scatter_sigma import with_scatter_sigma
 from surveyapp.core.orientation.survey_lines import SurveyedLines
-from surveyapp.core.statistics.repeated import RunScatter, run_scatter
+from surveyapp.core.statistics.repeated import RunScatter
 from surveyapp.core.swing.goodness import Judge
 from surveyapp.core.swing.run_model import RunModel
 from surveyapp.core.swing.session import (
@@ -56,7 +65,6 @@ from surveyapp.core.swing.session import (
     sight_resolution,
 )
 from surveyapp.core.swing.sights import SightSet, tripod_twist, zenith_angle
-from surveyapp.core.uncertain import Uncertain, aligned
 from surveyapp.domain.advance import Advance, silent
 from surveyapp.domain.project import (
     OrientationSession,
@@ -130,25 +138,24 @@ def orient_project(
     judge = Judge(sessions=tested)
     setting = _Setting(project, positions, stations, judge, estimator, run_model)
     reduced, sigmas = _reduce_all(setting, advance)
-    measured = reduced = with_pooled_weights(reduced)
+    measured = reduced = with_pooled_weights(with_pooled_tape_zeros(reduced))
     for instrument in project.instruments:
         reduced, found = apply_adopted(instrument, reduced, positions)
         warnings += found
+    geometry = _geometries(reduced, stations, grid, positions, deflection_field(project, positions))
+    reduced = _with_terms(project, reduced, geometry)
+    warnings += latitude_warnings(project, positions)
+    groups = {item.id: run_groups(project, reduced, item.id) for item in project.instruments}
+    reduced, more = with_scatter_sigma(project, reduced, groups)
+    warnings += more
     scatters = {
-        instrument.id: _scatter_of(project, reduced, instrument.id)
-        for instrument in project.instruments
+        item.id: scatter_of(run_groups(project, reduced, item.id)) for item in project.instruments
     }
-    geometry = _geometries(reduced, stations, grid, positions)
     refuse_one_place(geometry)
     refuse_other_convergence(project, geometry)
     warnings += place_warnings(list(geometry.values()), grid)
-    constants = []
-    for instrument in project.instruments:
-        calibrations, more = calibrations_of(
-            project, reduced, instrument.id, geometry, scatters[instrument.id]
-        )
-        warnings += more
-        constants.append(determine(instrument, calibrations))
+    constants, more = _constants(project, reduced, geometry, scatters)
+    warnings += more
     known, predicted, more = predicted_lines(reduced, constants, positions, None)
     warnings += more
     surveyed = SurveyedLines(project, reduced, known, geometry, scatters, stations)
@@ -170,6 +177,45 @@ def orient_project(
         shown,
         tuple(warnings),
     )
+
+
+def _constants(
+    project: Project,
+    reduced: Sequence[ReducedSession],
+    geometry: Mapping[tuple[str, str], LineGeometry],
+    scatters: Mapping[str, RunScatter],
+) -> tuple[list[InstrumentConstant], list[ResultWarning]]:
+    constants = []
+    warnings: list[ResultWarning] = []
+    for instrument in project.instruments:
+        calibrations, more = calibrations_of(
+            project, reduced, instrument.id, geometry, scatters[instrument.id]
+        )
+        warnings += more
+        constants.append(determine(instrument, calibrations))
+    return constants, warnings
+
+
+def _with_terms(
+    project: Project,
+    reduced: Sequence[ReducedSession],
+    geometry: Mapping[tuple[str, str], LineGeometry],
+) -> tuple[ReducedSession, ...]:
+    """Every gyro azimuth with the errors that no residual shows."""
+    found = []
+    for item in reduced:
+        card = project.instrument(item.session.instrument).card
+        temperature = session_temperature(item.session)
+        targets = tuple(
+            with_error_terms(
+                item,
+                target,
+                Circumstance(card, geometry[item.session.id, target.target], temperature),
+            )
+            for target in item.targets
+        )
+        found.append(replace(item, targets=targets))
+    return tuple(found)
 
 
 def _with_position(station: Station, at: Position) -> Station:
@@ -298,28 +344,12 @@ def _latitude_warnings(
     return []
 
 
-def _scatter_of(project: Project, reduced: Sequence[ReducedSession], instrument: str) -> RunScatter:
-    """Scatter between the runs of one line and epoch: a drift between epochs is not scatter."""
-    order = SessionOrder.of(project, instrument)
-    groups: dict[tuple[str, str, str], list[Uncertain]] = {}
-    for item in reduced:
-        if item.session.instrument != instrument:
-            continue
-        for target in item.targets:
-            if target.gyro_azimuth is not None:
-                phase: str = item.session.purpose
-                if phase == "calibration":
-                    phase = f"block {order.block(item.session.id)}"
-                key = (item.session.station, target.target, phase)
-                groups.setdefault(key, []).append(target.gyro_azimuth)
-    return run_scatter([aligned(group) for group in groups.values()])
-
-
 def _geometries(
     reduced: Sequence[ReducedSession],
     stations: Mapping[str, Station],
     grid: Grid | None,
     positions: Mapping[str, Position],
+    field: Field,
 ) -> dict[tuple[str, str], LineGeometry]:
     """Geometry of every sighted line by (session, target)."""
     result = {}
@@ -334,5 +364,6 @@ def _geometries(
                 positions=positions,
                 zenith=zenith,
                 stated=stated_convergence(session, stations[session.station]),
+                deflection_sources=field[session.station],
             )
     return result

@@ -24,6 +24,12 @@ SHARED = (
     "torsion ratio",
     "known constant",
     "adopted effect",
+    "lateral refraction",
+    "observer",
+    "temperature of the constant",
+    "latitude of the constant",
+    "printed convergence",
+    "rotation of the mine grid",
 )
 """Sources that repeated determinations of one line share: they do not average down."""
 
@@ -160,7 +166,9 @@ class RunScatter:
         """Add the scatter to one determination."""
         if self.sigma == 0.0:
             return item
-        return item.with_part(Source("run-to-run scatter", session, float(self.dof)), self.sigma)
+        return item.with_part(
+            Source("run-to-run scatter", session, float(self.dof), pool="runs"), self.sigma
+        )
 
 
 def run_scatter(groups: Sequence[Sequence[Uncertain]]) -> RunScatter:

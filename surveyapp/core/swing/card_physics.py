@@ -58,7 +58,8 @@ def card_at(card: InstrumentCard, latitude: float | None) -> CardAt:
     """
     periods = card.periods
     if periods is None:
-        own = None if card.torsion_lambda is None else Estimate(card.torsion_lambda, 0.0)
+        stated = card.torsion_lambda
+        own = None if stated is None else Estimate(stated, card.torsion_sigma or 0.0)
         return CardAt(None, None, None, own, "lambda", None, transferred=False)
     at = periods.latitude
     to = at if latitude is None else latitude
@@ -71,7 +72,7 @@ def card_at(card: InstrumentCard, latitude: float | None) -> CardAt:
     ratio, origin = _ratio(card, first, second)
     c = None
     if card.transit_c is not None and ratio is not None:
-        own = Estimate(card.transit_c, 0.0)
+        own = Estimate(card.transit_c, card.transit_c_sigma or 0.0)
         c = transfer_transit_coefficient(own, ratio, latitude=at, to_latitude=to)
     elif card.scale_value is not None and first is not None and second is not None:
         c = transit_coefficient_at_latitude(
@@ -96,7 +97,7 @@ def _ratio(
     card: InstrumentCard, first: Estimate | None, second: Estimate | None
 ) -> tuple[Estimate | None, str]:
     if card.torsion_lambda is not None:
-        return Estimate(card.torsion_lambda, 0.0), "lambda"
+        return Estimate(card.torsion_lambda, card.torsion_sigma or 0.0), "lambda"
     if first is not None and second is not None:
         return torsion_ratio_from_periods(first, second), "periods"
     if card.transit_c is not None and card.scale_value and second is not None:

@@ -28,6 +28,7 @@ from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession
 from surveyapp_models.angles import RHO_ARCSEC
 from surveyapp_models.arrays import Floats
+from surveyapp_models.gyro.estimates import Estimate
 
 MIN_FULL_FIT = 7
 """Observations from which the full fit (5 unknowns) has two degrees of freedom."""
@@ -113,14 +114,11 @@ def _closed(
             hint="Observe three transits or more.",
         )
     swing = observed.swing
-    usable = _passages_of_one_line(session, observed)
-    weights = _difference_weights(session, swing, swing.after[usable])
-    times = swing.passages_s[usable]
-    dt = float(weights @ (times - times[0]))
-    amplitude, sigma_a = _amplitude(swing)
+    found = closed_transit(session, observed)
+    dt, sigma_t = found.difference.value, found.difference.sigma
+    amplitude, sigma_a = found.amplitude.value, found.amplitude.sigma
     phase = 0.5 * math.pi * dt / period
-    value = float(swing.divisions[usable].mean()) + amplitude * math.sin(phase)
-    sigma_t = swing.sigma_s * float(np.sqrt(weights @ weights))
+    value = found.division + amplitude * math.sin(phase)
     by_dt = amplitude * math.cos(phase) * 0.5 * math.pi / period
     linear = float(swing.divisions.mean()) + amplitude * 0.5 * math.pi * dt / period
     return Middle(
@@ -138,6 +136,48 @@ def _closed(
             ("linear minus arcsine", linear - value, "div"),
             *_by_transit_constant(here, amplitude, dt),
         ),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class ClosedTransit:
+    """What the closed forms of the transit method are made of.
+
+    Parameters
+    ----------
+    difference : Estimate
+        Time east minus time west [s].
+    amplitude : Estimate
+        [div].
+    division : float
+        Of the passages, the drift of the tape zero taken out [div].
+    """
+
+    difference: Estimate
+    amplitude: Estimate
+    division: float
+
+
+def closed_transit(session: OrientationSession, observed: Observed) -> ClosedTransit:
+    """Time difference and amplitude of a session.
+
+    Raises
+    ------
+    SurveyError
+        If there are no three consecutive passages of one division.
+    """
+    swing = observed.swing
+    usable = _passages_of_one_line(session, observed)
+    weights = _difference_weights(session, swing, swing.after[usable])
+    times = swing.passages_s[usable]
+    amplitude, sigma_a = _amplitude(swing)
+    return ClosedTransit(
+        Estimate(
+            float(weights @ (times - times[0])),
+            swing.sigma_s * float(np.sqrt(weights @ weights)),
+        ),
+        Estimate(amplitude, sigma_a),
+        float(swing.divisions[usable].mean()),
     )
 
 

@@ -10,6 +10,7 @@ from surveyapp.core.book.resolution import reading_resolution, rounding_sigma
 from surveyapp.core.checks.blunders import refuse_wrong_faces
 from surveyapp.core.swing.automatic import azimuth_targets, reduce_automatic
 from surveyapp.core.swing.clamped_north import reduce_nontracking
+from surveyapp.core.swing.classical_transit import is_classical, reduce_classical
 from surveyapp.core.swing.goodness import Judge
 from surveyapp.core.swing.reduction import Reduction
 from surveyapp.core.swing.run_model import RunModel
@@ -34,6 +35,8 @@ ESTIMATORS: Mapping[str, tuple[str, ...]] = {
     "automatic": ("mean",),
 }
 """Estimators by method; the first is the default (tracking: from six turning points on)."""
+ECCENTRIC_SIGMA_M = 0.001
+"""Of an eccentric offset that states no sigma: read on a millimetre scale, as centring is."""
 LEAST_COLLIMATIONS = 4
 """Set-ups from which the scatter of the collimation has three degrees of freedom."""
 
@@ -119,6 +122,8 @@ def reduce_swing(
     chosen = estimator_for(session, estimator)
     if session.method == "automatic":
         return reduce_automatic(session, card)
+    if is_classical(session, card, latitude) and chosen in (None, "transit"):
+        return reduce_classical(session, card, latitude=latitude)
     if session.method != "tracking":
         return reduce_nontracking(
             session, card, judge, latitude=latitude, estimator=chosen, twist=twist
@@ -238,7 +243,8 @@ def eccentric_of(
     correction = eccentric_correction(
         line_reading=line_reading, direction=eccentric.direction, ratio=ratio, at=eccentric.at
     )
-    return correction, (eccentric.sigma_m or 0.0) / distance
+    sigma = ECCENTRIC_SIGMA_M if eccentric.sigma_m is None else eccentric.sigma_m
+    return correction, sigma / distance
 
 
 def reduce_targets(
@@ -264,7 +270,7 @@ def reduce_targets(
         return tuple(results)
     for target, item in sights.items():
         correction, spread = eccentric_of(session, target, item.line_reading, stations)
-        source = Source("sights", session.id, sigma.dof, target)
+        source = Source("sights", session.id, sigma.dof, target, pool=session.instrument)
         reading = Uncertain(
             wrap_two_pi(item.line_reading + correction),
             {source: math.sqrt(item.cofactor) * sigma.value},

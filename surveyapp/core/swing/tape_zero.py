@@ -240,11 +240,13 @@ def tape_zero_coefficient(
     """
     zero = card.tape_zero
     if zero.correction_per_div is not None:
-        at = zero.latitude
+        at, sigma = zero.latitude, zero.correction_sigma or 0.0
         if latitude is None or at is None:
-            return TapeZeroCoefficient(zero.correction_per_div, 0.0, "card coefficient", False)
+            return TapeZeroCoefficient(zero.correction_per_div, sigma, "card coefficient", False)
         factor = math.cos(at) / math.cos(latitude)
-        return TapeZeroCoefficient(zero.correction_per_div * factor, 0.0, "card coefficient", True)
+        return TapeZeroCoefficient(
+            zero.correction_per_div * factor, sigma * factor, "card coefficient", True
+        )
     here = card_at(card, latitude)
     if here.torsion_ratio is None or card.scale_value is None:
         return None

@@ -10,6 +10,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Final
 
+from surveyapp.errors import SurveyError
+from surveyapp.io.filing.journal import settle
 from surveyapp.io.guarded import is_regular
 
 if TYPE_CHECKING:
@@ -63,6 +65,11 @@ class ProjectLock:
         except (filelock.Timeout, OSError, ValueError, NotImplementedError):
             return
         self._lock = lock
+        try:
+            settle(self.folder)
+        except (SurveyError, OSError):  # a disk that refuses: who only reads sees the old state
+            self.release()
+            return
         self.writable = True
 
     def release(self) -> None:

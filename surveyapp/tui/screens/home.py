@@ -36,11 +36,12 @@ class HomeScreen(Screen[None]):
     ]
 
     class FolderChosen(Message):
-        """A project is to be opened."""
+        """A project is to be opened; ``importing``: at the files that may be imported."""
 
-        def __init__(self, folder: str) -> None:
+        def __init__(self, folder: str, *, importing: bool = False) -> None:
             super().__init__()
             self.folder = folder
+            self.importing = importing
 
     class PracticeChosen(Message):
         """A practice session is to begin."""
@@ -114,7 +115,13 @@ class HomeScreen(Screen[None]):
 
     def action_new(self) -> None:
         """Make a new project."""
-        self.app.push_screen(NewProjectScreen(self.drafts["project"]), self._opened)
+        form = NewProjectScreen(self.drafts["project"])
+
+        def made(folder: str | None) -> None:
+            if folder:
+                self.post_message(self.FolderChosen(folder, importing=form.importing))
+
+        self.app.push_screen(form, made)
 
     def action_folder(self) -> None:
         """Type a folder."""

@@ -32,6 +32,7 @@ class NewProjectScreen(Screen[str | None]):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("tab", "app.focus_next", texts.KEY_FIELD),
         Binding("f8", "make", texts.KEY_MAKE),
+        Binding("f9", "make_import", texts.KEY_MAKE_IMPORT),
         Binding("escape", "leave", texts.KEY_LEAVE),
     ]
 
@@ -46,6 +47,7 @@ class NewProjectScreen(Screen[str | None]):
     def __init__(self, draft: Draft) -> None:
         super().__init__()
         self.draft = draft
+        self.importing = False
 
     def compose(self) -> ComposeResult:
         """All fields below each other."""
@@ -155,8 +157,18 @@ class NewProjectScreen(Screen[str | None]):
             constant=typed(self, "constant"),
         )
 
+    def action_make_import(self) -> None:
+        """Make the folder and begin with a field file."""
+        self.importing = True
+        self.make()
+
     def action_make(self) -> None:
         """Make the folder, or say what is wrong."""
+        self.importing = False
+        self.make()
+
+    def make(self) -> None:
+        """Make the folder, or say what is wrong; ``importing`` says how it goes on."""
         trouble = self.query_one("#trouble", Static)
         keep(self, self.draft)
         if not typed(self, "name") and not typed(self, "folder"):

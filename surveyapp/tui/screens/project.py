@@ -52,6 +52,8 @@ class ProjectScreen(Screen[None]):
         Binding("n", "new", texts.KEY_NEW, tooltip=texts.LONG_NEW),
         Binding("d", "diagnose", texts.KEY_DIAGNOSE, tooltip=texts.LONG_DIAGNOSE),
         Binding("t", "traverses", texts.KEY_TRAVERSE, tooltip=texts.LONG_TRAVERSES, show=False),
+        Binding("i", "import", texts.KEY_IMPORT, tooltip=texts.LONG_IMPORT, show=False),
+        Binding("e", "export", texts.KEY_EXPORT, tooltip=texts.LONG_EXPORT, show=False),
         Binding(
             "p", "breakthrough", texts.KEY_PENETRATION, tooltip=texts.LONG_PENETRATION, show=False
         ),
@@ -202,6 +204,18 @@ class ProjectScreen(Screen[None]):
             self.app.push_screen(TraverseScreen(self.folder, names, self.project.angle_unit))
         else:
             self.notify(texts.NO_TRAVERSE, severity="warning", markup=False)
+
+    def action_import(self) -> None:
+        """Import a field file; the project is read anew on return."""
+        from surveyapp.tui.screens.exchange import ImportScreen
+
+        self.app.push_screen(ImportScreen(self.folder))
+
+    def action_export(self) -> None:
+        """Export for other programs."""
+        from surveyapp.tui.screens.exchange import ExportScreen
+
+        self.app.push_screen(ExportScreen(self.folder))
 
     def action_breakthrough(self) -> None:
         """Show the breakthrough, if there is one."""

@@ -245,7 +245,25 @@ Read where it turns, or press Space where it passes the zero. At 10 x a
 half swing takes 20 seconds. The result shows truth against yours, and
 what was hidden in the run.
 """
+_IMPORT: Final = """\
+Enter on a file shows what is understood of it: stations, sets, what was
+left out, what must be told. F8 takes it into the project, all of it or
+nothing; the file itself and its readings as read are kept.
+
+Options stand in one line. traverse=NAME names the book;
+station-code=21 says which code block opens a station (GSI); fix=A,B
+fixes new stations; skip-damaged leaves damaged lines out. A table needs
+its columns and units: at=Stn to=Tgt hz=HA unit.hz=gon.
+"""
+_EXPORT: Final = """\
+Choose a format; the file lies beside the project unless you say
+otherwise. F8 writes it. A file that is there is never written over.
+Coordinates are adjusted where that is possible; what was left out or
+renamed is told.
+"""
 PAGES: Final = {
+    "ImportScreen": ("Import", _IMPORT),
+    "ExportScreen": ("Export", _EXPORT),
     "HomeScreen": ("Where to begin", _HOME),
     "NewProjectScreen": ("New project", _NEW_PROJECT),
     "NewSessionScreen": ("New session", _NEW_SESSION),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from surveyapp.core.improvement import most_helpful
 from surveyapp.domain.project import Project
-from surveyapp.domain.results import AngleResult, LineResult, OrientationResult
+from surveyapp.domain.results import AngleResult, BudgetLine, LineResult, OrientationResult
 from surveyapp.tui import texts
 from surveyapp.tui.views.form import (
     angle_text,
@@ -84,7 +84,14 @@ def _small(label: str, value: float | None, source: str) -> Row:
 
 def budget_rows(line: LineResult) -> list[tuple[str, str, str]]:
     """The budget: source, sigma, share."""
-    return [(item.source, arcsec_text(item.sigma, 2), f"{item.share:.0%}") for item in line.budget]
+    return [
+        (item.source, arcsec_text(item.sigma, 2), f"{item.share:.0%}") for item in _counted(line)
+    ]
+
+
+def _counted(line: LineResult) -> list[BudgetLine]:
+    """Terms that are not zero."""
+    return [item for item in line.budget if item.sigma > 0.0]
 
 
 def helps_text(line: LineResult) -> str:
@@ -95,7 +102,7 @@ def helps_text(line: LineResult) -> str:
     advice = texts.IMPROVE.get(found.source, found.source)
     if found.at_calibration:
         advice = texts.R_AT_CALIBRATION.format(advice=advice)
-    if len(line.budget) == 1:
+    if len(_counted(line)) == 1:
         return texts.R_HELPS_ALONE.format(advice=advice)
     sigma, without = arcsec_text(found.sigma), arcsec_text(found.without)
     return texts.R_HELPS.format(advice=advice, sigma=sigma, without=without)

@@ -1,0 +1,131 @@
+"""When a miss may be named after all: the residuals name an effect, and something separates it.
+
+The diagnosis of a heading's traverse names an effect from its residuals. It explains the miss only
+where the survey holds what separates it from its rivals (reciprocal gyro sides or sights in zigzag
+for a wall, a second gyro for a constant), and where what it does to the meeting point takes the
+miss back within the declared errors. Everything else stays not separable.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from surveyapp.core.penetration.covariance import estimator, heights_known
+from surveyapp.core.penetration.evaluation import closure_test, covariance3, one_wall
+from surveyapp.core.penetration.mine import PPM, Mine
+from surveyapp.core.penetration.rows import HeadingRows, RowKind
+from surveyapp.domain.penetration import MeasuredMiss
+from surveyapp.domain.penetration_result import MissTest, ResidualVerdict
+from surveyapp_models.angles import ARCSEC
+from surveyapp_models.arrays import Floats
+from surveyapp_models.sight_refraction import curvature_per_gradient
+
+
+@dataclass(frozen=True, slots=True)
+class NamedEffect:
+    """An effect that a diagnosis has named, with its first coefficient in its own unit.
+
+    Parameters
+    ----------
+    effect : str
+        gyro_constant_shift [arcsec], lateral_refraction [arcsec/100 m], distance_scale [ppm].
+    value : float
+    """
+
+    effect: str
+    value: float
+
+
+@dataclass(frozen=True, slots=True)
+class HeadingResiduals:
+    """What the residuals of one heading's traverse say.
+
+    Parameters
+    ----------
+    heading : int
+    traverse, verdict : str
+    named : tuple of NamedEffect
+    """
+
+    heading: int
+    traverse: str
+    verdict: str
+    named: tuple[NamedEffect, ...]
+
+
+def explain(
+    mine: Mine, miss: MeasuredMiss, test: MissTest, found: Sequence[HeadingResiduals]
+) -> MissTest:
+    """The test of a miss with what the residuals say; explained only where that is proved."""
+    told = tuple(
+        ResidualVerdict(item.traverse, item.verdict, tuple(e.effect for e in item.named))
+        for item in found
+    )
+    test = replace(test, residuals=told)
+    if test.consistent:
+        return test
+    taken = np.zeros(2)
+    names = []
+    for item in found:
+        for effect in item.named:
+            if separated(mine.headings[item.heading], effect.effect):
+                taken = taken + movement(mine, item.heading, effect)
+                names.append(f"{effect.effect.replace('_', ' ')} in traverse {item.traverse}")
+    if not names:
+        return test
+    lateral = None if miss.lateral_m is None else miss.lateral_m - float(taken[0])
+    along = None if miss.longitudinal_m is None else miss.longitudinal_m - float(taken[1])
+    left = closure_test(
+        (lateral, along, miss.vertical_m), covariance3(mine), heights=heights_known(mine)
+    )
+    if not left.consistent:
+        return test
+    text = (
+        f"The residuals name {', '.join(names)}, the survey holds what separates it, and without "
+        f"it the miss is what the declared errors make (chi-square {left.chi2:.2f})."
+    )
+    return replace(test, verdict="explained", text=text)
+
+
+def separated(heading: HeadingRows, effect: str) -> bool:
+    """Whether a heading holds what tells an effect from its rivals."""
+    gyro = [row for row in heading.rows if row.kind is RowKind.GYRO]
+    if effect == "distance_scale":
+        return True  # only lengths show it
+    if effect == "gyro_constant_shift":
+        return len({row.instrument for row in gyro}) > 1
+    if effect == "lateral_refraction":
+        ends = {(row.side, row.forward) for row in gyro}
+        both = any((side, not forward) in ends for side, forward in ends)
+        walls = set(heading.route.heading.wall_signs())
+        return both or {1.0, -1.0} <= walls
+    return False
+
+
+def movement(mine: Mine, number: int, effect: NamedEffect) -> Floats:
+    """What an effect in one heading does to the miss: right and along [m]."""
+    if effect.effect == "distance_scale":
+        route = mine.routes[number]
+        along = (route.length[:, None] * route.along).sum(axis=0) @ mine.axes
+        return np.asarray(route.sign * effect.value * PPM * along, dtype=np.float64)
+    rows, gain = mine.arrays, estimator(mine).gain
+    own = rows.heading == number
+    if effect.effect == "gyro_constant_shift":
+        moved = gain[own & (rows.kind == RowKind.GYRO)].sum(axis=0)
+        return np.asarray(effect.value * ARCSEC * moved, dtype=np.float64)
+    if effect.effect == "lateral_refraction":
+        walled = mine if any(mine.plan.headings[number].wall_signs()) else one_wall(mine)
+        refraction = walled.plan.refraction
+        if refraction is None:
+            return np.zeros(2)
+        per_gradient = curvature_per_gradient(
+            pressure_hpa=refraction.pressure_hpa, temperature_c=refraction.temperature_c
+        )
+        # a sight of 100 m leaves its chord by half the curvature times its length
+        gradient = 2.0 * effect.value * ARCSEC / 100.0 / per_gradient
+        bent = (gain * walled.arrays.refraction[:, None])[own].sum(axis=0)
+        return np.asarray(gradient * bent, dtype=np.float64)
+    return np.zeros(2)
