@@ -150,6 +150,7 @@ def diagnose_sensor(
     SurveyError
         For an unknown sensor, a kind without a diagnosis, or too few stops.
     """
+    from surveyapp.api.project import open_project
     from surveyapp.api.sensors import open_sensor_log
     from surveyapp.io.user_effects.loading import load_effects
     from surveyapp.workflows.diagnosing_sensor import diagnose_sensor as diagnose_log
@@ -163,7 +164,7 @@ def diagnose_sensor(
     return diagnose_log(
         opened.file,
         opened.entry,
-        folder=Path(folder) if log else None,
+        project=open_project(folder) if log else None,
         software=SOFTWARE,
         own=own,
     )

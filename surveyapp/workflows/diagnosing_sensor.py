@@ -9,13 +9,12 @@ import importlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
-from pathlib import Path
 from typing import Any, Final
 
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.engine import diagnose as run_engine
 from surveyapp.diagnosis.plain_words import words_of
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.project import Project, ResultWarning
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.reading import LogFile
@@ -69,7 +68,7 @@ def diagnose_sensor(
     file: LogFile,
     entry: SensorLogEntry,
     *,
-    folder: Path | None,
+    project: Project | None,
     software: str,
     own: Sequence[Effect] = (),
     now: datetime | None = None,
@@ -80,8 +79,8 @@ def diagnose_sensor(
     ----------
     file : LogFile
     entry : SensorLogEntry
-    folder : Path or None
-        None writes nothing.
+    project : Project or None
+        Whose ledger is appended to; None writes nothing.
     software : str
     own : sequence of Effect
         The user's own.
@@ -105,9 +104,9 @@ def diagnose_sensor(
     made: SensorCase = module.case(file, entry, tuple(own))
     diagnosis = run_engine(made.case)
     notes = list(made.warnings)
-    if folder is not None:
+    if project is not None:
         moment = (now or datetime.now(UTC)).isoformat(timespec="seconds")
-        _, more = record(folder, diagnosis, [], moment=moment, software=software)
+        _, more = record(project, diagnosis, [], moment=moment, software=software)
         notes += more
     words = [note.text for note in notes] + list(words_of(diagnosis, made.case))
     told = replace(diagnosis, warnings=(*diagnosis.warnings, *notes))
