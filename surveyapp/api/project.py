@@ -8,8 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from surveyapp import __version__
+from surveyapp.domain.filing import MadeProject
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import Project
+from surveyapp.domain.records import Listing
 from surveyapp.errors import Problem, SurveyError, nearest_names
 
 if TYPE_CHECKING:
@@ -58,8 +60,10 @@ def require(name: str, known: Iterable[str], kind: str, more: str = "") -> None:
 
 def new_project(
     folder: Folder, *, name: str | None = None, crs: str | None = None, angle_unit: str = "dms"
-) -> Path:
+) -> MadeProject:
     """Make a new project folder with a commented project.toml.
+
+    What it returns is a path as well: ``open_project`` and ``Path`` take it.
 
     Raises
     ------
@@ -75,7 +79,7 @@ def new_project(
         open_grid(crs)
     title = name if name is not None else path.resolve().name
     create_project(path, name=title, crs=crs, angle_unit=AngleUnit(angle_unit))
-    return path
+    return MadeProject(str(path))
 
 
 def simulate(
@@ -115,11 +119,12 @@ def simulate(
     return write_simulated(Path(out), files, truth)
 
 
-def models() -> tuple[InstrumentCard, ...]:
+def models() -> Listing[InstrumentCard]:
     """Every installed instrument card."""
     from surveyapp.io.cards import installed_card_ids
 
-    return tuple(model(identity) for identity in installed_card_ids())
+    cards = tuple(model(identity) for identity in installed_card_ids())
+    return Listing("surveyapp.models/1", "models", cards)
 
 
 def model(identity: str) -> InstrumentCard:

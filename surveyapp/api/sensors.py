@@ -52,6 +52,15 @@ class OpenedLog:
     entry: SensorLogEntry | None
     folder: Path
 
+    def to_dict(self) -> dict[str, object]:
+        """Keys of the JSON, schema ``surveyapp.sensor_log/1``."""
+        return {
+            "schema": "surveyapp.sensor_log/1",
+            "id": None if self.entry is None else self.entry.id,
+            "kind": None if self.entry is None else self.entry.kind,
+            "folder": str(self.folder),
+        }
+
 
 def open_sensor_log(
     source: Folder,

@@ -36,8 +36,8 @@ def run(options: argparse.Namespace) -> int:
 
     network = api.network(options.source, traverse=options.traverse)
     result = api.adjust_network(network)
-    compass = api.compass_rule(network) if options.compass_rule else ()
-    components = api.variance_components(network) if options.components else ()
+    compass = tuple(api.compass_rule(network)) if options.compass_rule else ()
+    components = tuple(api.variance_components(network)) if options.components else ()
     if options.json:
         document = result.to_dict()
         document["compass_rule"] = [item.to_dict() for item in compass]

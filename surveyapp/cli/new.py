@@ -24,7 +24,7 @@ def run(options: argparse.Namespace) -> int:
         options.folder, name=options.name, crs=options.crs, angle_unit=options.angle_unit
     )
     if options.json:
-        print_json({"schema": "surveyapp.new/1", "path": str(path)})
+        print_json(path.to_dict())
         return 0
     print(f"made {path / 'project.toml'}")
     print("Fill in stations, instrument and sessions there (it says how), then:")

@@ -296,6 +296,35 @@ class Project:
             self._sessions.update({item.id: item for item in reversed(self.sessions)})
         return self._sessions[identity]
 
+    def to_dict(self) -> dict[str, Any]:
+        """What a folder holds, schema ``surveyapp.project/1``; the readings stand in its books."""
+        return {
+            "schema": "surveyapp.project/1",
+            "name": self.name,
+            "path": self.path or None,
+            "crs": self.crs,
+            "angle_unit": str(self.angle_unit),
+            "rule_book": self.rule_book,
+            "input_sha256": self.digest,
+            "stations": [item.name for item in self.stations],
+            "instruments": [{"id": i.id, "card": i.card.id} for i in self.instruments],
+            "sessions": [
+                {
+                    "id": item.id,
+                    "station": item.station,
+                    "target": item.target,
+                    "instrument": item.instrument,
+                    "method": item.method,
+                    "purpose": item.purpose,
+                    "rows": len(item.book.live),
+                }
+                for item in self.sessions
+            ],
+            "traverses": [{"name": t.name, "rows": len(t.rows)} for t in self.traverses],
+            "closed": self.filing.project_closing is not None,
+            "warnings": [warning.to_dict() for warning in self.warnings],
+        }
+
     def traverse(self, name: str) -> Traverse:
         """Traverse by name."""
         return next(item for item in self.traverses if item.name == name)
