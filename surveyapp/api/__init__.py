@@ -78,6 +78,7 @@ if TYPE_CHECKING:
     from surveyapp.core.network.variance_components import VarianceComponent
     from surveyapp.core.plan import StationPlan
     from surveyapp.core.sensors.rate.fog_station_plan import FogStationPlan
+    from surveyapp.core.sensors.rate.stop_plan import StopPlan
     from surveyapp.domain.filing import (
         BatchResult,
         BatchRow,
@@ -88,6 +89,7 @@ if TYPE_CHECKING:
     )
     from surveyapp.domain.instrument_reading import FollowedTurn, InstrumentReading
     from surveyapp.domain.line_spectrum import LineSpectrum
+    from surveyapp.domain.motion import Motion
     from surveyapp.domain.north import NorthResult
     from surveyapp.domain.penetration_result import Prediction
     from surveyapp.domain.project import ResultWarning
@@ -99,6 +101,7 @@ if TYPE_CHECKING:
     from surveyapp.workflows.choosing import Diagnosable
     from surveyapp.workflows.computing import Computed
     from surveyapp.workflows.diagnosing import Diagnosed
+    from surveyapp.workflows.diagnosing_sensor import SensorDiagnosed
     from surveyapp.workflows.pooling import InstrumentDiagnosis
 
 _TYPES: Final = {
@@ -122,15 +125,18 @@ _TYPES: Final = {
     "LineSpectrum": "surveyapp.domain.line_spectrum",
     "Listing": "surveyapp.domain.records",
     "MadeProject": "surveyapp.domain.filing",
+    "Motion": "surveyapp.domain.motion",
     "NorthResult": "surveyapp.domain.north",
     "OpenedLog": "surveyapp.api.sensors",
     "Prediction": "surveyapp.domain.penetration_result",
     "ReportResult": "surveyapp.report.written",
     "ResultWarning": "surveyapp.domain.project",
+    "SensorDiagnosed": "surveyapp.workflows.diagnosing_sensor",
     "SessionResult": "surveyapp.domain.results",
     "ShaftResult": "surveyapp.domain.shaft_result",
     "SimulatedFiles": "surveyapp.io.simulated",
     "StationPlan": "surveyapp.core.plan",
+    "StopPlan": "surveyapp.core.sensors.rate.stop_plan",
     "VarianceComponent": "surveyapp.core.network.variance_components",
 }
 """Types of results by the module that holds them: a script that names one imports it then."""
@@ -232,6 +238,9 @@ __all__ = [
     "LineSpectrum",
     "Listing",
     "MadeProject",
+    "Motion",
+    "SensorDiagnosed",
+    "StopPlan",
     "NorthResult",
     "OpenedLog",
     "Prediction",
