@@ -21,10 +21,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--session", metavar="ID", help="the turning points of this session")
     parser.add_argument("--campaign", metavar="INSTRUMENT", help="its repeated determinations")
     parser.add_argument("--traverse", metavar="NAME", help="the conditions of this traverse")
-    parser.add_argument("--sensor", metavar="ID", help="the stops of this [[sensor_log]]")
-    parser.add_argument(
-        "--allow-outside", action="store_true", help="read a log outside the project folder"
-    )
     parser.add_argument(
         "--instrument", metavar="ID", help="all its runs and campaigns together, pooled"
     )
@@ -39,6 +35,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--priors",
         metavar="FILE.toml",
         help="with --instrument: write what the campaigns teach, for [[instrument]] priors",
+    )
+    parser.add_argument("--sensor", metavar="ID", help="this [[sensor_log]]: compass, tilt or rate")
+    parser.add_argument(
+        "--allow-outside", action="store_true", help="read a log outside the project folder"
     )
     parser.add_argument(
         "--confirm",
@@ -55,11 +55,11 @@ def run(options: argparse.Namespace) -> int:
     """Diagnose and print; 0 with any verdict reached."""
     from surveyapp import api
 
-    if options.sensor is not None:
-        return _sensor(options)
     if options.instrument is not None:
         return _instrument(options)
     _refuse_archive(options)
+    if options.sensor is not None:
+        return _sensor(options)
     found = api.diagnose(
         options.folder,
         session=options.session,
@@ -77,34 +77,6 @@ def run(options: argparse.Namespace) -> int:
         print(diagnosis_text(found.diagnosis, found.words))
         for place in found.written:
             print(f"written: {place}")
-    return 0
-
-
-def _sensor(options: argparse.Namespace) -> int:
-    """The log of a sensor."""
-    from surveyapp import api
-    from surveyapp.errors import Problem, SurveyError
-
-    others = ("session", "campaign", "traverse", "confirm", "instrument")
-    named = [f"--{name}" for name in others if getattr(options, name) is not None]
-    if named:
-        found = f"--sensor and {', '.join(named)}"
-        raise SurveyError(Problem("one subject at a time", "diagnose", found, "--sensor alone"))
-    if options.adopt:
-        hint = "follow the remedy; what a card holds is written by calibrate --card"
-        raise SurveyError(
-            Problem("an effect of a sensor is not adopted into a project", "--adopt", hint=hint)
-        )
-    found_sensor = api.diagnose_sensor(
-        options.folder,
-        options.sensor,
-        effects=options.effects,
-        allow_outside=options.allow_outside,
-    )
-    if options.json:
-        print_json(found_sensor.to_dict())
-    else:
-        print(diagnosis_text(found_sensor.diagnosis, found_sensor.words))
     return 0
 
 
@@ -135,6 +107,55 @@ def _instrument(options: argparse.Namespace) -> int:
         print_json(result.to_dict())
     else:
         print(instrument_text(result))
+    return 0
+
+
+def _sensor(options: argparse.Namespace) -> int:
+    """Diagnose a sensor log; what it names is calibrated, not adopted."""
+    from surveyapp import api
+    from surveyapp.errors import Problem, SurveyError
+
+    kinds = {log.id: log.kind for log in api.open_project(options.folder).sensor_logs}
+    rate = kinds.get(options.sensor) == "rate"
+    others = [options.session, options.campaign, options.traverse, options.confirm]
+    others += [] if rate else [options.effects]
+    if any(other is not None for other in others) or options.adopt:
+        raise SurveyError(
+            Problem(
+                "a sensor log is diagnosed by itself, and its effects are calibrated, not adopted",
+                "diagnose --sensor",
+                "further options",
+                "--sensor ID alone",
+                "calibrate KIND DIR --sensor ID --card OUT.toml writes what is determined",
+            )
+        )
+    if rate:
+        return _rate_sensor(options)
+    found = api.diagnose_log(
+        options.folder, sensor=options.sensor, allow_outside=options.allow_outside
+    )
+    if options.json:
+        print_json(found.to_dict())
+        return 0
+    for sentence in found.words:
+        print(textwrap.fill(sentence, 80, subsequent_indent="  "))
+    return 0
+
+
+def _rate_sensor(options: argparse.Namespace) -> int:
+    """The stops of a rate sensor."""
+    from surveyapp import api
+
+    found_sensor = api.diagnose_sensor(
+        options.folder,
+        options.sensor,
+        effects=options.effects,
+        allow_outside=options.allow_outside,
+    )
+    if options.json:
+        print_json(found_sensor.to_dict())
+    else:
+        print(diagnosis_text(found_sensor.diagnosis, found_sensor.words))
     return 0
 
 

@@ -12,7 +12,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "kind",
         metavar="KIND",
-        help="reversal-run | campaign | rate | fog-station | indexing | vehicle",
+        help=" | ".join(
+            (
+                "reversal-run",
+                "campaign",
+                "compass",
+                "tilt",
+                "noise",
+                "rate",
+                "fog-station",
+                "indexing",
+                "vehicle",
+            )
+        ),
     )
     parser.add_argument("out", metavar="OUT", help="folder to make; must not hold anything")
     parser.add_argument(
@@ -28,6 +40,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="of rate: six-position (default) | temperature | multi-position; of "
         "indexing: one-stop (default) | several-stops",
     )
+    parser.add_argument(
+        "--coefficient",
+        action="extend",
+        nargs="+",
+        default=[],
+        metavar="SYMBOL=VALUE",
+        help="of noise: Q N B K R, in arcsec, deg/sqrt(h), deg/h, deg/h/sqrt(h), deg/h^2",
+    )
     parser.add_argument("--seed", type=int, default=1, metavar="N", help="default 1")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
@@ -42,6 +62,7 @@ def run(options: argparse.Namespace) -> int:
         effects=options.effect,
         seed=options.seed,
         programme=options.programme,
+        coefficients=options.coefficient,
     )
     if options.json:
         print_json(made.to_dict())
