@@ -32,6 +32,7 @@ from surveyapp.api.office import (
     reopen,
     report,
     report_text,
+    undrawn_text,
 )
 from surveyapp.api.orientation import (
     Source,
@@ -47,6 +48,7 @@ from surveyapp.api.penetration import (
     cluster_executor,
     has_breakthrough,
     predict,
+    record_step,
     trial,
 )
 from surveyapp.api.pooling import diagnose_instrument
@@ -182,6 +184,7 @@ __all__ = [
     "cluster_executor",
     "Trial",
     "has_breakthrough",
+    "record_step",
     "has_shafts",
     "trial",
     "shaft",
@@ -203,6 +206,7 @@ __all__ = [
     "batch_rows",
     "report",
     "report_text",
+    "undrawn_text",
     "write_sheets",
     "blank_form",
     "close",
