@@ -147,6 +147,8 @@ def _sensor(options: argparse.Namespace) -> int:
 def _rate_sensor(options: argparse.Namespace) -> int:
     """The stops of a rate sensor."""
     from surveyapp import api
+    from surveyapp.report.sections import diagnosis as section
+    from surveyapp.report.text import blocks_text
 
     found_sensor = api.diagnose_sensor(
         options.folder,
@@ -157,7 +159,10 @@ def _rate_sensor(options: argparse.Namespace) -> int:
     if options.json:
         print_json(found_sensor.to_dict())
     else:
-        print(diagnosis_text(found_sensor.diagnosis, found_sensor.words))
+        project = api.open_project(options.folder)
+        unit = project.angle_unit
+        made = section.blocks(found_sensor.diagnosis, found_sensor.words, {}, unit=unit)
+        print(blocks_text(made, WIDTH))
     return 0
 
 
