@@ -14,6 +14,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "models")]
 
 PAGE_MODULES: tuple[str, ...] = (
+    "pages_api",
     "pages_cards",
     "pages_command_line",
     "pages_effects",

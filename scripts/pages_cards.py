@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from surveyapp.cli.models import known
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.io.cards import installed_card_ids, read_card
 
@@ -42,7 +41,7 @@ def pages() -> dict[str, str]:
     head += ["", "| card | instrument | kind | known |", "|---|---|---|---|"]
     head += [
         f"| [`{card.id}`]({card.id}.md) | {card.title} | {card.kind} | "
-        f"{', '.join(f'`{k}`' for k, v in known(card).items() if v is not None) or 'nothing'} |"
+        f"{', '.join(f'`{k}`' for k, v in card.known().items() if v is not None) or 'nothing'} |"
         for card in cards
     ]
     result["reference/instruments/index.md"] = "\n".join(head) + "\n"
@@ -53,7 +52,7 @@ def page(card: InstrumentCard) -> str:
     """Text of one card's page."""
     lines = [f"# {card.title}", "", GENERATED, ""]
     lines += [f"Card `{card.id}`, {card.kind}.", ""]
-    values = known(card)
+    values = card.known()
     stated = {name: value for name, value in values.items() if value is not None}
     if stated:
         lines += ["| key | value | meaning |", "|---|---|---|"]

@@ -6,6 +6,9 @@ Each subject has a module of its own behind this one, which is all that scripts 
 
 from __future__ import annotations
 
+import importlib
+from typing import TYPE_CHECKING, Any, Final
+
 from surveyapp.api.batch import batch, batch_rows
 from surveyapp.api.importing import export_survey, import_file
 from surveyapp.api.instruments import follow_turn, read_instrument
@@ -14,6 +17,7 @@ from surveyapp.api.network import (
     adjust,
     adjust_network,
     compass_rule,
+    data_snooping,
     network,
     variance_components,
 )
@@ -56,8 +60,17 @@ from surveyapp.api.project import (
     simulate,
 )
 from surveyapp.api.rate import north, plan_fog_station, spectrum
-from surveyapp.api.sensors import LogOptions, calibrate, open_sensor_log
+from surveyapp.api.sensors import (
+    LogOptions,
+    allan,
+    calibrate,
+    compensate,
+    diagnose_log,
+    filter_log,
+    open_sensor_log,
+)
 from surveyapp.api.shafts import has_shafts, shaft
+from surveyapp.api.sheets import write_sheets
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.fieldfile import ImportResult
@@ -67,6 +80,81 @@ from surveyapp.domain.results import Check, OrientationResult, Subject, Verdicts
 from surveyapp.domain.subject import SubjectKeyword
 from surveyapp.domain.traverse import Network
 from surveyapp.errors import Problem, SurveyError
+
+if TYPE_CHECKING:
+    from surveyapp.api.sensors import OpenedLog
+    from surveyapp.core.comparison import DemonstratedSample
+    from surveyapp.core.network.bowditch import CompassResult
+    from surveyapp.core.network.snooping import SnoopingResult
+    from surveyapp.core.network.variance_components import VarianceComponent
+    from surveyapp.core.plan import StationPlan
+    from surveyapp.core.sensors.rate.fog_station_plan import FogStationPlan
+    from surveyapp.domain.filing import (
+        BatchResult,
+        BatchRow,
+        ClosingResult,
+        ComparisonResult,
+        ExportResult,
+        MadeProject,
+    )
+    from surveyapp.domain.instrument_reading import FollowedTurn, InstrumentReading
+    from surveyapp.domain.line_spectrum import LineSpectrum
+    from surveyapp.domain.north import NorthResult
+    from surveyapp.domain.penetration_result import Prediction
+    from surveyapp.domain.project import ResultWarning
+    from surveyapp.domain.records import Listing
+    from surveyapp.domain.results import AngleResult, ConstantResult, LineResult, SessionResult
+    from surveyapp.domain.shaft_result import ShaftResult
+    from surveyapp.io.simulated import SimulatedFiles
+    from surveyapp.report.written import ReportResult, SheetsResult
+    from surveyapp.workflows.choosing import Diagnosable
+    from surveyapp.workflows.computing import Computed
+    from surveyapp.workflows.diagnosing import Diagnosed
+    from surveyapp.workflows.pooling import InstrumentDiagnosis
+
+_TYPES: Final = {
+    "AngleResult": "surveyapp.domain.results",
+    "BatchResult": "surveyapp.domain.filing",
+    "BatchRow": "surveyapp.domain.filing",
+    "ClosingResult": "surveyapp.domain.filing",
+    "ComparisonResult": "surveyapp.domain.filing",
+    "CompassResult": "surveyapp.core.network.bowditch",
+    "Computed": "surveyapp.workflows.computing",
+    "ConstantResult": "surveyapp.domain.results",
+    "DemonstratedSample": "surveyapp.core.comparison",
+    "Diagnosable": "surveyapp.workflows.choosing",
+    "Diagnosed": "surveyapp.workflows.diagnosing",
+    "ExportResult": "surveyapp.domain.filing",
+    "SnoopingResult": "surveyapp.core.network.snooping",
+    "FogStationPlan": "surveyapp.core.sensors.rate.fog_station_plan",
+    "FollowedTurn": "surveyapp.domain.instrument_reading",
+    "InstrumentDiagnosis": "surveyapp.workflows.pooling",
+    "InstrumentReading": "surveyapp.domain.instrument_reading",
+    "LineResult": "surveyapp.domain.results",
+    "LineSpectrum": "surveyapp.domain.line_spectrum",
+    "Listing": "surveyapp.domain.records",
+    "MadeProject": "surveyapp.domain.filing",
+    "NorthResult": "surveyapp.domain.north",
+    "OpenedLog": "surveyapp.api.sensors",
+    "Prediction": "surveyapp.domain.penetration_result",
+    "ReportResult": "surveyapp.report.written",
+    "ResultWarning": "surveyapp.domain.project",
+    "SessionResult": "surveyapp.domain.results",
+    "ShaftResult": "surveyapp.domain.shaft_result",
+    "SheetsResult": "surveyapp.report.written",
+    "SimulatedFiles": "surveyapp.io.simulated",
+    "StationPlan": "surveyapp.core.plan",
+    "VarianceComponent": "surveyapp.core.network.variance_components",
+}
+"""Types of results by the module that holds them: a script that names one imports it then."""
+
+
+def __getattr__(name: str) -> Any:
+    """Types of results, found when they are asked for: nothing is loaded for the others."""
+    if name not in _TYPES:
+        raise AttributeError(f"surveyapp.api has no {name}")
+    return getattr(importlib.import_module(_TYPES[name]), name)
+
 
 __all__ = [
     "Folder",
@@ -88,6 +176,7 @@ __all__ = [
     "adjust_network",
     "compass_rule",
     "variance_components",
+    "data_snooping",
     "SubjectKeyword",
     "predict",
     "cluster_executor",
@@ -99,8 +188,12 @@ __all__ = [
     "subjects",
     "check",
     "diagnose",
+    "allan",
     "diagnose_instrument",
     "calibrate",
+    "filter_log",
+    "compensate",
+    "diagnose_log",
     "plan_fog_station",
     "north",
     "spectrum",
@@ -110,6 +203,7 @@ __all__ = [
     "batch_rows",
     "report",
     "report_text",
+    "write_sheets",
     "blank_form",
     "close",
     "reopen",
@@ -123,6 +217,8 @@ __all__ = [
     "export_json",
     "export_zip",
     "AdjustmentResult",
+    "SheetsResult",
+    "SnoopingResult",
     "ImportResult",
     "Calibration",
     "InstrumentCard",
@@ -134,4 +230,34 @@ __all__ = [
     "Network",
     "Problem",
     "SurveyError",
+    "AngleResult",
+    "BatchResult",
+    "BatchRow",
+    "ClosingResult",
+    "ComparisonResult",
+    "CompassResult",
+    "Computed",
+    "ConstantResult",
+    "DemonstratedSample",
+    "Diagnosable",
+    "Diagnosed",
+    "ExportResult",
+    "FogStationPlan",
+    "FollowedTurn",
+    "InstrumentDiagnosis",
+    "InstrumentReading",
+    "LineResult",
+    "LineSpectrum",
+    "Listing",
+    "MadeProject",
+    "NorthResult",
+    "OpenedLog",
+    "Prediction",
+    "ReportResult",
+    "ResultWarning",
+    "SessionResult",
+    "ShaftResult",
+    "SimulatedFiles",
+    "StationPlan",
+    "VarianceComponent",
 ]

@@ -10,10 +10,11 @@ from surveyapp.api.orientation import Source, oriented
 from surveyapp.api.project import SOFTWARE, Folder, opened
 from surveyapp.domain.advance import Advance, silent
 from surveyapp.domain.project import Project
+from surveyapp.domain.records import Listing
 from surveyapp.domain.results import Verdicts
-from surveyapp.domain.subject import SubjectKeyword
 
 if TYPE_CHECKING:
+    from surveyapp.workflows.choosing import Diagnosable
     from surveyapp.workflows.diagnosing import Diagnosed
 
 
@@ -111,10 +112,10 @@ def diagnose(
     )
 
 
-def subjects(source: Source) -> tuple[tuple[SubjectKeyword, str], ...]:
+def subjects(source: Source) -> Listing[Diagnosable]:
     """What ``diagnose`` can take of a project: its keyword and the id."""
     from surveyapp.core.orientation.unfinished import without_unfinished
     from surveyapp.workflows.choosing import subjects_of
 
     kept = without_unfinished(opened(source))
-    return tuple((item.keyword, item.id) for item in subjects_of(kept))
+    return Listing("surveyapp.subjects/1", "subjects", subjects_of(kept))

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING
 from surveyapp.api.orientation import Source, oriented
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.project import Project
+from surveyapp.domain.records import Listing
 from surveyapp.domain.traverse import Network
 
 if TYPE_CHECKING:
     from surveyapp.core.network.bowditch import CompassResult
+    from surveyapp.core.network.snooping import SnoopingResult
     from surveyapp.core.network.variance_components import VarianceComponent
 
 
@@ -46,18 +48,26 @@ def adjust_network(network: Network, *, family_level: float = 0.05) -> Adjustmen
     return with_removals(network, adjusted(network, family_level=family_level))
 
 
-def compass_rule(network: Network) -> tuple[CompassResult, ...]:
+def compass_rule(network: Network) -> Listing[CompassResult]:
     """Every route of a network by the compass (Bowditch) rule, for those who must file it."""
     from surveyapp.core.network.bowditch import compass_adjust
 
-    return compass_adjust(network)
+    return Listing("surveyapp.compass_rule/1", "compass_rule", compass_adjust(network))
 
 
-def variance_components(network: Network) -> tuple[VarianceComponent, ...]:
+def variance_components(network: Network) -> Listing[VarianceComponent]:
     """Factors of the stated sigmas of each group of observations (Helmert)."""
     from surveyapp.core.network.variance_components import variance_components as components
 
-    return components(network)[0]
+    found = components(network)[0]
+    return Listing("surveyapp.variance_components/1", "variance_components", found)
+
+
+def data_snooping(network: Network) -> SnoopingResult:
+    """Gross errors taken out one after another, and the adjustment without them."""
+    from surveyapp.core.network.snooping import data_snooping as snooping
+
+    return snooping(network)
 
 
 def network(source: Source, *, traverse: str | None = None) -> Network:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Union
 from surveyapp.api.project import SOFTWARE, Folder, open_project, opened, require
 from surveyapp.domain.advance import Advance, silent
 from surveyapp.domain.project import Project, ResultWarning
+from surveyapp.domain.records import Listing
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import Problem, SurveyError
 
@@ -73,12 +74,13 @@ def generator_of(project: Project) -> np.random.Generator:
     return seeded(project)
 
 
-def unfinished(source: Source) -> tuple[ResultWarning, ...]:
+def unfinished(source: Source) -> Listing[ResultWarning]:
     """What is left out of a project's results because it is still being observed."""
     from surveyapp.core.orientation.unfinished import without_unfinished
 
     project = opened(source)
-    return without_unfinished(project).warnings[len(project.warnings) :]
+    told = without_unfinished(project).warnings[len(project.warnings) :]
+    return Listing("surveyapp.unfinished/1", "warnings", told)
 
 
 def oriented(
@@ -184,7 +186,7 @@ def with_line(found: Computed, line: str | tuple[str, str]) -> OrientationResult
 
 def plan(
     project: Project | Folder, *, station: str | None = None, interval_arcsec: float = 20.0
-) -> tuple[StationPlan, ...]:
+) -> Listing[StationPlan]:
     """Plan orientations: method, points and minutes for a wanted interval at each station.
 
     Parameters
@@ -220,10 +222,11 @@ def plan(
                 "the wanted interval is not positive", "interval_arcsec", found, "arc-seconds > 0"
             )
         )
-    return plan_stations(project, names, wanted=interval_arcsec * ARCSEC)
+    plans = plan_stations(project, names, wanted=interval_arcsec * ARCSEC)
+    return Listing("surveyapp.plan/1", "plans", plans)
 
 
-def demo() -> tuple[DemonstratedSample, ...]:
+def demo() -> Listing[DemonstratedSample]:
     """Orient the measured samples and compare with what their sources printed."""
     from surveyapp.core.comparison import DemonstratedSample, compare_with_print
     from surveyapp.io.locations import read_expected, sample_names, samples_folder
@@ -248,4 +251,4 @@ def demo() -> tuple[DemonstratedSample, ...]:
                 comparisons=compare_with_print(expected, result),
             )
         )
-    return tuple(samples)
+    return Listing("surveyapp.demo/1", "samples", tuple(samples))

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from surveyapp.api.judgement import diagnose
 from surveyapp.api.orientation import Source, oriented
@@ -136,6 +136,10 @@ class Trial:
     ready: ReadyMine
     tried: WhatIf
     prediction: Prediction
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON: those of the prediction."""
+        return dict(self.prediction.to_dict())
 
     def changed(self, tried: WhatIf) -> Trial:
         """Another trial on the same mine."""

@@ -8,8 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from surveyapp import __version__
+from surveyapp.domain.filing import MadeProject
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import Project
+from surveyapp.domain.records import Listing
 from surveyapp.errors import Problem, SurveyError, nearest_names
 
 if TYPE_CHECKING:
@@ -63,8 +65,10 @@ def new_project(
     crs: str | None = None,
     angle_unit: str = "dms",
     mine_grid: str | None = None,
-) -> Path:
+) -> MadeProject:
     """Make a new project folder with a commented project.toml.
+
+    What it returns is a path as well: ``open_project`` and ``Path`` take it.
 
     Raises
     ------
@@ -84,7 +88,7 @@ def new_project(
     unit = AngleUnit(angle_unit)
     line = None if mine_grid is None else mine_grid_line(mine_grid, crs=crs, unit=unit)
     create_project(path, name=title, crs=crs, angle_unit=unit, grid_line=line)
-    return path
+    return MadeProject(str(path))
 
 
 def simulate(
@@ -94,6 +98,7 @@ def simulate(
     effects: Sequence[str] = (),
     seed: int = 1,
     programme: str | None = None,
+    coefficients: Sequence[str] = (),
 ) -> SimulatedFiles:
     """Write a simulated project, and its truth beside it.
 
@@ -107,6 +112,8 @@ def simulate(
         ``ID=VALUE[,option=value]`` each.
     seed : int
         The same seed, the same files.
+    coefficients : sequence of str
+        Of noise: ``SYMBOL=VALUE`` each, Q N B K R in the units of IEEE 952.
     programme : str, optional
         Of a rate sensor: ``six-position``, ``temperature`` ...
 
@@ -120,15 +127,18 @@ def simulate(
 
     if seed < 0:
         raise SurveyError(Problem("the seed is negative", "seed", str(seed), "0 or more"))
-    files, truth = simulate_kind(kind, effects=effects, seed=seed, programme=programme)
+    files, truth = simulate_kind(
+        kind, effects=effects, seed=seed, programme=programme, coefficients=coefficients
+    )
     return write_simulated(Path(out), files, truth)
 
 
-def models() -> tuple[InstrumentCard, ...]:
+def models() -> Listing[InstrumentCard]:
     """Every installed instrument card."""
     from surveyapp.io.cards import installed_card_ids
 
-    return tuple(model(identity) for identity in installed_card_ids())
+    cards = tuple(model(identity) for identity in installed_card_ids())
+    return Listing("surveyapp.models/1", "models", cards)
 
 
 def model(identity: str) -> InstrumentCard:

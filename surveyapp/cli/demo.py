@@ -20,8 +20,7 @@ def run(options: argparse.Namespace) -> int:
 
     samples = api.demo()
     if options.json:
-        documents = [sample.to_dict() for sample in samples]
-        print_json({"schema": "surveyapp.demo/1", "samples": documents})
+        print_json(samples.to_dict())
         return 0
     for sample in samples:
         print(heading(f"{sample.name}: {sample.result.project}"))

@@ -34,7 +34,7 @@ def run(options: argparse.Namespace) -> int:
         mine_grid=options.mine_grid,
     )
     if options.json:
-        print_json({"schema": "surveyapp.new/1", "path": str(path)})
+        print_json(path.to_dict())
         return 0
     print(f"made {path / 'project.toml'}")
     print("Fill in stations, instrument and sessions there (it says how), then:")

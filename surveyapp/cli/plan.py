@@ -27,8 +27,7 @@ def run(options: argparse.Namespace) -> int:
 
     plans = api.plan(options.folder, station=options.station, interval_arcsec=options.interval)
     if options.json:
-        documents = [item.to_dict() for item in plans]
-        print_json({"schema": "surveyapp.plan/1", "plans": documents})
+        print_json(plans.to_dict())
     else:
         for item in plans:
             latitude = "" if item.latitude_deg is None else f", latitude {item.latitude_deg:.2f}"

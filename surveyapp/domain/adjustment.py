@@ -7,11 +7,14 @@ azimuths of ellipses and angles are clockwise from north.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 from surveyapp.domain.network_tests import GlobalTest, LeftOut, Removal, Snooping, Suspect
 from surveyapp.domain.observations import ANGULAR, ObservationKind
 from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.records import Cell, Recorded, rows_of
 from surveyapp_models.angles import RHO_ARCSEC, wrap_two_pi
 
 __all__ = [
@@ -316,6 +319,17 @@ class AdjustmentResult:
     def point(self, name: str) -> AdjustedPoint:
         """Point by name."""
         return next(item for item in self.points if item.name == name)
+
+    def rows(
+        self, table: Literal["points", "observations", "closures"] = "points"
+    ) -> list[dict[str, Cell]]:
+        """One flat record a point, observation or closure."""
+        tables: dict[str, Sequence[Recorded]] = {
+            "points": self.points,
+            "observations": self.observations,
+            "closures": self.closures,
+        }
+        return rows_of(tables[table])
 
     def to_dict(self) -> dict[str, object]:
         """Object of ``adjust --json``."""

@@ -55,6 +55,26 @@ class AngleResult:
     dof: float = math.inf
     reference: Reference | None = None
 
+    @property
+    def deg(self) -> float:
+        """Value in decimal degrees, [0, 360)."""
+        return to_degrees(self.value) or 0.0
+
+    @property
+    def arcsec(self) -> float:
+        """Value in arc-seconds, [0, 1296000)."""
+        return self.deg * 3600.0
+
+    @property
+    def sigma_arcsec(self) -> float | None:
+        """One standard deviation in arc-seconds, None where nothing tells it."""
+        return to_arcsec(self.sigma)
+
+    @property
+    def interval95_arcsec(self) -> float | None:
+        """Half-width of the 95 % interval in arc-seconds, None where nothing tells it."""
+        return to_arcsec(self.interval95)
+
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""
         result: dict[str, Any] = {

@@ -22,6 +22,21 @@ class LineConstant:
     rounds: int
     distance_m: float | None
 
+    @property
+    def arcsec(self) -> float | None:
+        """The constant in arc-seconds, None where it is not determined."""
+        return to_arcsec(self.value)
+
+    @property
+    def deg(self) -> float | None:
+        """The constant in decimal degrees with its sign, None where it is not determined."""
+        return None if self.arcsec is None else self.arcsec / 3600.0
+
+    @property
+    def sigma_arcsec(self) -> float | None:
+        """Its standard deviation in arc-seconds."""
+        return to_arcsec(self.sigma)
+
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""
         return {
@@ -61,6 +76,21 @@ class Determination:
             return None
         return wrap_pi(self.known_azimuth - self.from_coordinates)
 
+    @property
+    def arcsec(self) -> float | None:
+        """The constant in arc-seconds, None where it is not determined."""
+        return to_arcsec(self.value)
+
+    @property
+    def deg(self) -> float | None:
+        """The constant in decimal degrees with its sign, None where it is not determined."""
+        return None if self.arcsec is None else self.arcsec / 3600.0
+
+    @property
+    def sigma_arcsec(self) -> float | None:
+        """Its standard deviation in arc-seconds."""
+        return to_arcsec(self.sigma)
+
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""
         return {
@@ -89,6 +119,21 @@ class ConstantResult:
     choice: str
     by_line: tuple[LineConstant, ...]
     determinations: tuple[Determination, ...] = ()
+
+    @property
+    def arcsec(self) -> float | None:
+        """The constant in arc-seconds, None where it is not determined."""
+        return to_arcsec(self.value)
+
+    @property
+    def deg(self) -> float | None:
+        """The constant in decimal degrees with its sign, None where it is not determined."""
+        return None if self.arcsec is None else self.arcsec / 3600.0
+
+    @property
+    def sigma_arcsec(self) -> float | None:
+        """Its standard deviation in arc-seconds."""
+        return to_arcsec(self.sigma)
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Literal
 
 from surveyapp.domain.project import ResultWarning
@@ -85,6 +86,31 @@ class ExportResult:
             "sha256": self.sha256,
             "warnings": [item.to_dict() for item in self.warnings],
         }
+
+
+@dataclass(frozen=True, slots=True)
+class MadeProject:
+    """A project folder that was made; whatever takes a path takes it.
+
+    Parameters
+    ----------
+    path : str
+    """
+
+    path: str
+
+    def __fspath__(self) -> str:
+        return self.path
+
+    def __str__(self) -> str:
+        return self.path
+
+    def __truediv__(self, name: str) -> Path:
+        return Path(self.path) / name
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON, schema ``surveyapp.new/1``."""
+        return {"schema": "surveyapp.new/1", "path": self.path}
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,10 +5,12 @@ A value that its maker or a source does not state is None: it is absent, never g
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Literal
 
 from surveyapp.domain.priors import Priors
+from surveyapp_models.angles import RHO_ARCSEC
 
 InstrumentKind = Literal["suspended", "automatic"]
 
@@ -171,6 +173,45 @@ class InstrumentCard:
     resolution: float | None = None
     calibration_due: str | None = None
     notes: tuple[tuple[str, str], ...] = ()
+
+    def known(self) -> dict[str, float | None]:
+        """Every quantity of the card in the units of its file, None where it is absent."""
+        periods, zero, valid = self.periods, self.tape_zero, self.valid
+
+        def seconds(value: float | None) -> float | None:
+            return None if value is None else value * RHO_ARCSEC
+
+        def degrees(value: float | None) -> float | None:
+            return None if value is None else math.degrees(value)
+
+        cold, hot = valid.temperature_c or (None, None)
+        return {
+            "scale_value_arcsec": seconds(self.scale_value),
+            "period.latitude_deg": degrees(periods.latitude) if periods else None,
+            "period.tracking_s": periods.tracking_s if periods else None,
+            "period.clamped_s": periods.clamped_s if periods else None,
+            "period.unspun_s": periods.unspun_s if periods else None,
+            "period.sigma_s": periods.sigma_s if periods else None,
+            "torsion.lambda": self.torsion_lambda,
+            "transit.c_arcsec_per_div_s": seconds(self.transit_c),
+            "sigma.reversal_arcsec": seconds(self.sigma.reversal),
+            "sigma.azimuth_arcsec": seconds(self.sigma.azimuth),
+            "sigma.scale_div": self.sigma.scale_div,
+            "sigma.time_s": self.sigma.time_s,
+            "tape_zero.limit_div": zero.limit_div,
+            "tape_zero.div_per_arcsec_tilt": None
+            if zero.div_per_tilt is None
+            else zero.div_per_tilt / RHO_ARCSEC,
+            "tape_zero.correction_arcsec_per_div": seconds(zero.correction_per_div),
+            "tape_zero.latitude_deg": degrees(zero.latitude),
+            "range.latitude_max_deg": degrees(valid.latitude_max),
+            "range.temperature_min_c": cold,
+            "range.temperature_max_c": hot,
+        }
+
+    def to_dict(self) -> dict[str, object]:
+        """Keys of the JSON."""
+        return {"id": self.id, "title": self.title, "kind": self.kind, "known": self.known()}
 
 
 @dataclass(frozen=True, slots=True)

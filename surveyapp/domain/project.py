@@ -13,9 +13,11 @@ from typing import Any, Literal
 from surveyapp.domain.closing import Filing
 from surveyapp.domain.instrument import AdoptedEffect, Instrument
 from surveyapp.domain.mine_grid import MineGrid, StatedConvergence
+from surveyapp.domain.penetration import PenetrationTable
 from surveyapp.domain.readings import FieldBook
 from surveyapp.domain.rulebook import RuleBook
 from surveyapp.domain.sensor_entry import SensorLogEntry
+from surveyapp.domain.shaft import ShaftTables
 from surveyapp.domain.subject import Subject
 from surveyapp.domain.traverse_book import Traverse
 from surveyapp_models.angles import ARCSEC, AngleUnit
@@ -247,8 +249,10 @@ class Project:
         Closings, and what was changed since.
     path : str
         Folder; empty for a project that was never on a disk.
-    tables : mapping
-        The parsed TOML of what has no typed field yet, by name.
+    penetration : PenetrationTable or None
+        With what is wrong in it, which only a prediction minds.
+    shafts : ShaftTables or None
+        With their books and what is wrong in them, which only their use minds.
     sensor_logs : tuple of SensorLogEntry
     warnings : tuple of ResultWarning
     """
@@ -270,7 +274,8 @@ class Project:
     digest: str = ""
     filing: Filing = field(default_factory=Filing)
     path: str = ""
-    tables: dict[str, object] = field(default_factory=dict)
+    penetration: PenetrationTable | None = None
+    shafts: ShaftTables | None = None
     sensor_logs: tuple[SensorLogEntry, ...] = ()
     warnings: tuple[ResultWarning, ...] = ()
     _stations: dict[str, Station] = field(
@@ -295,6 +300,35 @@ class Project:
         if not self._sessions:
             self._sessions.update({item.id: item for item in reversed(self.sessions)})
         return self._sessions[identity]
+
+    def to_dict(self) -> dict[str, Any]:
+        """What a folder holds, schema ``surveyapp.project/1``; the readings stand in its books."""
+        return {
+            "schema": "surveyapp.project/1",
+            "name": self.name,
+            "path": self.path or None,
+            "crs": self.crs,
+            "angle_unit": str(self.angle_unit),
+            "rule_book": self.rule_book,
+            "input_sha256": self.digest,
+            "stations": [item.name for item in self.stations],
+            "instruments": [{"id": i.id, "card": i.card.id} for i in self.instruments],
+            "sessions": [
+                {
+                    "id": item.id,
+                    "station": item.station,
+                    "target": item.target,
+                    "instrument": item.instrument,
+                    "method": item.method,
+                    "purpose": item.purpose,
+                    "rows": len(item.book.live),
+                }
+                for item in self.sessions
+            ],
+            "traverses": [{"name": t.name, "rows": len(t.rows)} for t in self.traverses],
+            "closed": self.filing.project_closing is not None,
+            "warnings": [warning.to_dict() for warning in self.warnings],
+        }
 
     def traverse(self, name: str) -> Traverse:
         """Traverse by name."""

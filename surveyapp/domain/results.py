@@ -7,13 +7,14 @@ constants have modules of their own; this one has the names of all.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal
 
 from surveyapp.domain.angle_result import AngleResult, Reference, finite, to_arcsec, to_degrees
 from surveyapp.domain.constant_result import ConstantResult, Determination, LineConstant
 from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.records import Cell, Recorded, rows_of
 from surveyapp.domain.session_result import (
     PointResult,
     SessionResult,
@@ -42,6 +43,9 @@ __all__ = [
     "LineResult",
     "OrientationResult",
 ]
+
+
+ResultTable = Literal["lines", "sessions", "constants", "checks", "warnings"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,6 +127,10 @@ class Verdicts:
         """Whether every confirmed limit and test is met."""
         return not any(check.confirmed and check.passed is False for check in self.checks)
 
+    def rows(self) -> list[dict[str, Cell]]:
+        """One flat record a check."""
+        return rows_of(self.checks)
+
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON, schema ``surveyapp.check/1``."""
         return {
@@ -179,6 +187,31 @@ class LineResult:
         """The line as a value: its two stations and the instrument."""
         return Subject.line(self.station, self.target, self.instrument)
 
+    @property
+    def constant_arcsec(self) -> float | None:
+        """Instrument constant in arc-seconds, None where there is none."""
+        return to_arcsec(self.constant)
+
+    @property
+    def constant_sigma_arcsec(self) -> float | None:
+        """Its standard deviation in arc-seconds."""
+        return to_arcsec(self.constant_sigma)
+
+    @property
+    def deflection_arcsec(self) -> float | None:
+        """Deflection term in arc-seconds; it is subtracted."""
+        return to_arcsec(self.deflection)
+
+    @property
+    def convergence_arcsec(self) -> float | None:
+        """Meridian convergence in arc-seconds; it is subtracted."""
+        return to_arcsec(self.convergence)
+
+    @property
+    def arc_to_chord_arcsec(self) -> float | None:
+        """Arc-to-chord correction in arc-seconds; it is subtracted."""
+        return to_arcsec(self.arc_to_chord)
+
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""
         constant = None
@@ -225,6 +258,17 @@ class OrientationResult:
     def passed(self) -> bool:
         """Whether every confirmed limit and test is met."""
         return not any(check.confirmed and check.passed is False for check in self.checks)
+
+    def rows(self, table: ResultTable = "lines") -> list[dict[str, Cell]]:
+        """One flat record a line, session, constant, check or warning."""
+        tables: dict[ResultTable, Sequence[Recorded]] = {
+            "lines": self.lines,
+            "sessions": self.sessions,
+            "constants": self.constants,
+            "checks": self.checks,
+            "warnings": self.warnings,
+        }
+        return rows_of(tables[table])
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON, schema ``surveyapp.orient/1``."""

@@ -7,8 +7,9 @@ height are true east, north and up in metres; angles are clockwise and in radian
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from enum import StrEnum
+from typing import Any
 
 from surveyapp.domain.observations import CorrelatedBlock, Observation, ObservationKind
 from surveyapp.domain.project import ResultWarning
@@ -170,10 +171,38 @@ class Network:
     left_handed: bool = True
     warnings: tuple[ResultWarning, ...] = field(default=())
 
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON, schema ``surveyapp.network/1``: metres and radians."""
+        return {
+            "schema": "surveyapp.network/1",
+            "name": self.name,
+            "points": [
+                {"name": p.name, "e": p.e, "n": p.n, "h": p.h, "status": [str(s) for s in _of(p)]}
+                for p in self.points
+            ],
+            "observations": [
+                {
+                    "kind": str(o.kind),
+                    "at": o.at,
+                    "from": o.back or None,
+                    "to": o.to,
+                    "value": o.value,
+                    "sigma": o.sigma,
+                }
+                for o in self.observations
+            ],
+            "constants": [asdict(constant) for constant in self.constants],
+            "warnings": [warning.to_dict() for warning in self.warnings],
+        }
+
     def __post_init__(self) -> None:
         problems = _name_problems(self) + _block_problems(self) + _parameter_problems(self)
         if problems:
             raise SurveyError(problems)
+
+
+def _of(point: NetworkPoint) -> tuple[Status, Status, Status]:
+    return point.status_e, point.status_n, point.status_h
 
 
 def _parameter_problems(network: Network) -> list[Problem]:

@@ -6,7 +6,7 @@ subjects to choose from. Nothing is diagnosed or written here.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -45,6 +45,10 @@ class Diagnosable:
     keyword: SubjectKeyword
     id: str
     observations: int
+
+    def __iter__(self) -> Iterator[str]:
+        """Keyword and id, for ``for keyword, name in subjects(...)``."""
+        return iter((self.keyword, self.id))
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -85,6 +86,10 @@ class Computed:
     def project(self) -> Project:
         """The project as read."""
         return self.oriented.project
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON: those of the result."""
+        return self.result.to_dict()
 
     @property
     def orientation(self) -> Orientation:

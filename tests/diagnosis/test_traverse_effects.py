@@ -185,7 +185,7 @@ def test_on_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     (tmp_path / "observations").mkdir()
     (tmp_path / "project.toml").write_text(toml, encoding="utf-8")
     (tmp_path / "observations" / "main.csv").write_text(book, encoding="utf-8")
-    assert api.subjects(tmp_path) == (("traverse", "main"),)
+    assert [tuple(item) for item in api.subjects(tmp_path)] == [("traverse", "main")]
     assert main(["diagnose", str(tmp_path), "--traverse", "main", "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     assert told["subject"] == "traverse"

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 from surveyapp.core.differences import label, leaves
+from surveyapp.domain.records import flat
 from surveyapp.domain.results import OrientationResult
 
 TABLES: Final = ("lines", "sessions", "constants", "checks", "all")
@@ -38,17 +39,8 @@ def results_csv(result: OrientationResult, table: str) -> tuple[str, int]:
 
 
 def _flat(item: Mapping[str, Any]) -> dict[str, str]:
-    """Columns of one row: nested mappings by dotted names, lists of values joined."""
-    row: dict[str, str] = {}
-    for key, value in item.items():
-        if isinstance(value, Mapping):
-            row |= {f"{key}.{name}": text for name, text in _flat(value).items()}
-        elif isinstance(value, list):
-            if all(not isinstance(entry, Mapping) for entry in value):
-                row[key] = " ".join(_cell(entry) for entry in value)
-        else:
-            row[key] = _cell(value)
-    return row
+    """Columns of one row."""
+    return {key: _cell(value) for key, value in flat(item).items()}
 
 
 def _cell(value: object) -> str:

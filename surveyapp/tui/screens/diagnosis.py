@@ -68,7 +68,7 @@ class DiagnosisScreen(Screen[None]):
     def on_mount(self) -> None:
         """List the subjects and diagnose the first."""
         try:
-            self.subjects = api.subjects(self.folder)
+            self.subjects = tuple((s.keyword, s.id) for s in api.subjects(self.folder))
         except SurveyError as error:
             self.notify(str(error), severity="error", markup=False)
         self._list()

@@ -199,7 +199,7 @@ class ProjectScreen(Screen[None]):
             return
         from surveyapp.tui.screens.traverse import TraverseScreen
 
-        names = tuple(name for option, name in api.subjects(self.project) if option == "traverse")
+        names = tuple(item.id for item in api.subjects(self.project) if item.keyword == "traverse")
         if names:
             self.app.push_screen(TraverseScreen(self.folder, names, self.project.angle_unit))
         else:

@@ -1,0 +1,75 @@
+"""Results as flat records: what pandas, csv or a spreadsheet takes, one mapping a row.
+
+Keys are those of the JSON; nested ones are joined by a point (``grid_azimuth.deg``). Lists of
+values are joined by blanks, lists of objects have tables of their own and are left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Generic, Protocol, TypeVar
+
+Cell = str | int | float | bool | None
+
+
+class Recorded(Protocol):
+    """Anything with a JSON."""
+
+    def to_dict(self) -> Mapping[str, Any]:
+        """Keys of the JSON."""
+
+
+ItemT = TypeVar("ItemT", bound=Recorded)
+
+
+def flat(item: Mapping[str, Any]) -> dict[str, Cell]:
+    """One row of a JSON object."""
+    row: dict[str, Cell] = {}
+    for key, value in item.items():
+        if isinstance(value, Mapping):
+            row |= {f"{key}.{name}": cell for name, cell in flat(value).items()}
+        elif isinstance(value, list | tuple):
+            if not any(isinstance(entry, Mapping | list | tuple) for entry in value):
+                row[key] = " ".join("" if entry is None else str(entry) for entry in value)
+        else:
+            row[key] = value
+    return row
+
+
+def rows_of(items: Sequence[Recorded]) -> list[dict[str, Cell]]:
+    """One row an item."""
+    return [flat(item.to_dict()) for item in items]
+
+
+@dataclass(frozen=True, slots=True)
+class Listing(Generic[ItemT]):
+    """Several results of one kind, in order: a sequence with a JSON of its own.
+
+    Parameters
+    ----------
+    schema, key : str
+        Of the JSON: its name, and under which the items stand.
+    items : tuple
+    """
+
+    schema: str
+    key: str
+    items: tuple[ItemT, ...]
+
+    def __iter__(self) -> Iterator[ItemT]:
+        return iter(self.items)
+
+    def __len__(self) -> int:
+        return len(self.items)
+
+    def __getitem__(self, place: int) -> ItemT:
+        return self.items[place]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON."""
+        return {"schema": self.schema, self.key: [item.to_dict() for item in self.items]}
+
+    def rows(self) -> list[dict[str, Cell]]:
+        """One flat record an item."""
+        return rows_of(self.items)
