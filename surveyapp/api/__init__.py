@@ -47,6 +47,7 @@ from surveyapp.api.penetration import (
     cluster_executor,
     has_breakthrough,
     predict,
+    record_step,
     trial,
 )
 from surveyapp.api.pooling import diagnose_instrument
@@ -182,6 +183,7 @@ __all__ = [
     "cluster_executor",
     "Trial",
     "has_breakthrough",
+    "record_step",
     "has_shafts",
     "trial",
     "shaft",
