@@ -32,6 +32,7 @@ from surveyapp.api.office import (
     reopen,
     report,
     report_text,
+    undrawn_text,
 )
 from surveyapp.api.orientation import (
     Source,
@@ -205,6 +206,7 @@ __all__ = [
     "batch_rows",
     "report",
     "report_text",
+    "undrawn_text",
     "write_sheets",
     "blank_form",
     "close",
