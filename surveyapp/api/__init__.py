@@ -17,6 +17,7 @@ from surveyapp.api.network import (
     adjust,
     adjust_network,
     compass_rule,
+    data_snooping,
     network,
     variance_components,
 )
@@ -31,6 +32,7 @@ from surveyapp.api.office import (
     reopen,
     report,
     report_text,
+    undrawn_text,
 )
 from surveyapp.api.orientation import (
     Source,
@@ -46,6 +48,7 @@ from surveyapp.api.penetration import (
     cluster_executor,
     has_breakthrough,
     predict,
+    record_step,
     trial,
 )
 from surveyapp.api.pooling import diagnose_instrument
@@ -59,8 +62,17 @@ from surveyapp.api.project import (
     simulate,
 )
 from surveyapp.api.rate import north, plan_fog_station, spectrum
-from surveyapp.api.sensors import LogOptions, calibrate, open_sensor_log
+from surveyapp.api.sensors import (
+    LogOptions,
+    allan,
+    calibrate,
+    compensate,
+    diagnose_log,
+    filter_log,
+    open_sensor_log,
+)
 from surveyapp.api.shafts import has_shafts, shaft
+from surveyapp.api.sheets import write_sheets
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.fieldfile import ImportResult
@@ -75,6 +87,7 @@ if TYPE_CHECKING:
     from surveyapp.api.sensors import OpenedLog
     from surveyapp.core.comparison import DemonstratedSample
     from surveyapp.core.network.bowditch import CompassResult
+    from surveyapp.core.network.snooping import SnoopingResult
     from surveyapp.core.network.variance_components import VarianceComponent
     from surveyapp.core.plan import StationPlan
     from surveyapp.core.sensors.rate.fog_station_plan import FogStationPlan
@@ -95,7 +108,7 @@ if TYPE_CHECKING:
     from surveyapp.domain.results import AngleResult, ConstantResult, LineResult, SessionResult
     from surveyapp.domain.shaft_result import ShaftResult
     from surveyapp.io.simulated import SimulatedFiles
-    from surveyapp.report.written import ReportResult
+    from surveyapp.report.written import ReportResult, SheetsResult
     from surveyapp.workflows.choosing import Diagnosable
     from surveyapp.workflows.computing import Computed
     from surveyapp.workflows.diagnosing import Diagnosed
@@ -114,6 +127,7 @@ _TYPES: Final = {
     "Diagnosable": "surveyapp.workflows.choosing",
     "Diagnosed": "surveyapp.workflows.diagnosing",
     "ExportResult": "surveyapp.domain.filing",
+    "SnoopingResult": "surveyapp.core.network.snooping",
     "FogStationPlan": "surveyapp.core.sensors.rate.fog_station_plan",
     "FollowedTurn": "surveyapp.domain.instrument_reading",
     "InstrumentDiagnosis": "surveyapp.workflows.pooling",
@@ -129,6 +143,7 @@ _TYPES: Final = {
     "ResultWarning": "surveyapp.domain.project",
     "SessionResult": "surveyapp.domain.results",
     "ShaftResult": "surveyapp.domain.shaft_result",
+    "SheetsResult": "surveyapp.report.written",
     "SimulatedFiles": "surveyapp.io.simulated",
     "StationPlan": "surveyapp.core.plan",
     "VarianceComponent": "surveyapp.core.network.variance_components",
@@ -163,19 +178,25 @@ __all__ = [
     "adjust_network",
     "compass_rule",
     "variance_components",
+    "data_snooping",
     "SubjectKeyword",
     "predict",
     "cluster_executor",
     "Trial",
     "has_breakthrough",
+    "record_step",
     "has_shafts",
     "trial",
     "shaft",
     "subjects",
     "check",
     "diagnose",
+    "allan",
     "diagnose_instrument",
     "calibrate",
+    "filter_log",
+    "compensate",
+    "diagnose_log",
     "plan_fog_station",
     "north",
     "spectrum",
@@ -185,6 +206,8 @@ __all__ = [
     "batch_rows",
     "report",
     "report_text",
+    "undrawn_text",
+    "write_sheets",
     "blank_form",
     "close",
     "reopen",
@@ -198,6 +221,8 @@ __all__ = [
     "export_json",
     "export_zip",
     "AdjustmentResult",
+    "SheetsResult",
+    "SnoopingResult",
     "ImportResult",
     "Calibration",
     "InstrumentCard",

@@ -89,6 +89,7 @@ def simulate(
     effects: Sequence[str] = (),
     seed: int = 1,
     programme: str | None = None,
+    coefficients: Sequence[str] = (),
 ) -> SimulatedFiles:
     """Write a simulated project, and its truth beside it.
 
@@ -102,6 +103,8 @@ def simulate(
         ``ID=VALUE[,option=value]`` each.
     seed : int
         The same seed, the same files.
+    coefficients : sequence of str
+        Of noise: ``SYMBOL=VALUE`` each, Q N B K R in the units of IEEE 952.
     programme : str, optional
         Of a rate sensor: ``six-position``, ``temperature`` ...
 
@@ -115,7 +118,9 @@ def simulate(
 
     if seed < 0:
         raise SurveyError(Problem("the seed is negative", "seed", str(seed), "0 or more"))
-    files, truth = simulate_kind(kind, effects=effects, seed=seed, programme=programme)
+    files, truth = simulate_kind(
+        kind, effects=effects, seed=seed, programme=programme, coefficients=coefficients
+    )
     return write_simulated(Path(out), files, truth)
 
 

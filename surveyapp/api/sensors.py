@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
 
 from surveyapp.api.project import SOFTWARE, Folder, open_project, require
 from surveyapp.domain.calibration import Calibration
+from surveyapp.domain.noise import AllanResult, FilterResult
 from surveyapp.errors import Problem, SurveyError
 
 if TYPE_CHECKING:
+    from surveyapp.diagnosis.sensors.diagnosis import SensorDiagnosis
     from surveyapp.domain.sensor_entry import SensorLogEntry
     from surveyapp.io.sensor_logs.blocks import Progress
     from surveyapp.io.sensor_logs.reading import LogFile
+    from surveyapp.workflows.compensating import CompensationResult
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,3 +194,205 @@ def calibrate(
     if card is not None and result.met:
         write_card(Path(card), result, request, software=SOFTWARE)
     return result
+
+
+def allan(
+    source: Folder,
+    *,
+    sensor: str | None = None,
+    log: LogOptions | None = None,
+    column: str | None = None,
+    estimator: Literal["oadev", "adev"] = "oadev",
+    taus: Sequence[float] | None = None,
+    allow_outside: bool = False,
+    progress: Progress | None = None,
+) -> AllanResult:
+    """Allan deviation with intervals, and the noise coefficients, of the columns of a log.
+
+    Parameters
+    ----------
+    source : path
+        A CSV file, or a project folder together with ``sensor``.
+    sensor : str, optional
+    log : LogOptions, optional
+    column : str, optional
+        One column by its canonical name or its name in the file; by default every sensor column.
+    estimator : str
+        ``oadev`` or ``adev``.
+    taus : sequence of float, optional
+        Averaging times [s]; by default 1, 2, 4 ... samples up to a quarter of the record.
+    allow_outside : bool
+    progress : callable, optional
+
+    Returns
+    -------
+    AllanResult
+
+    Raises
+    ------
+    SurveyError
+        For input that cannot be used.
+    """
+    from surveyapp.workflows.noise import allan_of_log
+
+    opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
+    return allan_of_log(
+        opened.file, column=column, estimator=estimator, taus=taus, progress=progress
+    )
+
+
+def filter_log(
+    source: Folder,
+    *,
+    name: str = "kalman",
+    sensor: str | None = None,
+    log: LogOptions | None = None,
+    column: str | None = None,
+    q: float | None = None,
+    r: float | None = None,
+    seed: int = 1,
+    out: Folder | None = None,
+    allow_outside: bool = False,
+    progress: Progress | None = None,
+) -> FilterResult:
+    """Filter a column of a log, and tell what it costs: deviation ratios with the lag of a step.
+
+    Parameters
+    ----------
+    source : path
+    name : str
+        kalman, sage-husa or particle.
+    sensor : str, optional
+    log : LogOptions, optional
+    column : str, optional
+        May be left out where the log has one sensor column only.
+    q, r : float, optional
+        Variances in the unit of the column squared, per sample.
+    seed : int
+        Of the particle filter and of the step test.
+    out : path, optional
+        A CSV file for the raw and the filtered series.
+    allow_outside : bool
+    progress : callable, optional
+
+    Returns
+    -------
+    FilterResult
+
+    Raises
+    ------
+    SurveyError
+        For input that cannot be used.
+    """
+    from surveyapp.workflows.filtering import filter_log as run
+
+    opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
+    result, raw, filtered = run(
+        opened.file, name=name, column=column, q=q, r=r, seed=seed, progress=progress
+    )
+    if out is not None:
+        from surveyapp.io.sensor_logs.writing import write_columns
+
+        times = np.arange(raw.size) / result.before.rate_hz
+        columns = {"time_s": times, result.column: raw, f"filtered_{result.column}": filtered}
+        write_columns(Path(out), columns)
+    return result
+
+
+def compensate(
+    kind: str,
+    source: Folder,
+    *,
+    card: Folder,
+    out: Folder,
+    declination: str | None = None,
+    sensor: str | None = None,
+    log: LogOptions | None = None,
+    allow_outside: bool = False,
+    progress: Progress | None = None,
+) -> CompensationResult:
+    """Apply a sensor card to a log, and write the corrected columns.
+
+    Parameters
+    ----------
+    kind : str
+        compass, tilt or rate.
+    source : path
+    card : path
+        A sensor card; refused outside its days and temperatures.
+    out : path
+        The CSV file to write.
+    declination : str, optional
+        ``D`` or ``D,SIGMA`` [degrees, east positive]: only for a compass.
+    sensor, log, allow_outside, progress
+        As of ``calibrate``.
+
+    Returns
+    -------
+    CompensationResult
+
+    Raises
+    ------
+    SurveyError
+        If the card does not hold for this log, and for input that cannot be used.
+    """
+    import math
+
+    from surveyapp.core.sensors.compensation import Declination
+    from surveyapp.workflows.calibrating.compass import declination_of
+    from surveyapp.workflows.compensating import compensate_log, write_compensated
+
+    opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
+    added = None
+    if declination is not None:
+        value, sigma = declination_of(declination)
+        added = Declination(math.radians(value), None if sigma is None else math.radians(sigma))
+    found, record, used = compensate_log(
+        kind,
+        opened.file,
+        Path(card),
+        entry=opened.entry,
+        today=datetime.now(UTC).astimezone().date(),
+        declination=added,
+        progress=progress,
+    )
+    return write_compensated(
+        found, record, used, kind=kind, card_path=os.fspath(card), out=Path(out)
+    )
+
+
+def diagnose_log(
+    source: Folder,
+    *,
+    sensor: str | None = None,
+    log: LogOptions | None = None,
+    allow_outside: bool = False,
+    progress: Progress | None = None,
+) -> SensorDiagnosis:
+    """Find which effect a sensor log holds beyond the base model, and prove it.
+
+    Parameters
+    ----------
+    source : path
+        A project folder together with ``sensor``, or a CSV file of a compass or tilt sensor.
+    sensor : str, optional
+        Id of a ``[[sensor_log]]``; may be left out where the project has one only.
+    log, allow_outside, progress
+        As of ``calibrate``.
+
+    Returns
+    -------
+    SensorDiagnosis
+
+    Raises
+    ------
+    SurveyError
+        For input that cannot be used.
+    """
+    from surveyapp.workflows.diagnosing_log import diagnose_log as run
+
+    opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
+    entry = opened.entry
+    kind = None if entry is None else entry.kind
+    identity = opened.file.request.id if entry is None else entry.id
+    return run(kind, identity, opened.file, progress=progress)

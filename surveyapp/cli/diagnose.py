@@ -36,6 +36,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE.toml",
         help="with --instrument: write what the campaigns teach, for [[instrument]] priors",
     )
+    parser.add_argument("--sensor", metavar="ID", help="this [[sensor_log]]: compass or tilt")
+    parser.add_argument(
+        "--allow-outside", action="store_true", help="read a log outside the project folder"
+    )
     parser.add_argument(
         "--confirm",
         metavar="ID",
@@ -54,6 +58,8 @@ def run(options: argparse.Namespace) -> int:
     if options.instrument is not None:
         return _instrument(options)
     _refuse_archive(options)
+    if options.sensor is not None:
+        return _sensor(options)
     found = api.diagnose(
         options.folder,
         session=options.session,
@@ -101,6 +107,33 @@ def _instrument(options: argparse.Namespace) -> int:
         print_json(result.to_dict())
     else:
         print(instrument_text(result))
+    return 0
+
+
+def _sensor(options: argparse.Namespace) -> int:
+    """Diagnose a sensor log; what it names is calibrated, not adopted."""
+    from surveyapp import api
+    from surveyapp.errors import Problem, SurveyError
+
+    others = (options.session, options.campaign, options.traverse, options.confirm, options.effects)
+    if any(other is not None for other in others) or options.adopt:
+        raise SurveyError(
+            Problem(
+                "a sensor log is diagnosed by itself, and its effects are calibrated, not adopted",
+                "diagnose --sensor",
+                "further options",
+                "--sensor ID alone",
+                "calibrate KIND DIR --sensor ID --card OUT.toml writes what is determined",
+            )
+        )
+    found = api.diagnose_log(
+        options.folder, sensor=options.sensor, allow_outside=options.allow_outside
+    )
+    if options.json:
+        print_json(found.to_dict())
+        return 0
+    for sentence in found.words:
+        print(textwrap.fill(sentence, 80, subsequent_indent="  "))
     return 0
 
 

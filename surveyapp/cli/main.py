@@ -58,6 +58,19 @@ COMMANDS: tuple[Command, ...] = (
     Command(
         "north", "north", "north by a rate sensor: on a total station, indexed, turned", waits=False
     ),
+    Command(
+        "allan",
+        "allan",
+        "Allan deviation and noise coefficients of a sensor log",
+        waits=False,
+    ),
+    Command("compensate", "compensate", "a sensor card applied to a log", waits=False),
+    Command(
+        "filter",
+        "filter",
+        "a filter on a sensor log: deviation before, after, and its lag",
+        waits=False,
+    ),
     Command("close", "close", "seal a project or a session with a hash chain in the ledger"),
     Command("reopen", "reopen", "open what was closed; the ledger keeps the reason"),
     Command("compare", "compare", "what changed between two results, and because of what"),

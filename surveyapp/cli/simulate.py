@@ -9,7 +9,13 @@ from surveyapp.cli.output import print_json
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    parser.add_argument("kind", metavar="KIND", help="reversal-run | campaign | rate | fog-station")
+    parser.add_argument(
+        "kind",
+        metavar="KIND",
+        help=" | ".join(
+            ("reversal-run", "campaign", "compass", "tilt", "noise", "rate", "fog-station")
+        ),
+    )
     parser.add_argument("out", metavar="OUT", help="folder to make; must not hold anything")
     parser.add_argument(
         "--effect",
@@ -20,6 +26,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--programme", metavar="NAME", help="of rate: six-position (default) | temperature"
+    )
+    parser.add_argument(
+        "--coefficient",
+        action="extend",
+        nargs="+",
+        default=[],
+        metavar="SYMBOL=VALUE",
+        help="of noise: Q N B K R, in arcsec, deg/sqrt(h), deg/h, deg/h/sqrt(h), deg/h^2",
     )
     parser.add_argument("--seed", type=int, default=1, metavar="N", help="default 1")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
@@ -35,6 +49,7 @@ def run(options: argparse.Namespace) -> int:
         effects=options.effect,
         seed=options.seed,
         programme=options.programme,
+        coefficients=options.coefficient,
     )
     if options.json:
         print_json(made.to_dict())

@@ -177,7 +177,10 @@ def _result(
         sha256=log.sha256,
         covariance=_covariance(fits),
         temperature_c=span,
-        constants={"reference_temperature_c": reference_c},
+        constants={
+            "reference_temperature_c": reference_c,
+            "reading_sigma_arcsec": max(item.fit.sigma0 for item in fits),
+        },
     )
 
 

@@ -15,6 +15,14 @@ from surveyapp.core.simulate.project import (
     simulate_reversal_project,
 )
 from surveyapp.core.simulate.rate import recipes as rate_recipes
+from surveyapp.core.simulate.sensors import (
+    COMPASS_EFFECTS,
+    TILT_EFFECTS,
+    parse_coefficients,
+    simulate_compass,
+    simulate_noise,
+    simulate_tilt,
+)
 from surveyapp.core.simulate.specification import (
     RUN_EFFECTS,
     Effect,
@@ -27,6 +35,9 @@ from surveyapp.errors import Problem, SurveyError, nearest_names
 KINDS: Final[dict[str, tuple[EffectKind, ...]]] = {
     "reversal-run": RUN_EFFECTS,
     "campaign": CAMPAIGN_EFFECTS,
+    "compass": COMPASS_EFFECTS,
+    "tilt": TILT_EFFECTS,
+    "noise": (),
     **{kind: rate_recipes.effects_of(kind, None) for kind in rate_recipes.PROGRAMMES},
 }
 """Kind to the effects that it knows."""
@@ -36,7 +47,12 @@ TEMPERATURE_SPAN_C: Final = 1.0
 
 
 def simulate_kind(
-    kind: str, *, effects: Sequence[str], seed: int, programme: str | None = None
+    kind: str,
+    *,
+    effects: Sequence[str],
+    seed: int,
+    programme: str | None = None,
+    coefficients: Sequence[str] = (),
 ) -> tuple[dict[str, str], dict[str, Any]]:
     """Simulate a whole project.
 
@@ -50,6 +66,8 @@ def simulate_kind(
         The same seed gives the same project.
     programme : str, optional
         Of a rate sensor; default its first.
+    coefficients : sequence of str
+        Of noise: ``SYMBOL=VALUE`` each.
 
     Returns
     -------
@@ -71,6 +89,9 @@ def simulate_kind(
         known = rate_recipes.effects_of(kind, programme)
     elif programme is not None:
         raise SurveyError(Problem("this kind has no programmes", "--programme", programme))
+    if coefficients and kind != "noise":
+        found, expected = f"a simulation of {kind}", "simulate noise"
+        raise SurveyError(Problem("coefficients belong to noise", "coefficient", found, expected))
     parsed: list[Effect] = []
     problems: list[Problem] = []
     for text in effects:
@@ -83,6 +104,13 @@ def simulate_kind(
     rng = np.random.default_rng(seed)
     if kind in rate_recipes.PROGRAMMES:
         files, truth = rate_recipes.simulate_rate(kind, programme, effects=parsed, rng=rng)
+        return files, truth | {"seed": seed}
+    if kind == "noise":
+        files, truth = simulate_noise(parse_coefficients(coefficients), rng)
+        return files, truth | {"seed": seed}
+    if kind in ("compass", "tilt"):
+        make = simulate_compass if kind == "compass" else simulate_tilt
+        files, truth = make(parsed, rng)
         return files, truth | {"seed": seed}
     if kind == "campaign":
         campaign = simulate_campaign(CampaignSpec(effects=tuple(parsed)), rng)

@@ -60,7 +60,17 @@ def card_of(
         covariance=covariance,
         constants=calibration.constants,
         notes=calibration.notes,
+        extra=_owner(request),
     )
+
+
+def _owner(request: CalibrationRequest) -> dict[str, object]:
+    """Whose sensor the card is of, where the project says so."""
+    entry = request.entry
+    if entry is None:
+        return {}
+    stated = (("instrument", entry.instrument), ("serial", entry.serial))
+    return {key: value for key, value in stated if value is not None}
 
 
 def _day(request: CalibrationRequest) -> date:

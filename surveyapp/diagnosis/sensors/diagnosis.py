@@ -1,0 +1,316 @@
+"""The diagnosis of a sensor log: the loop, its proof on held-out blocks, and what to do.
+
+The JSON is that of every diagnosis, ``surveyapp.diagnose/1``, with ``held_out`` beside it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from surveyapp.core.sensors.linear import alternate_blocks
+from surveyapp.diagnosis.sensors.document import (
+    REMEDIES,
+    adopted_of,
+    ambiguous_of,
+    candidates_of,
+    gross_of,
+    words_of,
+)
+from surveyapp.diagnosis.sensors.loop import (
+    MARGIN,
+    Chosen,
+    LoopFit,
+    LoopResult,
+    Trial,
+    fit_model,
+    run_loop,
+)
+from surveyapp.diagnosis.sensors.records import SensorRecord, block_means, switched
+from surveyapp.domain.project import ResultWarning
+from surveyapp_models.arrays import Floats
+
+ROOM_GRADIENT_UT: Final = 3.0
+"""What the field of a room changes over the reach of an arm: without the attitude an effect on
+the size of the field that is smaller cannot be told from it (BROAD 01: 1.3 uT)."""
+
+SIZE_MARGIN: Final = 40.0
+"""BIC that an effect on the size of the field must gain where what remains is not white: random
+walks of 6 uT reach 12 to 30 in simulated records."""
+
+HELD_OUT_S: Final = 2.0
+TILT_ROWS: Final = 7
+
+
+@dataclass(frozen=True, slots=True)
+class SensorDiagnosis:
+    """What was found; ``to_dict`` is the JSON.
+
+    Parameters
+    ----------
+    document : dict
+        Ready for JSON.
+    words : tuple of str
+    """
+
+    document: dict[str, Any]
+    words: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON."""
+        return {**self.document, "words": list(self.words)}
+
+
+def diagnose_sensor(
+    record: SensorRecord,
+    *,
+    identity: str,
+    n_log: int,
+    warnings: Sequence[ResultWarning] = (),
+) -> SensorDiagnosis:
+    """Run the loop on a record and tell what it found.
+
+    Parameters
+    ----------
+    record : SensorRecord
+    identity : str
+        Of the sensor log.
+    n_log : int
+        Rows of the log.
+    warnings : sequence of ResultWarning
+    """
+    found = run_loop(record.observed, record.base, record.candidates)
+    found = _doubted(record, found)
+    after = _refined(record, found.after)
+    best = _refined(record, found.best) if found.ambiguous else after
+    fits = {"before": found.before, "after": after, "after_best": best}
+    verdict = _verdict(record, found)
+    adopted = [adopted_of(record, found, after, c) for c in after.chosen]
+    if record.gross:
+        adopted.append(gross_of(record, n_log))
+    models = {name: _model(record, fit) for name, fit in fits.items()}
+    held = {
+        "scheme": "contiguous blocks, two halves fitted alternately",
+        "before": _held_out(record, found.before),
+        "after": _held_out(record, after),
+        "unit": record.unit,
+    }
+    document: dict[str, Any] = {
+        "schema": "surveyapp.diagnose/1",
+        "subject": record.subject,
+        "identity": identity,
+        "unit": record.unit,
+        "verdict": verdict,
+        "adopted": adopted,
+        "ambiguous": ambiguous_of(record, found),
+        "candidates": candidates_of(found, record),
+        **models,
+        "averaged": None,
+        "held_out": held,
+        "noise": {"before": found.before.noise, "after": after.noise},
+        "lines": [],
+        "remedy": [REMEDIES[item["effect"]] for item in adopted],
+        "warnings": [item.to_dict() for item in warnings],
+        "written": [],
+        "not_written": [],
+        "mode": record.mode,
+        **_compass_figures(record, found.before, after),
+    }
+    return SensorDiagnosis(document, tuple(words_of(document)))
+
+
+def _doubted(record: SensorRecord, found: LoopResult) -> LoopResult:
+    """What the size of the field alone cannot tell from a gradient is not named.
+
+    Without position and attitude every small effect on the size may be the field of the room,
+    where what remains is not white; and what only white noise would name is not told from
+    correlated noise.
+    """
+    if record.mode == "size" and found.after.chosen and found.after.noise != "white":
+        weak = (found.steps[0].gain or 0.0) < SIZE_MARGIN
+        if weak or _contribution(record, found.after) < ROOM_GRADIENT_UT:
+            first = found.steps[0]
+            rivals = (first, Trial("field_gradient", first.gain, 0.0, 1, first.noise))
+            return LoopResult(
+                found.before, found.before, found.after, found.trials, rivals, found.steps
+            )
+        return found
+    if found.after.noise == "white" or found.ambiguous or found.after.chosen:
+        return found
+    plain = fit_model(record.observed, record.base, found.after.chosen, only_white=True)
+    if plain is None:
+        return found
+    best: Trial | None = None
+    for candidate in record.candidates:
+        if candidate.id in found.after.ids:
+            continue
+        for grid, design in candidate.designs(plain.residual):
+            chosen_ = (*found.after.chosen, Chosen(candidate, grid, design))
+            fit = fit_model(record.observed, record.base, chosen_, only_white=True)
+            if fit is not None and plain.bic - fit.bic > MARGIN:
+                trial = Trial(candidate.id, plain.bic - fit.bic)
+                if best is None or (trial.gain or 0.0) > (best.gain or 0.0):
+                    best = trial
+    if best is None:
+        return found
+    rivals = (Trial(found.after.noise, plain.bic - found.after.bic), best)
+    return LoopResult(found.before, found.after, found.after, found.trials, rivals, found.steps)
+
+
+def _contribution(record: SensorRecord, fit: LoopFit) -> float:
+    """Rms of what all effects together add to the observations, about its mean."""
+    start = record.base.shape[2]
+    design = np.concatenate([c.design for c in fit.chosen], axis=2)
+    part = design @ fit.x[start:]
+    return float(np.sqrt(np.mean(np.sum((part - part.mean(axis=0)) ** 2, axis=1))))
+
+
+def _refined(record: SensorRecord, fit: LoopFit) -> LoopFit:
+    """Switch times to the row: where each row fits better with or without the step."""
+    if record.step_rows is None:
+        return fit
+    for _ in range(2):
+        index = next(
+            (i for i, c in enumerate(fit.chosen) if c.candidate.id == "interference_step"), None
+        )
+        if index is None:
+            return fit
+        chosen = fit.chosen[index]
+        on, off = _edges(record, fit, chosen)
+        rows = record.step_rows * switched(record.time, on, off)[:, None, None]
+        moved = Chosen(
+            chosen.candidate, {"on_s": on, "off_s": off}, block_means(rows, record.block)
+        )
+        trial = fit_model(
+            record.observed, record.base, (*fit.chosen[:index], moved, *fit.chosen[index + 1 :])
+        )
+        if trial is None or trial.bic > fit.bic + 6.0:
+            return fit
+        fit = trial
+    return fit
+
+
+def _row_residual(record: SensorRecord, fit: LoopFit, *, without: str = "") -> Floats:
+    """Residual row by row of base and switch; effects that are slow stay as block means."""
+    size = record.base.shape[2]
+    residual = record.rows - record.base_rows @ fit.x[:size]
+    start = size
+    for chosen in fit.chosen:
+        k = chosen.design.shape[2]
+        x = fit.x[start : start + k]
+        start += k
+        if chosen.candidate.id == without:
+            continue
+        if chosen.candidate.id == "interference_step" and record.step_rows is not None:
+            on, off = chosen.grid["on_s"], chosen.grid["off_s"]
+            residual = residual - (record.step_rows @ x) * switched(record.time, on, off)[:, None]
+        else:
+            residual = residual - (chosen.design @ x)[record.block]
+    return np.asarray(residual)
+
+
+def _edges(record: SensorRecord, fit: LoopFit, chosen: Chosen) -> tuple[float, float]:
+    bare = _row_residual(record, fit, without="interference_step")
+    size, start = record.base.shape[2], 0
+    start = size
+    for item in fit.chosen:
+        if item is chosen:
+            break
+        start += item.design.shape[2]
+    x = fit.x[start : start + chosen.design.shape[2]]
+    if record.step_rows is None:
+        return chosen.grid["on_s"], chosen.grid["off_s"]
+    gain = np.sum(bare**2, axis=1) - np.sum((bare - record.step_rows @ x) ** 2, axis=1)
+    per_block = int(np.ceil(record.time.size / record.observed.shape[0]))
+    reach = 2 * per_block + 2
+    first = int(np.searchsorted(record.time, chosen.grid["on_s"]))
+    last = int(np.searchsorted(record.time, chosen.grid["off_s"]))
+    total = np.concatenate([[0.0], np.cumsum(gain)])
+    if first > 0:
+        a = np.arange(max(first - reach, 0), min(first + reach, last))
+        first = int(a[np.argmin(total[a])])
+    if last < record.time.size:
+        b = np.arange(max(last - reach, first + 1), min(last + reach, record.time.size) + 1)
+        last = int(b[np.argmax(total[b])])
+    off = float(record.time[last]) if last < record.time.size else math.inf
+    return float(record.time[first]), off
+
+
+def _verdict(record: SensorRecord, found: LoopResult) -> str:
+    if found.ambiguous:
+        return "not_separable"
+    if found.after.chosen or record.gross:
+        return "explained"
+    return "adequate" if found.after.noise == "white" else "unattributed"
+
+
+def _plain(record: SensorRecord, fit: LoopFit) -> LoopFit:
+    """The same model by plain least squares: what its smallest residuals are."""
+    return fit_model(record.observed, record.base, fit.chosen, only_white=True) or fit
+
+
+def _model(record: SensorRecord, fit: LoopFit) -> dict[str, Any]:
+    residual = _row_residual(record, _plain(record, fit))
+    n = residual.shape[0] * residual.shape[1]
+    dof = max(n - fit.parameters, 1)
+    # a compass: the length of the vector; a tilt sensor: one axis
+    divisor = residual.shape[0] if record.subject == "compass" else n
+    return {
+        "effects": list(fit.ids),
+        "parameters": fit.parameters,
+        "bic": fit.bic,
+        "rms": float(np.sqrt(np.sum(residual**2) / divisor)),
+        "sigma0": float(np.sqrt(np.sum(residual**2) / dof)),
+        "dof": dof,
+        "loo_rms": _held_out(record, fit),
+        "confirm_rms": None,
+        "forecast_rms": None,
+        "value": None,
+        "value_at_datum": None,
+    }
+
+
+def _held_out(record: SensorRecord, fit: LoopFit) -> float | None:
+    """Rms of blocks that had no part in the fit; switch times stay as they were found."""
+    n, d = record.observed.shape
+    if record.subject == "compass":
+        length = float(record.time[-1] - record.time[0]) / n
+        block = max(round(HELD_OUT_S / length), 1) if length > 0.0 else 1
+    else:
+        block = max(TILT_ROWS * n // max(record.time.size, 1), 1)
+    design = np.concatenate([record.base, *(c.design for c in fit.chosen)], axis=2)
+    rows = _row_residual(record, _plain(record, fit))
+    inside = rows - block_means(rows, record.block)[record.block]
+    held = np.full((n, d), np.nan)
+    for used, left in alternate_blocks(n, block):
+        a = design[used].reshape(-1, design.shape[2])
+        solution, _, rank, _ = np.linalg.lstsq(a, record.observed[used].ravel(), rcond=1e-10)
+        if rank < design.shape[2]:
+            return None
+        held[left] = record.observed[left] - design[left] @ solution
+    residual = inside + held[record.block]
+    divisor = residual.shape[0] * (1 if record.subject == "compass" else d)
+    return float(np.sqrt(np.sum(residual**2) / divisor))
+
+
+def _compass_figures(record: SensorRecord, before: LoopFit, after: LoopFit) -> dict[str, Any]:
+    """Size of the corrected field and heading, before and after."""
+    if record.mag is None or record.mode != "vector" or record.matrices is None:
+        return {}
+    figures: dict[str, dict[str, float]] = {"size_rms_uT": {}, "heading_rms_deg": {}}
+    size = record.base.shape[2]
+    for name, model in (("before", before), ("after", after)):
+        fit = _plain(record, model)
+        level = fit.x[:size]
+        corrected = record.base_rows @ level + _row_residual(record, fit)
+        length = np.linalg.norm(corrected, axis=1)
+        figures["size_rms_uT"][name] = float(np.std(length))
+        turned = np.einsum("nij,nj->ni", record.matrices, corrected)
+        angle = np.arctan2(turned[:, 1], turned[:, 0]) - math.atan2(level[1], level[0])
+        angle = (angle + np.pi) % (2.0 * np.pi) - np.pi
+        figures["heading_rms_deg"][name] = float(np.degrees(np.sqrt(np.mean(angle**2))))
+    return dict(figures)

@@ -1,0 +1,169 @@
+"""Words and JSON of a sensor diagnosis: what is named, not told apart, and to be done."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final
+
+import numpy as np
+
+from surveyapp.diagnosis.sensors.loop import Chosen, LoopFit, LoopResult, Trial
+from surveyapp.diagnosis.sensors.records import SensorRecord
+
+REMEDIES: Final = {
+    "hard_iron": "Calibrate the compass by an ellipsoid with this mounting, or take the iron away.",
+    "soft_iron": "Calibrate the compass by a full ellipsoid with this mounting.",
+    "misalignment": "Mount the sensor along the body's axes, or calibrate it with an attitude.",
+    "interference_step": "Find what was switched on and off at these times; leave that part out.",
+    "field_gradient": "Calibrate at one place, away from iron; stay there while turning.",
+    "temperature": "Let the sensor reach its temperature, or use a card with its coefficient.",
+    "cross_axis": "Use a card with the cross terms, or mount the sensor along its axes.",
+    "scale_nonlinearity": "Keep to the middle of the range, or calibrate over a smaller one.",
+    "warm_up": "Power the sensor ten minutes before the test.",
+    "gross_error": "Look at these rows of the log; leave them out.",
+}
+
+
+def _p(trial: Trial, family: int) -> float:
+    from scipy.special import chdtrc
+
+    return min(1.0, family * float(chdtrc(trial.extra, max(trial.likelihood_ratio, 0.0))))
+
+
+def adopted_of(
+    record: SensorRecord, found: LoopResult, fit: LoopFit, chosen: Chosen
+) -> dict[str, Any]:
+    """What is named, with its coefficients."""
+    start = record.base.shape[2]
+    for item in fit.chosen:
+        if item is chosen:
+            break
+        start += item.design.shape[2]
+    candidate = chosen.candidate
+    sigma = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
+    coefficients: list[dict[str, Any]] = []
+    for k, name in enumerate(candidate.names):
+        coefficients.append(
+            {
+                "name": name,
+                "value": float(fit.x[start + k]) * candidate.scale,
+                "sigma": float(sigma[start + k]) * candidate.scale,
+                "unit": candidate.unit,
+            }
+        )
+    grid = [
+        {"name": name, "value": value if math.isfinite(value) else None, "unit": "s"}
+        for name, value in chosen.grid.items()
+    ]
+    if candidate.id == "interference_step":
+        coefficients += [{**g, "sigma": None} for g in grid]
+    trial = next((t for t in found.steps if t.id == candidate.id), None)
+    family = len(record.candidates) * (400 if candidate.id == "interference_step" else 1)
+    return {
+        "effect": candidate.id,
+        "coefficients": coefficients,
+        "grid": grid,
+        "p_family": None if trial is None else _p(trial, family),
+        "margin_bic": None if trial is None else trial.gain,
+    }
+
+
+def gross_of(record: SensorRecord, n_log: int) -> dict[str, Any]:
+    """The gross errors as one effect."""
+    return {
+        "effect": "gross_error",
+        "coefficients": [
+            {"name": f"row {row + 1}", "value": size, "sigma": None, "unit": record.unit}
+            for row, size in record.gross
+        ],
+        "grid": [],
+        "p_family": min(1.0, n_log * 1e-8),
+        "margin_bic": None,
+    }
+
+
+def ambiguous_of(record: SensorRecord, found: LoopResult) -> list[dict[str, Any]]:
+    """What could not be told apart."""
+    if not found.ambiguous:
+        return []
+    top = found.ambiguous[0].gain or 0.0
+    separate = "a record with the attitude and the place beside it, or one more at another place"
+    if record.subject == "tilt":
+        separate = "a repeated record, its temperatures and tilts in another order"
+    return [
+        {
+            "any_of": [t.id for t in found.ambiguous],
+            "delta_bic": [top - (t.gain or 0.0) for t in found.ambiguous],
+            "collinearity": None,
+            "separate_by": separate,
+        }
+    ]
+
+
+def candidates_of(found: LoopResult, record: SensorRecord) -> list[dict[str, Any]]:
+    """Every effect and what became of it."""
+    last = {t.id: t for trials in found.trials for t in trials}
+    ambiguous = {t.id for t in found.ambiguous}
+    rows = []
+    for candidate in record.candidates:
+        trial = last.get(candidate.id)
+        verdict = "rejected"
+        if candidate.id in found.after.ids:
+            verdict = "adopted"
+        elif candidate.id in ambiguous:
+            verdict = "candidate"
+        elif trial is None or trial.gain is None:
+            verdict = "not_applicable"
+        p = None if trial is None or trial.gain is None else _p(trial, 1)
+        rows.append(
+            {
+                "effect": candidate.id,
+                "verdict": verdict,
+                "p": p,
+                "p_family": None if p is None else min(1.0, p * len(record.candidates)),
+                "delta_bic": None if trial is None else trial.gain,
+                "kind": "named",
+                "reason": "",
+            }
+        )
+    rows.append(
+        {
+            "effect": "gross_error",
+            "verdict": "adopted" if record.gross else "rejected",
+            "p": None,
+            "p_family": None,
+            "delta_bic": None,
+            "kind": "named",
+            "reason": "",
+        }
+    )
+    return rows
+
+
+def words_of(document: dict[str, Any]) -> list[str]:
+    """The diagnosis in plain sentences."""
+    unit = document["unit"]
+    before, after = document["before"]["rms"], document["after"]["rms"]
+    told = [
+        f"{document['identity']}: the residuals of the base model are {before:.3g} {unit} (rms), "
+        f"{after:.3g} {unit} with what is named; verdict {document['verdict'].replace('_', ' ')}."
+    ]
+    for item in document["adopted"]:
+        numbers = ", ".join(_shown(c) for c in item["coefficients"][:6])
+        told.append(f"Named: {item['effect'].replace('_', ' ')} ({numbers}).")
+    for item in document["ambiguous"]:
+        names = " or ".join(name.replace("_", " ") for name in item["any_of"])
+        told.append(f"Not told apart: {names}. It takes {item['separate_by']}.")
+    held = document["held_out"]
+    if held["before"] is not None and held["after"] is not None:
+        told.append(f"Held out: {held['before']:.3g} -> {held['after']:.3g} {unit}.")
+    if document["noise"]["after"] != "white":
+        noise = {"ar1": "resemble their neighbours", "random_walk": "wander"}
+        told.append(f"The residuals that remain {noise[document['noise']['after']]}.")
+    return told + list(document["remedy"])
+
+
+def _shown(coefficient: dict[str, Any]) -> str:
+    value = coefficient["value"]
+    number = "never" if value is None else f"{value:.4g}"
+    return f"{coefficient['name']} {number} {coefficient['unit']}"

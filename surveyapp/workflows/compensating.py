@@ -1,0 +1,210 @@
+"""``compensate``: a card applied to a log, where it holds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import date
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from surveyapp.core.sensors.compensation import (
+    Compensated,
+    Declination,
+    compensate_compass,
+    compensate_head,
+    compensate_rate,
+    compensate_tilt,
+)
+from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.sensor_card import SensorCard
+from surveyapp.domain.sensor_entry import SensorLogEntry
+from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.io.sensor_cards import read_sensor_card
+from surveyapp.io.sensor_logs.blocks import Progress
+from surveyapp.io.sensor_logs.reading import LogFile, Need
+from surveyapp.io.sensor_logs.writing import write_columns
+
+KINDS: Final = ("compass", "tilt", "rate")
+MAG: Final = ("mag_x_uT", "mag_y_uT", "mag_z_uT")
+ACC: Final = ("acc_x_m_s2", "acc_y_m_s2", "acc_z_m_s2")
+TILT: Final = ("tilt_along_arcsec", "tilt_across_arcsec")
+GYR: Final = ("gyr_x_rad_s", "gyr_y_rad_s", "gyr_z_rad_s")
+
+
+@dataclass(frozen=True, slots=True)
+class CompensationResult:
+    """What was written, schema ``surveyapp.compensate/1``.
+
+    Parameters
+    ----------
+    kind, source, card, path : str
+    rows : int
+    columns : tuple of str
+        Of the file that was written.
+    reference : str or None
+        Of headings: MAGNETIC, or ASTRONOMIC where a declination was added.
+    heading_sigma_deg : float or None
+        Largest of the record.
+    """
+
+    kind: str
+    source: str
+    card: str
+    path: str
+    rows: int
+    columns: tuple[str, ...]
+    reference: str | None
+    heading_sigma_deg: float | None
+    warnings: tuple[ResultWarning, ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON."""
+        return {
+            "schema": "surveyapp.compensate/1",
+            "kind": self.kind,
+            "source": self.source,
+            "card": self.card,
+            "path": self.path,
+            "rows": self.rows,
+            "columns": list(self.columns),
+            "reference": self.reference,
+            "heading_sigma_deg": self.heading_sigma_deg,
+            "warnings": [item.to_dict() for item in self.warnings],
+        }
+
+
+def compensate_log(
+    kind: str,
+    file: LogFile,
+    card_path: Path,
+    *,
+    entry: SensorLogEntry | None = None,
+    today: date | None = None,
+    declination: Declination | None = None,
+    progress: Progress | None = None,
+) -> tuple[Compensated, SensorLog, SensorCard]:
+    """Correct a log by a card.
+
+    Parameters
+    ----------
+    kind : str
+        compass, tilt or rate.
+    file : LogFile
+    card_path : Path
+    entry : SensorLogEntry or None
+        Its ``calibrated_on`` is the day of the record, where it is stated.
+    today : datetime.date or None
+        Day of a record whose day nobody stated.
+    declination : Declination or None
+    progress : callable, optional
+
+    Raises
+    ------
+    SurveyError
+        If the card does not hold for this record, and for what is wrong with the log.
+    """
+    if kind not in KINDS:
+        raise SurveyError(
+            Problem("nothing of this kind is compensated", "compensate", kind,
+                    hint=nearest_names(kind, KINDS))
+        )  # fmt: skip
+    where = str(card_path)
+    card = read_sensor_card(card_path, where=where)
+    if card.kind != kind:
+        raise SurveyError(Problem("the card is of another kind", where, card.kind, kind))
+    if declination is not None and kind != "compass":
+        found = f"a {kind} sensor"
+        raise SurveyError(
+            Problem("a declination is added to magnetic headings only", "declination", found)
+        )
+    log = file.read(_need(kind, file, card), progress=progress)
+    day = entry.calibrated_on if entry is not None and entry.calibrated_on else today
+    problems = card.refusals(on=day, temperature_c=temperatures(log), where=where)
+    problems += other_instrument(card, entry, where)
+    if problems:
+        raise SurveyError(problems)
+    return _run(kind, log, card, (declination, where)), log, card
+
+
+def _need(kind: str, file: LogFile, card: SensorCard) -> Need:
+    if kind == "compass":
+        acc = ACC if file.has(*ACC) else ()
+        return Need(columns=(*MAG, *acc), optional=("temperature_c",))
+    if kind == "rate":
+        return Need(columns=GYR, optional=("temperature_c",))
+    columns = ("output",) if card.get("sensitivity") is not None else TILT
+    return Need(columns=columns, optional=("temperature_c",), timed="optional")
+
+
+def _run(
+    kind: str, log: SensorLog, card: SensorCard, rest: tuple[Declination | None, str]
+) -> Compensated:
+    declination, where = rest
+    if kind == "compass":
+        return compensate_compass(log, card, declination=declination, where=where)
+    if kind == "rate":
+        return compensate_rate(log, card, where=where)
+    if card.get("sensitivity") is not None:
+        return compensate_head(log, card, where=where)
+    return compensate_tilt(log, card, where=where)
+
+
+def temperatures(log: SensorLog) -> tuple[float, float] | None:
+    """Lowest and highest temperature of a record, None where it holds none."""
+    values = log.columns.get("temperature_c")
+    if values is None or not np.any(np.isfinite(values)):
+        return None
+    return float(np.nanmin(values)), float(np.nanmax(values))
+
+
+def other_instrument(card: SensorCard, entry: SensorLogEntry | None, where: str) -> list[Problem]:
+    """The card is of another instrument than the log, where both say whose they are."""
+    if entry is None:
+        return []
+    problems = []
+    for key, own in (("instrument", entry.instrument), ("serial", entry.serial)):
+        stated = card.extra.get(key)
+        if stated is not None and own is not None and str(stated) != own:
+            what = "the card is of another instrument"
+            problems.append(Problem(what, where, str(stated), f"{key} {own}"))
+    return problems
+
+
+def write_compensated(
+    found: Compensated,
+    log: SensorLog,
+    card: SensorCard,
+    *,
+    kind: str,
+    card_path: str,
+    out: Path,
+) -> CompensationResult:
+    """Write the corrected columns and say what was written.
+
+    Raises
+    ------
+    SurveyError
+        If the file cannot be written.
+    """
+    write_columns(out, found.columns)
+    warnings = list(log.warnings)
+    span = temperatures(log)
+    if card.temperature_c is not None and span is None:
+        text = "the log holds no temperature: whether the card holds was not judged by it"
+        warnings.append(ResultWarning("temperature_unknown", text))
+    if "restricted" in card.notes:
+        warnings.append(ResultWarning("restricted", f"the card {card.notes['restricted']}"))
+    return CompensationResult(
+        kind=kind,
+        source=log.id,
+        card=card_path,
+        path=str(out),
+        rows=log.size,
+        columns=tuple(found.columns),
+        reference=found.reference,
+        heading_sigma_deg=found.heading_sigma_deg,
+        warnings=tuple(warnings),
+    )

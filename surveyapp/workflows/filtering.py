@@ -1,0 +1,179 @@
+"""A filter on a column of a log: Allan deviation and coefficients before and after, and its lag."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from surveyapp.core.sensors.allan import octaves
+from surveyapp.core.sensors.filters import (
+    FILTERS,
+    LOST,
+    Filtered,
+    FilterName,
+    LocalLevel,
+    run_filter,
+    step_lag,
+)
+from surveyapp.domain.noise import AllanChannel, FilterResult
+from surveyapp.domain.project import ResultWarning
+from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.io.sensor_logs.blocks import Progress
+from surveyapp.io.sensor_logs.reading import LogFile
+from surveyapp.workflows.noise import channel_of, noise_columns, read_columns
+from surveyapp_models.arrays import Floats
+
+STEP_SIGMAS = (2.0, 20.0)
+LONGEST_LAG = 20_000
+
+PASS_BAND = 0.1
+"""Share of the corner frequency, gain / (2 pi), up to which a filter leaves a series as it is."""
+
+
+def filter_log(
+    file: LogFile,
+    *,
+    name: str,
+    column: str | None,
+    q: float | None,
+    r: float | None,
+    seed: int = 1,
+    progress: Progress | None = None,
+) -> tuple[FilterResult, Floats, Floats]:
+    """Filter one column.
+
+    Parameters
+    ----------
+    file : LogFile
+    name : str
+        kalman, sage-husa or particle.
+    column : str or None
+        None where the log has one sensor column only.
+    q, r : float or None
+        Variances [unit of the column squared, per sample]; by default r from the differences of
+        neighbouring readings, and q = r / 1000.
+    seed : int
+        Of the particle filter and of the step test.
+    progress : callable, optional
+
+    Returns
+    -------
+    tuple of FilterResult, ndarray, ndarray
+        The result, the raw and the filtered series.
+
+    Raises
+    ------
+    SurveyError
+        For an unknown filter or column, and for variances that are not positive.
+    """
+    model_name = _known(name)
+    names = noise_columns(file, column)
+    if len(names) > 1:
+        hint = f"--column C, one of: {', '.join(names)}"
+        raise SurveyError(Problem("which column?", file.request.where, "", "one column", hint))
+    log = read_columns(file, names, progress)
+    series, unit = log.columns[names[0]], log.units[names[0]]
+    stated = r if r is not None else 0.5 * float(np.mean(np.diff(series) ** 2))
+    model = LocalLevel(q if q is not None else 1e-3 * stated, stated)
+    _check_model(model)
+    rng = np.random.default_rng(seed)
+    filtered = run_filter(model_name, series, model, rng)
+    rate = log.rate_hz or 1.0
+    factors = octaves(series.size)
+    before = channel_of(names[0], unit, series, rate_hz=rate, factors=factors)
+    after = channel_of(
+        names[0],
+        unit,
+        filtered.estimate,
+        rate_hz=rate,
+        factors=factors,
+        highest_hz=PASS_BAND * model.steady_gain * rate / (2.0 * math.pi),
+    )
+    lags = {
+        f"{sigmas:g}_sigma": step_lag(
+            model_name, model, sigmas=sigmas, rng=np.random.default_rng(seed), longest=LONGEST_LAG
+        )
+        for sigmas in STEP_SIGMAS
+    }
+    warnings = [*log.warnings, *_warnings(filtered, lags)]
+    result = FilterResult(
+        filter=model_name,
+        column=names[0],
+        source=log.id,
+        unit=unit,
+        q=model.q,
+        r=model.r,
+        before=before,
+        after=_told(after),
+        deviation_ratio=tuple(
+            a / b if b > 0.0 else math.inf
+            for a, b in zip(after.deviation, before.deviation, strict=True)
+        ),
+        step_lag_90_samples=lags,
+        divergence=_divergence(filtered, rate),
+        resamplings=filtered.resamplings,
+        seed=seed,
+        warnings=tuple(warnings),
+    )
+    return result, series, filtered.estimate
+
+
+def _known(name: str) -> FilterName:
+    for known in FILTERS:
+        if known == name:
+            return known
+    hint = nearest_names(name, FILTERS)
+    raise SurveyError(Problem("there is no such filter", "filter", name, hint=hint))
+
+
+def _check_model(model: LocalLevel) -> None:
+    problems = [
+        Problem(f"{name} is no variance", name, f"{value:g}", "a finite number above 0")
+        for name, value in (("q", model.q), ("r", model.r))
+        if not math.isfinite(value) or value <= 0.0
+    ]
+    if problems:
+        raise SurveyError(problems)
+
+
+def _told(after: AllanChannel) -> AllanChannel:
+    """The filtered series with the coefficients whose slope a filter leaves alone.
+
+    A low-pass bends the short end of the curve: quantisation and white noise follow no power law
+    any more, and their "reduction" would be an artefact. They are null, reason ``filtered``.
+    """
+    if after.unit in ("1", "LSB"):
+        return after
+    told = tuple(
+        replace(c, value=None, sigma=None, reason="filtered") if c.symbol in ("Q", "N") else c
+        for c in after.coefficients
+    )
+    return replace(after, coefficients=told)
+
+
+def _divergence(filtered: Filtered, rate: float) -> dict[str, Any]:
+    return {
+        "diverged": filtered.lost_at is not None,
+        "at_s": None if filtered.lost_at is None else filtered.lost_at / rate,
+        "innovations_beyond": filtered.lost,
+        "limit_sigma": LOST,
+        "degenerate": filtered.degenerate,
+    }
+
+
+def _warnings(filtered: Filtered, lags: dict[str, float | None]) -> list[ResultWarning]:
+    found = []
+    if filtered.lost_at is not None:
+        text = "the filter lost the series: its innovations stay far beyond their sigma"
+        found.append(ResultWarning("divergence", text))
+    if filtered.degenerate:
+        text = f"every weight vanished at {filtered.degenerate} samples: q or r is too small"
+        found.append(ResultWarning("degenerate", text))
+    slow = [name for name, lag in lags.items() if lag is None]
+    if slow:
+        text = f"a step is not followed within {LONGEST_LAG} samples: {', '.join(slow)}"
+        found.append(ResultWarning("never_follows", text))
+    return found

@@ -1,0 +1,170 @@
+"""The loop on sensor logs: simulated truth, correlated noise as a rival, measured records."""
+
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from surveyapp import api
+from surveyapp.api.sensors import LogOptions
+from surveyapp.cli.main import main
+
+SHARED = Path(os.environ.get("SURVEYAPP_DATA", Path(__file__).parents[2] / "../shared/data"))
+BROAD = SHARED / "broad_magnetometer"
+
+
+def diagnosed(tmp_path: Path, kind: str, *effects: str, seed: int = 1) -> tuple[Any, Any]:
+    made = api.simulate(kind, tmp_path / f"{kind}{seed}", effects=effects, seed=seed)
+    truth = json.loads(Path(made.truth).read_text())
+    return api.diagnose_log(made.folder).to_dict(), truth
+
+
+def named(document: Any) -> set[str]:
+    return {item["effect"] for item in document["adopted"]}
+
+
+def coefficients(document: Any, effect: str) -> dict[str, Any]:
+    item = next(a for a in document["adopted"] if a["effect"] == effect)
+    return {c["name"]: c["value"] for c in item["coefficients"]}
+
+
+@pytest.mark.statistical
+def test_a_clean_log_names_nothing(tmp_path: Path) -> None:
+    for seed in range(3):
+        for kind in ("compass", "tilt"):
+            document, _ = diagnosed(tmp_path, kind, seed=seed)
+            assert document["verdict"] == "adequate"
+            assert document["adopted"] == []
+
+
+@pytest.mark.parametrize(
+    ("kind", "effects"),
+    [
+        ("compass", ("hard_iron=12",)),
+        ("compass", ("hard_iron=12", "soft_iron=6")),
+        ("compass", ("temperature=.5",)),
+        ("compass", ("gross_error=10",)),
+        ("tilt", ("cross_axis=2",)),
+        ("tilt", ("temperature=1", "cross_axis=2")),
+        ("tilt", ("scale_nonlinearity=4",)),
+        ("tilt", ("warm_up=6",)),
+        ("tilt", ("gross_error=20",)),
+    ],
+    ids=lambda v: "+".join(v) if isinstance(v, tuple) else v,
+)
+def test_each_effect_is_named(tmp_path: Path, kind: str, effects: tuple[str, ...]) -> None:
+    document, _ = diagnosed(tmp_path, kind, *effects, seed=2)
+    assert named(document) == {effect.split("=")[0] for effect in effects}
+    assert document["verdict"] == "explained"
+    held = document["held_out"]
+    assert held["after"] <= held["before"]
+    if kind == "tilt":
+        assert 0.8 < held["after"] < 1.25
+
+
+def test_a_switch_is_found_with_its_times_beside_a_constant_iron(tmp_path: Path) -> None:
+    document, truth = diagnosed(tmp_path, "compass", "interference_step=15", "hard_iron=10")
+    assert named(document) == {"interference_step", "hard_iron"}
+    step = next(e for e in truth["effects"] if e["effect"] == "interference_step")
+    found = coefficients(document, "interference_step")
+    assert abs(found["on_s"] - step["on_s"]) < 0.2
+    assert abs(found["off_s"] - step["off_s"]) < 0.2
+    assert [found[f"step_{a}"] for a in "xyz"] == pytest.approx(step["uT"], abs=0.3)
+
+
+def test_a_switch_that_stays_on_has_no_time_of_switching_off(tmp_path: Path) -> None:
+    document, _ = diagnosed(tmp_path, "compass", "interference_step=6,on=40,off=999")
+    found = coefficients(document, "interference_step")
+    assert abs(found["on_s"] - 40.0) < 0.2
+    assert found["off_s"] is None
+
+
+@pytest.mark.statistical
+@pytest.mark.parametrize("walk", [False, True], ids=["ar1", "random_walk"])
+def test_correlated_noise_is_not_named(tmp_path: Path, walk: bool) -> None:
+    wrong = 0
+    for seed in range(6):
+        made = api.simulate("compass", tmp_path / f"n{seed}", seed=seed)
+        path = Path(made.folder) / "sensors/compass.csv"
+        head, rest = path.read_text().split("\n", 1)
+        table = np.loadtxt(rest.splitlines(), delimiter=",")
+        rng = np.random.default_rng(seed + 50)
+        for axis in (1, 2, 3):
+            if walk:
+                noise = np.cumsum(rng.normal(size=len(table)))
+                noise *= 6.0 / np.ptp(noise)
+            else:
+                noise = np.zeros(len(table))
+                for k in range(1, len(table)):
+                    noise[k] = 0.95 * noise[k - 1] + 0.1 * rng.normal()
+            table[:, axis] += noise
+        np.savetxt(path, table, delimiter=",", header=head, comments="", fmt="%.9g")
+        wrong += bool(api.diagnose_log(made.folder).to_dict()["adopted"])
+    assert wrong <= 1
+
+
+def test_the_command_and_what_it_refuses(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = api.simulate("tilt", tmp_path / "t", effects=["cross_axis=2"]).folder
+    assert main(["diagnose", folder, "--sensor", "tilt", "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["schema"] == "surveyapp.diagnose/1"
+    for key in ("verdict", "adopted", "ambiguous", "candidates", "before", "after", "after_best",
+                "averaged", "remedy", "held_out", "warnings", "words", "written"):  # fmt: skip
+        assert key in document
+    assert main(["diagnose", folder, "--sensor", "tilt"]) == 0
+    assert "cross axis" in capsys.readouterr().out
+    assert main(["diagnose", folder, "--sensor", "tilt", "--adopt"]) == 2
+    assert main(["diagnose", folder, "--sensor", "other"]) == 2
+    assert "other" in capsys.readouterr().err
+
+
+@pytest.mark.shared_data
+@pytest.mark.skipif(not BROAD.exists(), reason="measured records are not there")
+def test_the_magnet_of_broad_33_is_found_with_its_times() -> None:
+    path = BROAD / "33_disturbed_attached_magnet_2cm_20Hz.csv"
+    document = api.diagnose_log(path, log=LogOptions(columns={"time_s": "t_s"})).to_dict()
+    assert "interference_step" in named(document)
+    assert "hard_iron" not in named(document)
+    found = coefficients(document, "interference_step")
+    assert abs(found["on_s"] - 42.4) < 1.0
+    assert abs(found["off_s"] - 98.6) < 1.0
+    assert document["before"]["rms"] == pytest.approx(15.4, abs=0.1)
+    assert document["held_out"]["after"] < 3.1
+    assert document["size_rms_uT"]["before"] == pytest.approx(8.50, abs=0.01)
+    assert document["size_rms_uT"]["after"] < 1.3
+    assert document["heading_rms_deg"]["after"] < 9.0
+
+
+@pytest.mark.shared_data
+@pytest.mark.skipif(not BROAD.exists(), reason="measured records are not there")
+def test_the_room_of_broad_01_needs_the_place(tmp_path: Path) -> None:
+    path = BROAD / "01_undisturbed_slow_rotation_A_20Hz.csv"
+    options = LogOptions(columns={"time_s": "t_s"})
+    whole = api.diagnose_log(path, log=options).to_dict()
+    assert "field_gradient" in named(whole)
+    assert whole["size_rms_uT"]["before"] == pytest.approx(1.53, abs=0.01)
+    assert whole["size_rms_uT"]["after"] < 0.9
+    lines = path.read_text().splitlines()
+    bare = tmp_path / "bare.csv"
+    bare.write_text("\n".join(",".join(line.split(",")[:10]) for line in lines) + "\n")
+    document = api.diagnose_log(bare, log=options).to_dict()
+    assert document["verdict"] == "not_separable"
+    assert document["adopted"] == []
+
+
+@pytest.mark.shared_data
+@pytest.mark.skipif(not SHARED.exists(), reason="measured records are not there")
+def test_a_calibrated_magnetometer_adopts_nothing(tmp_path: Path) -> None:
+    data = np.load(SHARED / "vqf_imu/imu_data.npz")
+    time = np.arange(len(data["mag"])) / float(data["sampling_rate"])
+    path = tmp_path / "vqf.csv"
+    np.savetxt(
+        path, np.column_stack([time, data["mag"]]), delimiter=",", comments="", fmt="%.7g",
+        header="time_s,mag_x_uT,mag_y_uT,mag_z_uT",
+    )  # fmt: skip
+    assert api.diagnose_log(path).to_dict()["adopted"] == []
