@@ -17,6 +17,7 @@ from surveyapp.api.network import (
     adjust,
     adjust_network,
     compass_rule,
+    data_snooping,
     network,
     variance_components,
 )
@@ -69,6 +70,7 @@ from surveyapp.api.sensors import (
     open_sensor_log,
 )
 from surveyapp.api.shafts import has_shafts, shaft
+from surveyapp.api.sheets import write_sheets
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.fieldfile import ImportResult
@@ -83,6 +85,7 @@ if TYPE_CHECKING:
     from surveyapp.api.sensors import OpenedLog
     from surveyapp.core.comparison import DemonstratedSample
     from surveyapp.core.network.bowditch import CompassResult
+    from surveyapp.core.network.snooping import SnoopingResult
     from surveyapp.core.network.variance_components import VarianceComponent
     from surveyapp.core.plan import StationPlan
     from surveyapp.core.sensors.rate.fog_station_plan import FogStationPlan
@@ -103,7 +106,7 @@ if TYPE_CHECKING:
     from surveyapp.domain.results import AngleResult, ConstantResult, LineResult, SessionResult
     from surveyapp.domain.shaft_result import ShaftResult
     from surveyapp.io.simulated import SimulatedFiles
-    from surveyapp.report.written import ReportResult
+    from surveyapp.report.written import ReportResult, SheetsResult
     from surveyapp.workflows.choosing import Diagnosable
     from surveyapp.workflows.computing import Computed
     from surveyapp.workflows.diagnosing import Diagnosed
@@ -122,6 +125,7 @@ _TYPES: Final = {
     "Diagnosable": "surveyapp.workflows.choosing",
     "Diagnosed": "surveyapp.workflows.diagnosing",
     "ExportResult": "surveyapp.domain.filing",
+    "SnoopingResult": "surveyapp.core.network.snooping",
     "FogStationPlan": "surveyapp.core.sensors.rate.fog_station_plan",
     "FollowedTurn": "surveyapp.domain.instrument_reading",
     "InstrumentDiagnosis": "surveyapp.workflows.pooling",
@@ -137,6 +141,7 @@ _TYPES: Final = {
     "ResultWarning": "surveyapp.domain.project",
     "SessionResult": "surveyapp.domain.results",
     "ShaftResult": "surveyapp.domain.shaft_result",
+    "SheetsResult": "surveyapp.report.written",
     "SimulatedFiles": "surveyapp.io.simulated",
     "StationPlan": "surveyapp.core.plan",
     "VarianceComponent": "surveyapp.core.network.variance_components",
@@ -171,6 +176,7 @@ __all__ = [
     "adjust_network",
     "compass_rule",
     "variance_components",
+    "data_snooping",
     "SubjectKeyword",
     "predict",
     "cluster_executor",
@@ -197,6 +203,7 @@ __all__ = [
     "batch_rows",
     "report",
     "report_text",
+    "write_sheets",
     "blank_form",
     "close",
     "reopen",
@@ -210,6 +217,8 @@ __all__ = [
     "export_json",
     "export_zip",
     "AdjustmentResult",
+    "SheetsResult",
+    "SnoopingResult",
     "ImportResult",
     "Calibration",
     "InstrumentCard",

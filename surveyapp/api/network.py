@@ -14,6 +14,7 @@ from surveyapp.domain.traverse import Network
 
 if TYPE_CHECKING:
     from surveyapp.core.network.bowditch import CompassResult
+    from surveyapp.core.network.snooping import SnoopingResult
     from surveyapp.core.network.variance_components import VarianceComponent
 
 
@@ -60,6 +61,13 @@ def variance_components(network: Network) -> Listing[VarianceComponent]:
 
     found = components(network)[0]
     return Listing("surveyapp.variance_components/1", "variance_components", found)
+
+
+def data_snooping(network: Network) -> SnoopingResult:
+    """Gross errors taken out one after another, and the adjustment without them."""
+    from surveyapp.core.network.snooping import data_snooping as snooping
+
+    return snooping(network)
 
 
 def network(source: Source, *, traverse: str | None = None) -> Network:

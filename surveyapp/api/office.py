@@ -96,7 +96,7 @@ def _shafts(found: Computed) -> tuple[Extra, ...]:
     from surveyapp.report.record import Extra
     from surveyapp.report.sections import shafts as section
 
-    if not found.project.tables.get("shaft"):
+    if found.project.shafts is None:
         return ()
     try:
         made = section.blocks(shaft(found.project), unit=found.project.angle_unit)
@@ -111,7 +111,7 @@ def _breakthrough(found: Computed) -> tuple[Extra, ...]:
     from surveyapp.report.record import Extra
     from surveyapp.report.sections import penetration as section
 
-    if not found.project.tables.get("penetration"):
+    if found.project.penetration is None:
         return ()
     try:
         made = section.blocks(predict(found))

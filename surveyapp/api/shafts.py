@@ -9,9 +9,7 @@ from surveyapp.domain.shaft_result import ShaftResult
 
 def has_shafts(project: Project) -> bool:
     """Whether a project holds a ``[[shaft]]``."""
-    from surveyapp.io.shafts.table import shaft_tables
-
-    return bool(shaft_tables(project))
+    return project.shafts is not None
 
 
 def shaft(project: Project | Folder) -> ShaftResult:

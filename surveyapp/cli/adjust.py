@@ -14,6 +14,7 @@ from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, format_angle
 
 if TYPE_CHECKING:
     from surveyapp.core.network.bowditch import CompassResult
+    from surveyapp.core.network.snooping import SnoopingResult
     from surveyapp.core.network.variance_components import VarianceComponent
 
 
@@ -27,6 +28,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--components", action="store_true", help="variance components of the kinds (Helmert)"
     )
+    parser.add_argument(
+        "--snoop",
+        action="store_true",
+        help="take gross errors out one after another, and adjust without them",
+    )
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 
@@ -38,17 +44,30 @@ def run(options: argparse.Namespace) -> int:
     result = api.adjust_network(network)
     compass = tuple(api.compass_rule(network)) if options.compass_rule else ()
     components = tuple(api.variance_components(network)) if options.components else ()
+    snooped = api.data_snooping(network) if options.snoop else None
     if options.json:
         document = result.to_dict()
+        document["snooped"] = None if snooped is None else snooped.to_dict()
         document["compass_rule"] = [item.to_dict() for item in compass]
         document["variance_components"] = [item.to_dict() for item in components]
         print_json(document)
     else:
         print(adjustment_text(result, Path(options.source).name))
-        for text in (_compass(compass), _components(components)):
+        for text in (_compass(compass), _components(components), _snooped(snooped)):
             if text:
                 print(f"\n{text}")
     return 1 if result.global_test.passed is False or result.left_out else 0
+
+
+def _snooped(found: SnoopingResult | None) -> str:
+    """What data snooping took out, and the adjustment without it."""
+    if found is None:
+        return ""
+    if not found.removed:
+        return "Data snooping: nothing is taken out"
+    names = "; ".join(item.description for item in found.removed)
+    head = f"Data snooping takes out, in this order: {names}"
+    return f"{head}\n\n{adjustment_text(found.adjustment, 'without them')}"
 
 
 def _compass(items: Sequence[CompassResult]) -> str:

@@ -17,6 +17,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--diagnosis", action="store_true", help="diagnose every run and campaign in it"
     )
+    parser.add_argument(
+        "--sheets", action="store_true", help="gyro and traverse sheets as CSV and HTML beside it"
+    )
     parser.add_argument("--text", action="store_true", help="print the record, write no PDF")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
@@ -42,10 +45,15 @@ def run(options: argparse.Namespace) -> int:
             diagnosis=options.diagnosis,
             advance=options.advance,
         )
+    sheets = api.SheetsResult((), ())
+    if options.sheets and options.blank is None:
+        sheets = api.write_sheets(options.folder, options.output)
     if options.json:
-        print_json(written.to_dict())
+        print_json({**written.to_dict(), **sheets.to_dict()})
     else:
         print(f"{written.path}: {written.pages} pages\n  sha256 {written.sha256}")
+        for text in (*sheets.paths, *sheets.problems):
+            print(f"  {text}")
     return 0
 
 

@@ -9,7 +9,12 @@ from __future__ import annotations
 import datetime as dt
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
+
+from surveyapp.errors import Problem
+
+if TYPE_CHECKING:
+    from surveyapp.domain.project import ResultWarning
 
 Wall = Literal["right", "left", "none"]
 
@@ -312,6 +317,25 @@ class Penetration:
     deflection: DeflectionField | None = None
     measured: MeasuredMiss | None = None
     steps: tuple[ProcedureStep, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class PenetrationTable:
+    """``[penetration]`` as read, with everything that is wrong with it.
+
+    What is wrong keeps nobody from orienting: it is told by whoever predicts.
+
+    Parameters
+    ----------
+    plan : Penetration
+        Wrong values replaced.
+    problems : tuple of Problem
+    warnings : tuple of ResultWarning
+    """
+
+    plan: Penetration
+    problems: tuple[Problem, ...] = ()
+    warnings: tuple[ResultWarning, ...] = ()
 
 
 STEP_TITLES = (

@@ -13,9 +13,11 @@ from typing import Any, Literal
 from surveyapp.domain.closing import Filing
 from surveyapp.domain.instrument import AdoptedEffect, Instrument
 from surveyapp.domain.mine_grid import MineGrid, StatedConvergence
+from surveyapp.domain.penetration import PenetrationTable
 from surveyapp.domain.readings import FieldBook
 from surveyapp.domain.rulebook import RuleBook
 from surveyapp.domain.sensor_entry import SensorLogEntry
+from surveyapp.domain.shaft import ShaftTables
 from surveyapp.domain.subject import Subject
 from surveyapp.domain.traverse_book import Traverse
 from surveyapp_models.angles import ARCSEC, AngleUnit
@@ -247,8 +249,10 @@ class Project:
         Closings, and what was changed since.
     path : str
         Folder; empty for a project that was never on a disk.
-    tables : mapping
-        The parsed TOML of what has no typed field yet, by name.
+    penetration : PenetrationTable or None
+        With what is wrong in it, which only a prediction minds.
+    shafts : ShaftTables or None
+        With their books and what is wrong in them, which only their use minds.
     sensor_logs : tuple of SensorLogEntry
     warnings : tuple of ResultWarning
     """
@@ -270,7 +274,8 @@ class Project:
     digest: str = ""
     filing: Filing = field(default_factory=Filing)
     path: str = ""
-    tables: dict[str, object] = field(default_factory=dict)
+    penetration: PenetrationTable | None = None
+    shafts: ShaftTables | None = None
     sensor_logs: tuple[SensorLogEntry, ...] = ()
     warnings: tuple[ResultWarning, ...] = ()
     _stations: dict[str, Station] = field(

@@ -8,7 +8,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
+
+from surveyapp.errors import Problem
+
+if TYPE_CHECKING:
+    from surveyapp.domain.project import ResultWarning
 
 Place = Literal["surface", "underground"]
 
@@ -113,3 +118,21 @@ class Shaft:
         return tuple(
             row for row in self.rows if row.kind is kind and (place is None or row.place == place)
         )
+
+
+@dataclass(frozen=True, slots=True)
+class ShaftTables:
+    """Every ``[[shaft]]`` with its book as read, and everything that is wrong with them.
+
+    What is wrong keeps nobody from orienting sides: it is told by whoever uses the shafts.
+
+    Parameters
+    ----------
+    shafts : tuple of Shaft
+    problems : tuple of Problem
+    warnings : tuple of ResultWarning
+    """
+
+    shafts: tuple[Shaft, ...]
+    problems: tuple[Problem, ...] = ()
+    warnings: tuple[ResultWarning, ...] = ()

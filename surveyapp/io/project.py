@@ -25,8 +25,9 @@ from surveyapp.io.grid_tables import (
     refuse_two_convergences,
     with_regional_deflection,
 )
+from surveyapp.io.penetration.table import read_penetration_table
 from surveyapp.io.priors import with_priors
-from surveyapp.io.project_files import PROJECT_FILE, ProjectFiles, inside
+from surveyapp.io.project_files import PROJECT_FILE, ProjectFiles
 from surveyapp.io.project_tables import (
     Names,
     read_centring,
@@ -37,14 +38,12 @@ from surveyapp.io.project_tables import (
 from surveyapp.io.rulebooks import read_rule_book
 from surveyapp.io.sensor_logs.tables import read_sensor_logs
 from surveyapp.io.session_books import read_sessions
+from surveyapp.io.shafts.table import read_shaft_tables
 from surveyapp.io.tables import Findings, Table, parse_toml
 from surveyapp.io.traverse.book import read_traverses
 from surveyapp_models.angles import AngleUnit
 
 FORMAT: Final = 1
-RAW_TABLES: Final = ("penetration", "shaft")
-"""Tables that have no typed field of the project yet: passed on as they were parsed."""
-
 ANGLE_TYPING: Final = ("separated", "packed")
 """How the screens take a plain number for dms: not at all, or as degrees.MMSS."""
 
@@ -214,11 +213,12 @@ def _read_tables(top: _Top, repair: bool | None) -> Project:
         centring=read_centring(table) or Centring(),
         filing=_filing(files),
         path=str(files.path),
-        tables={key: table.get(key) for key in RAW_TABLES if key in table},
+        penetration=read_penetration_table(table, instruments, unit),
+        shafts=read_shaft_tables(table, files, unit),
         sensor_logs=sensor_logs,
     )
     table.get("note")
-    table.warn_unknown(*RAW_TABLES)
+    table.warn_unknown()
     return project
 
 
@@ -259,14 +259,8 @@ def _filing(files: ProjectFiles) -> Filing:
 
 
 def _read_other_files(top: _Top) -> None:
-    """Take the files of tables without a typed field into the digest."""
-    for kind, key in (("shaft", "book"), ("sensor_log", "file")):
-        for table in top.tables(kind):
-            name = table.text(key)
-            if name is None:
-                continue
-            if key == "book":
-                if inside(name, table):
-                    top.files.read(name, table.where)
-            elif "sha256" not in table:
-                top.files.read_log(name, table)
+    """Take sensor logs that nobody pinned into the digest."""
+    for table in top.tables("sensor_log"):
+        name = table.text("file")
+        if name is not None and "sha256" not in table:
+            top.files.read_log(name, table)

@@ -7,6 +7,25 @@ from typing import Any
 
 
 @dataclass(frozen=True, slots=True)
+class SheetsResult:
+    """Sheets that were written beside a record.
+
+    Parameters
+    ----------
+    paths : tuple of str
+    problems : tuple of str
+        Why a traverse has no sheet.
+    """
+
+    paths: tuple[str, ...]
+    problems: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys that ``report --sheets`` adds to its JSON."""
+        return {"sheets": list(self.paths), "without_sheet": list(self.problems)}
+
+
+@dataclass(frozen=True, slots=True)
 class ReportResult:
     """A report that was written.
 

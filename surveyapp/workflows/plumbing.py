@@ -6,7 +6,6 @@ from surveyapp.core.shafts.orientation import orient_shaft
 from surveyapp.domain.project import Project, ResultWarning
 from surveyapp.domain.shaft_result import ShaftOrientation, ShaftResult
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.io.shafts.table import read_shafts
 
 
 def orient_shafts(project: Project, *, software: str) -> ShaftResult:
@@ -25,7 +24,21 @@ def orient_shafts(project: Project, *, software: str) -> ShaftResult:
     found: list[ShaftOrientation] = []
     warnings: list[ResultWarning] = list(project.warnings)
     problems: list[Problem] = []
-    for shaft in read_shafts(project):
+    tables = project.shafts
+    if tables is None or not (tables.shafts or tables.problems):
+        raise SurveyError(
+            Problem(
+                "the project holds no shaft",
+                "project.toml",
+                "no [[shaft]]",
+                "[[shaft]] with wires and a book",
+                "docs/how-to/orient-through-a-shaft.md shows one",
+            )
+        )
+    if tables.problems:
+        raise SurveyError(tables.problems)
+    warnings += tables.warnings
+    for shaft in tables.shafts:
         try:
             oriented, told = orient_shaft(shaft, known)
         except SurveyError as refused:

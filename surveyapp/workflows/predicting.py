@@ -27,9 +27,7 @@ from surveyapp.domain.shaft_result import ShaftOrientation
 from surveyapp.domain.traverse_book import Traverse
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.penetration.measured import header_sigmas, measured_rows
-from surveyapp.io.penetration.table import read_penetration
-from surveyapp.io.shafts.table import shaft_tables
-from surveyapp.io.tables import Findings, Table
+from surveyapp.io.tables import Findings
 from surveyapp.workflows.plumbing import orient_shafts
 
 
@@ -60,7 +58,7 @@ class _Gathered:
 
 def has_penetration(project: Project) -> bool:
     """Whether the project holds a ``[penetration]`` table."""
-    return isinstance(project.tables.get("penetration"), Mapping)
+    return project.penetration is not None
 
 
 def penetration_plan(project: Project, findings: Findings) -> Penetration:
@@ -71,8 +69,8 @@ def penetration_plan(project: Project, findings: Findings) -> Penetration:
     SurveyError
         If there is none.
     """
-    raw = project.tables.get("penetration")
-    if not isinstance(raw, Mapping):
+    table = project.penetration
+    if table is None:
         raise SurveyError(
             Problem(
                 "the project holds no breakthrough",
@@ -82,7 +80,9 @@ def penetration_plan(project: Project, findings: Findings) -> Penetration:
                 "docs/how-to/predict-a-breakthrough.md shows one",
             )
         )
-    return read_penetration(Table(raw, WHERE, findings), project)
+    findings.problems += table.problems
+    findings.warnings += table.warnings
+    return table.plan
 
 
 def ready_mine(
@@ -240,8 +240,7 @@ def _known(
     headers: Mapping[str, Traverse],
     measured: Mapping[str, MeasuredRows],
 ) -> Known:
-    raw = project.tables.get("shaft")
-    shafts = [str(item.get("id")) for item in raw] if isinstance(raw, list) else []
+    shafts = [] if project.shafts is None else [shaft.id for shaft in project.shafts.shafts]
     oriented = {
         name
         for name, rows in measured.items()
@@ -312,7 +311,7 @@ def _with_shafts(
 ) -> tuple[Penetration, list[ResultWarning]]:
     """Starts of headings from the shafts through which they begin: azimuth and depth."""
     named = {heading.shaft for heading in plan.headings if heading.shaft}
-    if not named or not shaft_tables(project):
+    if not named or project.shafts is None:
         return plan, []
     try:
         shafts = {item.id: item for item in orient_shafts(project, software="").shafts}

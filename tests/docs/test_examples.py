@@ -41,7 +41,7 @@ def test_examples_print_what_the_page_shows(
         named = NAMED.search(text[: block.start()])
         if kind == "console":
             shown += check_console(body)
-        elif kind in ("toml", "csv") and named:
+        elif kind in ("toml", "csv", "text") and named:
             path = tmp_path / named.group(1)
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(body, encoding="utf-8")

@@ -237,6 +237,9 @@ def test_the_removal_that_helps_most_is_named_first(tmp_path: Path) -> None:
     path = written(tmp_path, body + "</obs>")
     result = api.adjust(path)
     assert result.removals
+    document = json.loads(run("adjust", str(path), "--snoop", "--json").out)
+    assert ["C-D" in item["observation"] for item in document["snooped"]["removed"]] == [True]
+    assert document["snooped"]["adjustment"]["global_test"]["sum_of_squares"] < 0.01
     assert "C-D" in result.removals[0].description
     assert result.removals[0].sum_of_squares == pytest.approx(0.0, abs=1e-2)
     sums = [item.sum_of_squares for item in result.removals]

@@ -33,6 +33,13 @@ class SnoopingResult:
     removed: tuple[Suspect, ...]
     adjustment: AdjustmentResult
 
+    def to_dict(self) -> dict[str, object]:
+        """Keys of the JSON."""
+        return {
+            "removed": [item.to_dict() for item in self.removed],
+            "adjustment": self.adjustment.to_dict(),
+        }
+
 
 def _separate(network: Network, suspects: tuple[Suspect, ...]) -> list[Suspect]:
     """The largest suspect, and further ones that share no point with a larger one."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import datetime as dt
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Final, Literal, cast
 
 from surveyapp.domain.instrument import Instrument
@@ -24,15 +24,15 @@ from surveyapp.domain.penetration import (
     MeetingPoint,
     MonteCarloPlan,
     Penetration,
+    PenetrationTable,
     ProcedureStep,
     StatedTolerance,
     TunnelCase,
     Wall,
     WallRefraction,
 )
-from surveyapp.domain.project import Project
-from surveyapp.errors import nearest_names
-from surveyapp.io.tables import Table, as_number
+from surveyapp.errors import Problem, nearest_names
+from surveyapp.io.tables import Findings, Table, as_number
 from surveyapp_models.angles import ARCSEC, TWO_PI, AngleUnit
 
 MM: Final = 1e-3
@@ -41,7 +41,27 @@ MOST_ARCSEC: Final = 3.6e5
 COMPONENTS: Final = ("lateral_m", "longitudinal_m", "vertical_m")
 
 
-def read_penetration(table: Table, project: Project) -> Penetration:
+WHERE: Final = "project.toml, [penetration]"
+
+
+def read_penetration_table(
+    top: Table, instruments: Sequence[Instrument], unit: AngleUnit
+) -> PenetrationTable | None:
+    """``[penetration]`` of a project.toml with its problems; None where there is none."""
+    raw = top.get("penetration")
+    if raw is None:
+        return None
+    findings = Findings()
+    if not isinstance(raw, Mapping):
+        findings.problems.append(Problem("penetration is no table", WHERE, "", "[penetration]"))
+        raw = {}
+    plan = read_penetration(Table(raw, WHERE, findings), instruments, unit)
+    return PenetrationTable(plan, tuple(findings.problems), tuple(findings.warnings))
+
+
+def read_penetration(
+    table: Table, instruments: Sequence[Instrument], unit: AngleUnit
+) -> Penetration:
     """Read the table; a value that is wrong is noted and replaced, so that reading goes on."""
     case = table.choice("case", [str(c) for c in ExcavationCase], required=True)
     tunnel = table.choice("tunnel", [str(c) for c in TunnelCase], required=True)
@@ -50,9 +70,9 @@ def read_penetration(table: Table, project: Project) -> Penetration:
         case=ExcavationCase(case or "opposite"),
         tunnel=TunnelCase(tunnel or "within_mine"),
         meeting=_meeting(table),
-        axis_azimuth=axis(table, "axis_azimuth", project.angle_unit),
+        axis_azimuth=axis(table, "axis_azimuth", unit),
         headings=headings,
-        gyro=_gyro_sides(table, project),
+        gyro=_gyro_sides(table, instruments),
         sigmas=_sigmas(table),
         independent_surveys=_surveys(table),
         factor=table.number("factor", high=100.0, positive=True),
@@ -146,9 +166,9 @@ def _start(heading: Table) -> HeadingStart:
     return start
 
 
-def _gyro_sides(table: Table, project: Project) -> tuple[GyroSide, ...]:
-    instruments = {item.id: item for item in project.instruments}
-    return tuple(_gyro_side(item, instruments) for item in table.tables("gyro"))
+def _gyro_sides(table: Table, instruments: Sequence[Instrument]) -> tuple[GyroSide, ...]:
+    known = {item.id: item for item in instruments}
+    return tuple(_gyro_side(item, known) for item in table.tables("gyro"))
 
 
 def _gyro_side(table: Table, instruments: Mapping[str, Instrument]) -> GyroSide:

@@ -4,62 +4,48 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path
 from typing import Final, Literal, cast
 
-from surveyapp.domain.project import Project
-from surveyapp.domain.shaft import CHECK_IDS, PlumbingCheck, Shaft, ShaftRowKind
+from surveyapp.domain.shaft import CHECK_IDS, PlumbingCheck, Shaft, ShaftRowKind, ShaftTables
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.io.files import read_text
+from surveyapp.io.files import decode
+from surveyapp.io.project_files import ProjectFiles, inside
 from surveyapp.io.shafts.book import parse_shaft_book
 from surveyapp.io.tables import Findings, Table
-from surveyapp_models.angles import ARCSEC
+from surveyapp_models.angles import ARCSEC, AngleUnit
 
 MM: Final = 1e-3
 
 
-def shaft_tables(project: Project) -> list[Mapping[str, object]]:
-    """Raw ``[[shaft]]`` tables of a project."""
-    raw = project.tables.get("shaft")
-    return [item for item in raw if isinstance(item, Mapping)] if isinstance(raw, list) else []
+def read_shaft_tables(top: Table, files: ProjectFiles, unit: AngleUnit) -> ShaftTables | None:
+    """Every ``[[shaft]]`` of a project.toml with its book and its problems; None without any.
 
-
-def read_shafts(project: Project) -> tuple[Shaft, ...]:
-    """Every shaft of a project with its book.
-
-    Raises
-    ------
-    SurveyError
-        With the problems of all shafts and all their books; if there is no shaft at all.
+    A book that does not exist or lies outside of the folder is a problem of the project itself.
     """
-    tables = shaft_tables(project)
-    if not tables:
-        raise SurveyError(
-            Problem(
-                "the project holds no shaft",
-                "project.toml",
-                "no [[shaft]]",
-                "[[shaft]] with wires and a book",
-                "docs/how-to/orient-through-a-shaft.md shows one",
-            )
-        )
+    raw = top.get("shaft")
+    if raw is None:
+        return None
     findings = Findings()
-    shafts = [
-        read_shaft(Table(item, f"project.toml, [[shaft]] {item.get('id', i)}", findings))
-        for i, item in enumerate(tables, start=1)
-    ]
+    if not isinstance(raw, list) or not all(isinstance(item, Mapping) for item in raw):
+        where = "project.toml"
+        findings.problems.append(Problem("shaft is no list of tables", where, "", "[[shaft]]"))
+        raw = []
+    shafts = []
+    for number, item in enumerate(raw, start=1):
+        table = Table(item, f"project.toml, [[shaft]] {item.get('id', number)}", findings)
+        shaft = read_shaft(table)
+        name = item.get("book")
+        if isinstance(name, str) and name:
+            outer = Table(item, table.where, files.findings)
+            shaft = _with_book(shaft, name, (outer, files, unit), findings)
+        shafts.append(shaft)
     names = [shaft.id for shaft in shafts]
     findings.problems += [
         Problem("two shafts have one id", "project.toml", name, "unique ids")
         for name in dict.fromkeys(names)
         if name and names.count(name) > 1
     ]
-    found = [
-        _with_book(project, shaft, str(item.get("book", "")), findings)
-        for shaft, item in zip(shafts, tables, strict=True)
-    ]
-    findings.raise_if_any()
-    return tuple(found)
+    return ShaftTables(tuple(shafts), tuple(findings.problems), tuple(findings.warnings))
 
 
 def read_shaft(table: Table) -> Shaft:
@@ -124,18 +110,23 @@ def _check(table: Table) -> PlumbingCheck:
     return check
 
 
-def _with_book(project: Project, shaft: Shaft, book: str, findings: Findings) -> Shaft:
-    if not book:
+def _with_book(
+    shaft: Shaft, name: str, source: tuple[Table, ProjectFiles, AngleUnit], findings: Findings
+) -> Shaft:
+    """A shaft with the rows of its book."""
+    table, files, unit = source
+    data = files.read(name, table.where) if inside(name, table) else None
+    if data is None:
         return shaft
     try:
-        text = read_text(Path(project.path) / book, where=book)
+        text = decode(data, where=name)
     except SurveyError as error:
         findings.absorb(error)
         return shaft
-    rows, problems = parse_shaft_book(text, angle_unit=project.angle_unit, where=book)
+    rows, problems = parse_shaft_book(text, angle_unit=unit, where=name)
     findings.problems += problems
     shaft = replace(shaft, rows=tuple(rows))
-    findings.problems += _row_problems(shaft, book)
+    findings.problems += _row_problems(shaft, name)
     return shaft
 
 

@@ -1,0 +1,55 @@
+"""Traverse and gyro sheets as CSV and HTML for scripts, re-exported by ``surveyapp.api``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from surveyapp.api.network import adjust
+from surveyapp.api.orientation import Source, compute
+from surveyapp.api.project import SOFTWARE, Folder
+from surveyapp.errors import SurveyError
+from surveyapp.report.written import SheetsResult
+
+
+def write_sheets(source: Source, output: Folder) -> SheetsResult:
+    """Write the sheets of a project beside a record, as CSV and as HTML.
+
+    Parameters
+    ----------
+    source : Project, path or Computed
+    output : path
+        Of the record: ``record.pdf`` has ``record-gyro.csv``, ``record-traverse-main.html`` ...
+
+    Returns
+    -------
+    SheetsResult
+
+    Raises
+    ------
+    SurveyError
+        If the project cannot be used or a file not be written.
+    """
+    from surveyapp.io.tomltext import atomic_write
+    from surveyapp.report.sheets import gyro_sheet, sheet_csv, sheet_html, traverse_sheet
+
+    found = compute(source)
+    unit = found.project.angle_unit
+    sheets = [gyro_sheet(found.result, unit)] if found.result.lines else []
+    problems = []
+    for traverse in found.project.traverses:
+        try:
+            result = adjust(found, traverse=traverse.name)
+        except SurveyError as error:
+            problems.append(f"traverse {traverse.name}: {error}")
+            continue
+        sheets.append(traverse_sheet(traverse.name, result, unit))
+    paths = []
+    base = Path(output)
+    for sheet in sheets:
+        name = "".join(c if c.isalnum() or c in "-_." else "_" for c in sheet.id)
+        page = sheet_html(sheet, project=found.project.name, software=SOFTWARE)
+        for ending, text in ((".csv", sheet_csv(sheet)), (".html", page)):
+            path = base.with_name(f"{base.stem}-{name}{ending}")
+            atomic_write(path, text.encode("utf-8"))
+            paths.append(str(path))
+    return SheetsResult(tuple(paths), tuple(problems))

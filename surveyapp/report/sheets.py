@@ -1,0 +1,227 @@
+"""The sheets of the trade as tables: traverse computation and gyro computation, for CSV and HTML.
+
+Traverse sheet: one line for each sight, with what was observed, its adjusted grid azimuth and the
+coordinates of its end. Gyro sheet: one line for each oriented line, from gyro azimuth to grid
+azimuth with every correction between. Numbers are those of the record; nothing is computed anew but
+differences of the adjusted coordinates.
+"""
+
+from __future__ import annotations
+
+import csv
+import html
+import io
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from surveyapp.domain.adjustment import AdjustedObservation, AdjustedPoint, AdjustmentResult
+from surveyapp.domain.angle_result import AngleResult
+from surveyapp.domain.observations import ObservationKind
+from surveyapp.domain.results import OrientationResult
+from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, format_angle, wrap_two_pi
+
+K = ObservationKind
+_KINDS = (K.ANGLE, K.DIRECTION, K.ZENITH, K.SLOPE_DISTANCE, K.DISTANCE, K.AZIMUTH, K.GYRO)
+_STYLE = (
+    "body{font-family:sans-serif;margin:2em}table{border-collapse:collapse}"
+    "th,td{border:1px solid #888;padding:.2em .5em;text-align:right}"
+    "th{background:#eee}td:first-child,td:nth-child(2){text-align:left}"
+    "caption{text-align:left;font-weight:bold;padding:.5em 0}"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """A table with a title, a head and what stands below it.
+
+    Parameters
+    ----------
+    id, title : str
+    head : tuple of str
+        With units.
+    rows : tuple of tuple of str
+    remarks : tuple of str
+    """
+
+    id: str
+    title: str
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    remarks: tuple[str, ...] = ()
+
+
+def _metres(value: float | None) -> str:
+    return "" if value is None else f"{value:.4f}"
+
+
+def _sides(result: AdjustmentResult) -> dict[tuple[str, str], list[AdjustedObservation]]:
+    """Observations by sight, in the order of the book; an angle belongs to its fore sight."""
+    sides: dict[tuple[str, str], list[AdjustedObservation]] = {}
+    for item in result.observations:
+        if item.kind in _KINDS and item.to:
+            sides.setdefault((item.at, item.to), []).append(item)
+    return sides
+
+
+def _mean(items: Sequence[AdjustedObservation], *kinds: ObservationKind) -> float | None:
+    """Mean of what was observed; directions and angles of one kind only."""
+    found = [item.observed for item in items if item.kind in kinds]
+    return sum(found) / len(found) if found else None
+
+
+def _angle(items: Sequence[AdjustedObservation], unit: AngleUnit) -> tuple[str, str]:
+    """Back sight and value of the angle of a sight; of directions none: they have many zeros."""
+    angle = next((item for item in items if item.kind is K.ANGLE), None)
+    if angle is None:
+        return "", ""
+    return angle.back, format_angle(wrap_two_pi(angle.observed), unit)
+
+
+def _traverse_row(
+    at: AdjustedPoint, to: AdjustedPoint, items: list[AdjustedObservation], unit: AngleUnit
+) -> tuple[str, ...]:
+    back, angle = _angle(items, unit)
+    zenith = _mean(items, K.ZENITH)
+    slope = _mean(items, K.SLOPE_DISTANCE)
+    level = azimuth = ""
+    steps = ["", ""]
+    if None not in (at.e, at.n, to.e, to.n):
+        de, dn = (to.e or 0.0) - (at.e or 0.0), (to.n or 0.0) - (at.n or 0.0)
+        level = _metres(math.hypot(de, dn))
+        azimuth = format_angle(wrap_two_pi(math.atan2(de, dn)), unit)
+        steps = [_metres(de), _metres(dn)]
+    rise = None if at.h is None or to.h is None else to.h - at.h
+    sets = sum(item.kind is K.DIRECTION for item in items)
+    return (
+        *(at.name, to.name, back, angle, str(sets) if sets else ""),
+        "" if zenith is None else format_angle(zenith, unit),
+        *(_metres(slope), level, azimuth, *steps, _metres(rise)),
+        *(_metres(to.e), _metres(to.n), _metres(to.h)),
+        *(_millimetres(to.sigma_e), _millimetres(to.sigma_n), _millimetres(to.sigma_h)),
+    )
+
+
+def _millimetres(value: float | None) -> str:
+    return "" if value is None else f"{value * 1000.0:.1f}"
+
+
+def traverse_sheet(name: str, result: AdjustmentResult, unit: AngleUnit) -> Sheet:
+    """Traverse computation: what was observed on each sight and what came out.
+
+    Parameters
+    ----------
+    name : str
+        Of the traverse.
+    result : AdjustmentResult
+    unit : AngleUnit
+        Of the project.
+    """
+    points = {point.name: point for point in result.points}
+    rows = [
+        _traverse_row(points[at], points[to], items, unit)
+        for (at, to), items in _sides(result).items()
+        if at in points and to in points
+    ]
+    head = (
+        *("station", "target", "back", "angle", "sets", "zenith", "slope m", "level m"),
+        *("grid azimuth", "dE m", "dN m", "dH m", "E m", "N m", "H m", "sE mm", "sN mm", "sH mm"),
+    )
+    test = result.global_test
+    verdict = {True: "met", False: "NOT MET", None: "open"}[test.passed]
+    remarks = [f"least squares, {result.dof} degrees of freedom, global test {verdict}"]
+    remarks += [_closure(item.to_dict()) for item in result.closures]
+    remarks += [f"left out: {item.description}" for item in result.left_out]
+    remarks += [f"{item.code}: {item.text}" for item in result.warnings]
+    return Sheet(f"traverse-{name}", f"Traverse {name}", head, tuple(rows), tuple(remarks))
+
+
+def _closure(values: dict[str, object]) -> str:
+    parts = [f"closure {values['kind']}"]
+    for key, pattern in (
+        ("angular_arcsec", 'angular {:+.1f}"'),
+        ("linear_m", "linear {:.4f} m"),
+        ("relative_1_in", "1:{:.0f}"),
+        ("height_m", "height {:+.4f} m"),
+    ):
+        value = values[key]
+        if isinstance(value, float):
+            parts.append(pattern.format(value))
+    return ", ".join(parts)
+
+
+def _result(value: AngleResult | None, unit: AngleUnit) -> tuple[str, str]:
+    if value is None:
+        return "", ""
+    sigma = f"{value.sigma * RHO_ARCSEC:.1f}" if math.isfinite(value.sigma) else ""
+    return format_angle(value.value, unit), sigma
+
+
+def _seconds(value: float | None) -> str:
+    return "" if value is None else f"{value * RHO_ARCSEC:+.1f}"
+
+
+def gyro_sheet(result: OrientationResult, unit: AngleUnit) -> Sheet:
+    """Gyro computation: from the gyro azimuth of each line to its grid azimuth."""
+    rows = []
+    for line in result.lines:
+        gyro, gyro_sigma = _result(line.gyro_azimuth, unit)
+        grid, grid_sigma = _result(line.grid_azimuth, unit)
+        true, _ = _result(line.true_azimuth, unit)
+        rows.append(
+            (
+                *(line.station, line.target, line.instrument, str(line.rounds), gyro, gyro_sigma),
+                *(_seconds(line.constant), _seconds(line.deflection), true),
+                *(_seconds(line.convergence), _seconds(line.arc_to_chord), grid, grid_sigma),
+            )
+        )
+    head = (
+        *("station", "target", "instrument", "rounds", "gyro azimuth", 's "', 'constant "'),
+        *('deflection "', "true azimuth", 'convergence "', 'T-t "', "grid azimuth", 's "'),
+    )
+    constants = [
+        f'constant of {item.instrument}: {_seconds(item.value)}"'
+        + ("" if item.sigma is None else f' +-{item.sigma * RHO_ARCSEC:.1f}"')
+        for item in result.constants
+        if item.value is not None
+    ]
+    warnings = [f"{item.code}: {item.text}" for item in result.warnings]
+    return Sheet("gyro", "Gyro orientation", head, tuple(rows), (*constants, *warnings))
+
+
+def sheet_csv(sheet: Sheet) -> str:
+    """A sheet as CSV: head, rows, an empty line, remarks."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(sheet.head)
+    writer.writerows([[_safe(cell) for cell in row] for row in sheet.rows])
+    if sheet.remarks:
+        writer.writerow([])
+        writer.writerows([[_safe(text)] for text in sheet.remarks])
+    return stream.getvalue()
+
+
+def _safe(cell: str) -> str:
+    """A text that a spreadsheet would take for a formula is quoted; numbers are left alone."""
+    if cell[:1] in ("=", "@", "+", "-") and not cell.lstrip("+-").replace(".", "", 1).isdigit():
+        return f"'{cell}"
+    return cell
+
+
+def sheet_html(sheet: Sheet, *, project: str, software: str) -> str:
+    """A sheet as one self-contained page of HTML."""
+
+    def cells(tag: str, row: Sequence[str]) -> str:
+        return "<tr>" + "".join(f"<{tag}>{html.escape(cell)}</{tag}>" for cell in row) + "</tr>"
+
+    title = html.escape(f"{project}: {sheet.title}")
+    lines = [
+        '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">',
+        f"<title>{title}</title><style>{_STYLE}</style></head><body>",
+        f"<table><caption>{title}</caption><thead>{cells('th', sheet.head)}</thead><tbody>",
+        *(cells("td", row) for row in sheet.rows),
+        "</tbody></table>",
+        *(f"<p>{html.escape(text)}</p>" for text in sheet.remarks),
+        f"<p><small>{html.escape(software)}</small></p></body></html>",
+    ]
+    return "\n".join(lines) + "\n"
