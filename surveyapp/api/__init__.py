@@ -32,6 +32,7 @@ from surveyapp.api.office import (
     reopen,
     report,
     report_text,
+    undrawn_text,
 )
 from surveyapp.api.orientation import (
     Source,
@@ -47,6 +48,7 @@ from surveyapp.api.penetration import (
     cluster_executor,
     has_breakthrough,
     predict,
+    record_step,
     trial,
 )
 from surveyapp.api.pooling import diagnose_instrument
@@ -89,6 +91,7 @@ if TYPE_CHECKING:
     from surveyapp.core.network.variance_components import VarianceComponent
     from surveyapp.core.plan import StationPlan
     from surveyapp.core.sensors.rate.fog_station_plan import FogStationPlan
+    from surveyapp.diagnosis.sensors.diagnosis import SensorDiagnosis
     from surveyapp.domain.filing import (
         BatchResult,
         BatchRow,
@@ -99,6 +102,7 @@ if TYPE_CHECKING:
     )
     from surveyapp.domain.instrument_reading import FollowedTurn, InstrumentReading
     from surveyapp.domain.line_spectrum import LineSpectrum
+    from surveyapp.domain.noise import AllanResult, FilterResult
     from surveyapp.domain.north import NorthResult
     from surveyapp.domain.penetration_result import Prediction
     from surveyapp.domain.project import ResultWarning
@@ -108,6 +112,7 @@ if TYPE_CHECKING:
     from surveyapp.io.simulated import SimulatedFiles
     from surveyapp.report.written import ReportResult, SheetsResult
     from surveyapp.workflows.choosing import Diagnosable
+    from surveyapp.workflows.compensating import CompensationResult
     from surveyapp.workflows.computing import Computed
     from surveyapp.workflows.diagnosing import Diagnosed
     from surveyapp.workflows.pooling import InstrumentDiagnosis
@@ -124,6 +129,10 @@ _TYPES: Final = {
     "DemonstratedSample": "surveyapp.core.comparison",
     "Diagnosable": "surveyapp.workflows.choosing",
     "Diagnosed": "surveyapp.workflows.diagnosing",
+    "AllanResult": "surveyapp.domain.noise",
+    "FilterResult": "surveyapp.domain.noise",
+    "CompensationResult": "surveyapp.workflows.compensating",
+    "SensorDiagnosis": "surveyapp.diagnosis.sensors.diagnosis",
     "ExportResult": "surveyapp.domain.filing",
     "SnoopingResult": "surveyapp.core.network.snooping",
     "FogStationPlan": "surveyapp.core.sensors.rate.fog_station_plan",
@@ -182,6 +191,7 @@ __all__ = [
     "cluster_executor",
     "Trial",
     "has_breakthrough",
+    "record_step",
     "has_shafts",
     "trial",
     "shaft",
@@ -203,6 +213,7 @@ __all__ = [
     "batch_rows",
     "report",
     "report_text",
+    "undrawn_text",
     "write_sheets",
     "blank_form",
     "close",
@@ -241,6 +252,10 @@ __all__ = [
     "DemonstratedSample",
     "Diagnosable",
     "Diagnosed",
+    "AllanResult",
+    "FilterResult",
+    "CompensationResult",
+    "SensorDiagnosis",
     "ExportResult",
     "FogStationPlan",
     "FollowedTurn",

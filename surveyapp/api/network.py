@@ -11,6 +11,7 @@ from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.project import Project
 from surveyapp.domain.records import Listing
 from surveyapp.domain.traverse import Network
+from surveyapp.errors import Problem, SurveyError
 
 if TYPE_CHECKING:
     from surveyapp.core.network.bowditch import CompassResult
@@ -42,10 +43,23 @@ def adjust(
 
 def adjust_network(network: Network, *, family_level: float = 0.05) -> AdjustmentResult:
     """Adjust a network as ``network`` returns it; see ``adjust``."""
+    from numpy.linalg import LinAlgError
+
     from surveyapp.core.network import adjust as adjusted
     from surveyapp.core.network.removals import with_removals
 
-    return with_removals(network, adjusted(network, family_level=family_level))
+    try:
+        return with_removals(network, adjusted(network, family_level=family_level))
+    except (LinAlgError, OverflowError, FloatingPointError, ZeroDivisionError) as error:
+        raise SurveyError(
+            Problem(
+                "the network cannot be computed",
+                "adjust",
+                str(error),
+                "coordinates, distances and sigmas of one survey",
+                "Is a number in another unit, or a standard deviation far too small or large?",
+            )
+        ) from None
 
 
 def compass_rule(network: Network) -> Listing[CompassResult]:

@@ -22,6 +22,7 @@ from surveyapp.errors import SurveyError
 if TYPE_CHECKING:
     from surveyapp.core.differences import Snapshot
     from surveyapp.domain.filing import ClosingResult, ComparisonResult, ExportResult
+    from surveyapp.domain.project import Project
     from surveyapp.report.blocks import Block, Document
     from surveyapp.report.record import Extra
     from surveyapp.report.written import ReportResult
@@ -179,13 +180,26 @@ def _record(found: Computed, extras: tuple[Extra, ...]) -> tuple[Document, tuple
     from surveyapp.report.record import Record, SealShown, record_document
 
     extras = (*_shafts(found), *_traverses(found), *_breakthrough(found), *extras)
-    closing = found.project.filing.project_closing
-    seal = (
-        None
-        if closing is None
-        else SealShown(closing.at, visible(closing.by), closing.head, closing.seal)
+    seals = tuple(
+        SealShown(item.at, visible(item.by), item.head, item.seal, visible(item.session))
+        for item in found.project.filing.closings
     )
-    return record_document(Record(found.project, found.result, found.project.rules, seal, extras))
+    return record_document(Record(found.project, found.result, found.project.rules, seals, extras))
+
+
+def undrawn_text(project: Project) -> str:
+    """What the record cannot print as it is written, in words; empty where it prints all.
+
+    Asked before a record is signed: names of project, stations and sessions, observers and notes.
+    """
+    from surveyapp.report.pdf.fonts import undrawn
+    from surveyapp.report.written import missing_text
+
+    texts = [project.name, *(station.name for station in project.stations)]
+    for session in project.sessions:
+        texts += [session.id, session.observer or "", *(row.note for row in session.book.rows)]
+    missing = undrawn(texts)
+    return missing_text(missing) if missing else ""
 
 
 def _write_document(
@@ -202,7 +216,7 @@ def _write_document(
     written = write_pdf(document, face=None if font is None else Path(font), advance=advance)
     atomic_write(output, written.data)
     digest = hashlib.sha256(written.data).hexdigest()
-    return ReportResult(str(output), written.pages, sections, digest)
+    return ReportResult(str(output), written.pages, sections, digest, written.missing)
 
 
 def close(

@@ -6,11 +6,12 @@ from collections.abc import Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from datetime import datetime
 from typing import TYPE_CHECKING, Any
 
 from surveyapp.api.judgement import diagnose
 from surveyapp.api.orientation import Source, oriented
-from surveyapp.api.project import SOFTWARE
+from surveyapp.api.project import SOFTWARE, Folder, open_project
 from surveyapp.domain.penetration_result import Prediction
 from surveyapp.domain.project import Project
 from surveyapp.errors import SurveyError
@@ -169,6 +170,44 @@ class Trial:
         """One independent survey more, from three on none again."""
         more = (self.tried.more_surveys + 1) % 3
         return self.changed(replace(self.tried, more_surveys=more))
+
+
+def record_step(
+    project: Folder,
+    step: int,
+    *,
+    by: str,
+    file: str = "",
+    note: str = "",
+    centre_line_mm: float | None = None,
+    waist_line_mm: float | None = None,
+    now: datetime | None = None,
+) -> None:
+    """Record that a step of the procedure is done; step 5 may be recorded again and again.
+
+    Parameters
+    ----------
+    project : path
+    step : int
+        1 to 6.
+    by, file, note : str
+        Who, with which file of the project folder, and anything else.
+    centre_line_mm, waist_line_mm : float or None
+        Readings of step 5.
+    now : datetime or None
+        When; None: today.
+
+    Raises
+    ------
+    SurveyError
+        If it cannot be recorded; nothing is written then.
+    """
+    from surveyapp.domain.penetration import ProcedureStep
+    from surveyapp.workflows.procedure import record_step as record
+
+    day = (now or datetime.now().astimezone()).date().isoformat()
+    entry = ProcedureStep(step, day, by, note, file, centre_line_mm, waist_line_mm)
+    record(open_project(project), entry)
 
 
 def has_breakthrough(project: Project) -> bool:

@@ -19,6 +19,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--cluster", metavar="ADDRESS", help="simulate on the cluster at this address"
     )
+    parser.add_argument(
+        "--done", metavar="STEP", type=int, help="record first that this step (1 to 6) is done"
+    )
+    parser.add_argument("--by", metavar="NAME", default="", help="who has done the step")
+    parser.add_argument("--file", metavar="FILE", default="", help="with which file of the project")
+    parser.add_argument("--note", metavar="TEXT", default="", help="anything else about the step")
+    parser.add_argument(
+        "--centre-line", metavar="MM", type=float, help="reading of step 5, + right"
+    )
+    parser.add_argument("--waist-line", metavar="MM", type=float, help="reading of step 5, + high")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 
@@ -26,6 +36,16 @@ def run(options: argparse.Namespace) -> int:
     """Predict and print; 1 if a confirmed tolerance is not met."""
     from surveyapp import api
 
+    if options.done is not None:
+        api.record_step(
+            options.project,
+            options.done,
+            by=options.by,
+            file=options.file,
+            note=options.note,
+            centre_line_mm=options.centre_line,
+            waist_line_mm=options.waist_line,
+        )
     with api.cluster_executor(options.cluster) as executor:
         result = api.predict(options.project, plan=options.plan, executor=executor)
     if options.json:

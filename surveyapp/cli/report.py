@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 
 from surveyapp.cli.output import print_json
 from surveyapp.errors import Problem, SurveyError
@@ -45,6 +46,8 @@ def run(options: argparse.Namespace) -> int:
             diagnosis=options.diagnosis,
             advance=options.advance,
         )
+    for warning in written.warnings:
+        print(warning.text, file=sys.stderr)
     sheets = api.SheetsResult((), ())
     if options.sheets and options.blank is None:
         sheets = api.write_sheets(options.folder, options.output)

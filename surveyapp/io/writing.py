@@ -22,6 +22,7 @@ from surveyapp.io.tomltext import atomic_write, comments, plain, present, toml_k
 
 __all__ = [
     "append_subtable",
+    "append_below",
     "append_subtables",
     "append_table",
     "append_tables",
@@ -88,6 +89,28 @@ def append_tables(project_toml: Path, tables: Sequence[tuple[str, Mapping[str, o
         added.append(_table_text(f"[[{toml_key(name)}]]", mapping))
     gap = "" if not text else "\n" if text.endswith("\n") else "\n\n"
     _write_checked(project_toml, text, text + gap + "\n".join(added), expected)
+
+
+def append_below(project_toml: Path, parent: str, name: str, mapping: Mapping[str, object]) -> None:
+    """Append ``[[parent.name]]`` of a single ``[parent]`` as text at the end of project.toml.
+
+    Raises
+    ------
+    SurveyError
+        If there is no such table, or if the result would not parse to the intention.
+    """
+    text, data = _read(project_toml)
+    expected = copy.deepcopy(data)
+    holder = expected.get(parent)
+    if not isinstance(holder, dict):
+        raise _refused(project_toml, f"there is no [{parent}]")
+    found = holder.setdefault(name, [])
+    if not isinstance(found, list):
+        raise _refused(project_toml, f"{parent}.{name} is no list of tables")
+    found.append(plain(mapping))
+    added = _table_text(f"[[{toml_key(parent)}.{toml_key(name)}]]", mapping)
+    gap = "\n" if text.endswith("\n") else "\n\n"
+    _write_checked(project_toml, text, text + gap + added, expected)
 
 
 def append_subtable(

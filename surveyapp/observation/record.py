@@ -6,7 +6,7 @@ from pathlib import Path
 
 from surveyapp import api
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.io.guarded import checked_inside
+from surveyapp.io.guarded import checked_inside, is_regular
 
 
 def write_record(folder: api.Folder) -> str:
@@ -25,3 +25,8 @@ def write_record(folder: api.Folder) -> str:
         what = f"the record cannot be written ({error.strerror or error})"
         raise SurveyError(Problem(what, str(path))) from None
     return str(api.report(folder, path / "record.pdf").path)
+
+
+def record_written(folder: api.Folder) -> bool:
+    """Whether a record of the project stands in its results folder."""
+    return is_regular(Path(folder) / "results" / "record.pdf")

@@ -6,7 +6,7 @@ their own (a diagnosis, an adjustment), which stand before the checks.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -39,12 +39,15 @@ class SealShown:
         Head of the ledger's chain, 20 characters.
     files : str
         Head of the chain over the sealed files.
+    session : str
+        The session that was closed; empty: the project.
     """
 
     at: str
     by: str
     seal: str
     files: str = ""
+    session: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,15 +67,15 @@ class Record:
     project : Project
     result : OrientationResult
     rule_book : RuleBook or None
-    seal : SealShown or None
-        None while the project is open.
+    seals : tuple of SealShown
+        Closings in force; none while everything is open.
     extras : tuple of Extra
     """
 
     project: Project
     result: OrientationResult
     rule_book: RuleBook | None = None
-    seal: SealShown | None = None
+    seals: tuple[SealShown, ...] = ()
     extras: tuple[Extra, ...] = ()
 
 
@@ -84,11 +87,15 @@ class Section:
     blocks: Callable[[Record], tuple[Block, ...]]
 
 
-def _signed(shown: SealShown | None) -> tuple[tuple[str, str], ...]:
-    """What the first page says of the closing."""
-    if shown is None:
-        return (("signed", "not signed: the project is open"),)
-    return (("signed", f"{shown.by or '-'}, {shown.at}"), ("seal", shown.seal))
+def _signed(seals: Sequence[SealShown]) -> tuple[tuple[str, str], ...]:
+    """What the first page says of the closings."""
+    facts: list[tuple[str, str]] = []
+    if not any(not item.session for item in seals):
+        facts.append(("signed", "the project is open and not signed as a whole"))
+    for item in seals:
+        what = f"signed, {item.session}" if item.session else "signed"
+        facts += [(what, f"{item.by or '-'}, {item.at}"), ("seal", item.seal)]
+    return tuple(facts)
 
 
 def _extras(record: Record) -> tuple[Block, ...]:
@@ -96,14 +103,14 @@ def _extras(record: Record) -> tuple[Block, ...]:
 
 
 SECTIONS: Final[tuple[Section, ...]] = (
-    Section("head", lambda r: head.blocks(r.project, r.result, r.rule_book, _signed(r.seal))),
+    Section("head", lambda r: head.blocks(r.project, r.result, r.rule_book, _signed(r.seals))),
     Section("azimuths", lambda r: azimuths.blocks(r.project, r.result)),
     Section("constants", lambda r: constants.blocks(r.result)),
     Section("reduction", lambda r: reduction.blocks(r.project, r.result)),
     Section("fieldbook", lambda r: fieldbook.blocks(r.project)),
     Section("extras", _extras),
     Section("checks", lambda r: checks.blocks(r.result)),
-    Section("seal", lambda r: () if r.seal is None else seal.blocks(r.seal)),
+    Section("seal", lambda r: seal.blocks(r.seals)),
     Section("signature", lambda _: signature.blocks()),
     Section("full_numbers", lambda r: full_numbers.blocks(r.result)),
 )

@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
+
+from surveyapp.domain.project import ResultWarning
+
+_SHOWN: Final = 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,12 +41,16 @@ class ReportResult:
         Ids in order.
     sha256 : str
         Of the file.
+    missing : tuple of (str, str)
+        Texts that hold letters no type face at hand has, and those letters: they are printed as
+        their codes.
     """
 
     path: str
     pages: int
     sections: tuple[str, ...]
     sha256: str
+    missing: tuple[tuple[str, str], ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON, schema ``surveyapp.report/1``."""
@@ -52,4 +60,27 @@ class ReportResult:
             "pages": self.pages,
             "sections": list(self.sections),
             "sha256": self.sha256,
+            "missing_glyphs": [
+                {"text": text, "characters": [f"U+{ord(letter):04X}" for letter in letters]}
+                for text, letters in self.missing
+            ],
+            "warnings": [warning.to_dict() for warning in self.warnings],
         }
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """That letters are printed as their codes, and in which texts."""
+        if not self.missing:
+            return ()
+        return (ResultWarning("glyphs_missing", missing_text(self.missing)),)
+
+
+def missing_text(missing: tuple[tuple[str, str], ...]) -> str:
+    """Which texts cannot be printed as they are written."""
+    letters = len(set("".join(found for _, found in missing)))
+    shown = ", ".join(text[:40] for text, _ in missing[:_SHOWN])
+    more = f" and {len(missing) - _SHOWN} more" if len(missing) > _SHOWN else ""
+    return (
+        f"No type face at hand has {letters} of the letters in: {shown}{more}. The record prints "
+        "their codes in brackets; --font FILE.ttf names a face that has them."
+    )

@@ -146,3 +146,30 @@ def test_a_trigonometric_height_and_a_shaft(
     )
     _, second = predict(twice, capsys)
     assert second["vertical_m"] == pytest.approx(answer["vertical_m"] / 2.0**0.5)
+
+
+def test_steps_are_recorded_by_the_command(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = mine_folder(tmp_path / "m", mine_toml())
+    (folder / "check.pdf").write_text("drawing", encoding="utf-8")
+    _, before = predict(folder, capsys)
+    assert not any(step["done"] for step in before["steps"])
+    predict(folder, capsys, "--done", "2", "--by", "office", "--note", "0.47 m")
+    for reading in ("4.5", "-2"):
+        more = ("--centre-line", reading, "--waist-line", "1.0", "--file", "check.pdf")
+        _, answer = predict(folder, capsys, "--done", "5", "--by", "shift A", *more)
+    steps = [step for step in answer["steps"] if step["done"]]
+    assert [step["id"] for step in steps] == [2, 5, 5]
+    assert [step["centre_line_mm"] for step in steps] == [None, 4.5, -2.0]
+    assert steps[1]["file"] == "check.pdf"
+    assert answer["lateral_m"] == before["lateral_m"]
+    text = (folder / "project.toml").read_text(encoding="utf-8")
+    for wrong in (
+        ("--done", "7", "--by", "x"),
+        ("--done", "1"),
+        ("--done", "2", "--by", "x", "--waist-line", "1"),
+        ("--done", "5", "--by", "x", "--file", "none.pdf"),
+    ):
+        assert main(["predict", str(folder), *wrong]) == 2
+    assert (folder / "project.toml").read_text(encoding="utf-8") == text

@@ -147,7 +147,17 @@ def test_the_same_input_gives_the_same_bytes_in_another_process(
     assert again.read_bytes() == path.read_bytes()
     printed = json.loads(done.stdout)
     assert printed["sha256"] == result.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
-    assert set(printed) == {"schema", "path", "pages", "sections", "sha256"}
+    assert set(printed) == {
+        "schema",
+        "path",
+        "pages",
+        "sections",
+        "sha256",
+        "missing_glyphs",
+        "sheets",
+        "without_sheet",
+        "warnings",
+    }
     assert printed["pages"] == result.pages == len(pypdf.PdfReader(path).pages)
 
 

@@ -113,6 +113,10 @@ def _parse(path: Path, document: GkfDocument) -> None:
                 "Such definitions can read other files; remove them.",
             )
         ) from None
+    except (LookupError, ValueError) as failure:
+        raise SurveyError(
+            Problem("The file's encoding is not known", path.name, str(failure), "text in UTF-8")
+        ) from None
     except SAXParseException as failure:
         raise SurveyError(
             Problem(

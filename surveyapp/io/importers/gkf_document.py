@@ -22,6 +22,10 @@ MM = 1e-3
 NEVER_MM = 1e9
 """``tol-abs`` of a network in which nothing is left out, however far it misses."""
 AXES = ("ne", "sw", "es", "wn", "en", "nw", "se", "ws")
+LARGEST_NUMBER = 1e10
+"""A grid coordinate with its zone's number in front has eight digits before the point."""
+SMALLEST_NUMBER = 1e-12
+LARGEST_ANGLE = 1e6
 MOST_ELEMENTS = 150_000
 DEEPEST = 16
 MOST_PROBLEMS = 200
@@ -209,8 +213,12 @@ class GkfDocument:
             value = float(text)
         except ValueError:
             value = math.nan
-        if math.isfinite(value):
+        if abs(value) <= LARGEST_NUMBER and (value == 0.0 or abs(value) >= SMALLEST_NUMBER):
             return value
+        if math.isfinite(value):
+            expected = f"{SMALLEST_NUMBER:g} to {LARGEST_NUMBER:g}, or 0"
+            self.problem(f"{what} is beyond all measures", line, repr(text[:40]), expected)
+            return None
         hint = "Use a decimal point." if "," in text else ""
         self.problem(f"{what} is no number", line, repr(text), "a number", hint)
         return None
@@ -218,9 +226,11 @@ class GkfDocument:
     def angle(self, text: str, line: int) -> tuple[float, float] | None:
         """Value [rad] and unit of its standard deviation [rad], gon or degrees-minutes-seconds."""
         try:
-            return float(text) * GON, CC
+            value = float(text)
         except ValueError:
-            pass
+            value = math.nan
+        if abs(value) <= LARGEST_ANGLE:
+            return value * GON, CC
         match = _DMS.fullmatch(text.strip())
         if match is None or float(match[3]) > 60.0 or float(match[4]) > 60.0:
             self.problem(

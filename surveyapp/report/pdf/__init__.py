@@ -62,10 +62,11 @@ from surveyapp.report.pdf.tables import is_tall, table_flowable
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """What was written: the bytes and the number of pages."""
+    """What was written: the bytes, the number of pages, and texts with letters no face has."""
 
     data: bytes
     pages: int
+    missing: tuple[tuple[str, str], ...] = ()
 
 
 def write_pdf(
@@ -122,7 +123,7 @@ def write_pdf(
 
     template.addPageTemplates([PageTemplate(id="page", frames=[frame], onPage=furniture)])
     template.build(_Story(_flowables(document, faces)), canvasmaker=_Canvas.maker(faces))
-    return Written(stream.getvalue(), pages[0])
+    return Written(stream.getvalue(), pages[0], tuple(sorted(faces.missing.items())))
 
 
 class _Story(list[Flowable]):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
@@ -24,12 +24,17 @@ _CID: Final = {"zh": "STSong-Light", "ja": "HeiseiKakuGo-W5", "ko": "HYGothic-Me
 
 @dataclass(frozen=True, slots=True)
 class Faces:
-    """Faces in order of preference; what a text needs is found once and kept."""
+    """Faces in order of preference; what a text needs is found once and kept.
+
+    ``missing`` holds every text with letters that no face has, and those letters: they are drawn
+    as their code in brackets, so that no two names look alike.
+    """
 
     embedded: tuple[Face, ...]
     _splits: dict[str, list[tuple[str, str]]] = field(default_factory=dict, repr=False)
     _widths: dict[str, float] = field(default_factory=dict, repr=False)
     _base: set[str] = field(default_factory=set, repr=False)
+    missing: dict[str, str] = field(default_factory=dict)
 
     def of(self, text: str) -> tuple[Face, ...]:
         """Faces for a text: the embedded ones, and a CID face where those lack a wide character."""
@@ -45,8 +50,18 @@ class Faces:
         known = self._splits.get(text)
         if known is None:
             base = self.is_base(text) and text.isprintable()
-            known = self._splits[text] = [(BASE, text)] if base else runs(text, self.of(text))
+            known = [(BASE, text)] if base else self._runs(text)
+            self._splits[text] = known
         return known
+
+    def _runs(self, text: str) -> list[tuple[str, str]]:
+        faces = self.of(text)
+        lost = sorted({c for c in text if c.isprintable() and not face_has(faces, ord(c))})
+        if not lost:
+            return runs(text, faces)
+        self.missing[text] = "".join(lost)
+        codes = {ord(letter): f"[{ord(letter):04X}]" for letter in lost}
+        return runs(text.translate(codes), faces)
 
     def markup(self, text: str) -> str:
         """Text with a font tag for every run that the base face cannot draw."""
@@ -70,6 +85,14 @@ class Faces:
         if not letters <= self._base:
             self._base.update(c for c in letters if self.embedded[0].has(ord(c)))
         return letters <= self._base
+
+
+def undrawn(texts: Iterable[str]) -> tuple[tuple[str, str], ...]:
+    """Texts with letters that no face at hand has, and those letters."""
+    faces = register_faces(None)
+    for text in texts:
+        faces.split(text)
+    return tuple(sorted(faces.missing.items()))
 
 
 def face_has(faces: Sequence[Face], code: int) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from surveyapp.report.blocks import Block, Heading, KeyValues, Paragraph
@@ -10,22 +11,28 @@ if TYPE_CHECKING:
     from surveyapp.report.record import SealShown
 
 
-def blocks(shown: SealShown) -> tuple[Block, ...]:
-    """Blocks of the closing."""
+def blocks(seals: Sequence[SealShown]) -> tuple[Block, ...]:
+    """Blocks of the closings in force; none where there are none."""
+    if not seals:
+        return ()
+    facts: list[tuple[str, str]] = []
+    for shown in seals:
+        facts += [
+            ("closed", f"session {shown.session}" if shown.session else "the project"),
+            ("closed at", shown.at),
+            ("closed by", shown.by or "-"),
+            ("seal", shown.seal),
+            ("sha256 of the files", shown.files or "-"),
+        ]
     return (
         Heading("Closing"),
-        KeyValues(
-            (
-                ("closed at", shown.at),
-                ("closed by", shown.by or "-"),
-                ("seal", shown.seal),
-                ("sha256 of the files", shown.files or "-"),
-            )
-        ),
+        KeyValues(tuple(facts)),
         Paragraph(
             "The seal is the head of the ledger's hash chain at this closing; the closing holds "
-            "the sha256 of project.toml, books, own cards and rule books and logs. "
-            f"surveyapp check DIR --seal {shown.seal} tells whether all of it is as it was signed.",
+            "the sha256 of what it closes: project.toml or the session's table, books, own cards "
+            "and rule books, logs; of a session also stations, instrument, settings and "
+            f"calibrations. surveyapp check DIR --seal {seals[0].seal} tells whether all of it is "
+            "as it was signed.",
             "small",
         ),
     )

@@ -19,7 +19,7 @@ from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import SurveyError
 from surveyapp.observation.practice import Practice
-from surveyapp.observation.record import write_record
+from surveyapp.observation.record import record_written, write_record
 from surveyapp.tui import texts
 from surveyapp.tui.drafts import Draft
 from surveyapp.tui.entry_desk import problem_text
@@ -156,8 +156,9 @@ class ResultScreen(Screen[None]):
             self.post_message(self.Told(problem_text(error)))
 
     def action_sign(self) -> None:
-        """Close the session."""
-        self.app.push_screen(SignatureScreen(self.draft), self._signed)
+        """Close the session; what the record cannot print is told before."""
+        told = "" if self.project is None else api.undrawn_text(self.project)
+        self.app.push_screen(SignatureScreen(self.draft, told), self._signed)
 
     def _signed(self, name: str | None) -> None:
         if name is None:
@@ -167,7 +168,19 @@ class ResultScreen(Screen[None]):
         except SurveyError as error:
             self.post_message(self.Told(problem_text(error)))
             return
-        self.post_message(self.Told(texts.SIGNED.format(name=name, files=closed.files)))
+        told = texts.SIGNED.format(name=name, files=closed.files, head=closed.head)
+        self.post_message(self.Told(told))
+        if record_written(self.folder):
+            self.write_again(told)
+
+    @work(thread=True, exclusive=True, group="record")
+    def write_again(self, told: str) -> None:
+        """Make the PDF again, so that it shows the signature; else call it out of date."""
+        try:
+            again = texts.PDF_AGAIN.format(path=write_record(self.folder))
+        except SurveyError as error:
+            again = texts.PDF_OUT_OF_DATE.format(what=error.problems[0].what)
+        self.post_message(self.Told(f"{told}\n{again}"))
 
     def on_result_screen_told(self, message: Told) -> None:
         """Say what became of it."""

@@ -19,8 +19,9 @@ class SignatureScreen(ModalScreen[str | None]):
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", texts.KEY_LEAVE)]
 
-    def __init__(self, draft: Draft) -> None:
+    def __init__(self, draft: Draft, told: str = "") -> None:
         super().__init__()
+        self.told = told
         self.draft = draft
 
     def compose(self) -> ComposeResult:
@@ -28,6 +29,8 @@ class SignatureScreen(ModalScreen[str | None]):
         with Vertical(id="dialog"):
             yield Static(texts.SIGN_TITLE, classes="heading", markup=False)
             yield Static(texts.SIGN_MEANING, markup=False)
+            if self.told:
+                yield Static(self.told, id="trouble", markup=False)
             line = Input(placeholder=texts.SIGN_NAME, compact=True, select_on_focus=False)
             line.cursor_blink = False
             yield line

@@ -70,6 +70,8 @@ SIGN_MEANING: Final = (
 )
 SIGN_NAME: Final = "your name"
 SIGN_KEYS: Final = "Enter signs   Escape does not"
-SIGNED: Final = "closed and signed by {name}; files sealed: {files}"
+SIGNED: Final = "closed and signed by {name}; files sealed: {files}; seal {head}"
+PDF_AGAIN: Final = "PDF made again with the signature: {path}"
+PDF_OUT_OF_DATE: Final = "the PDF on the disk is OUT OF DATE, it lacks the signature: {what}"
 CLOSED_SESSION: Final = "READING ONLY: closed and signed"
 KEY_SIGN: Final = "Close and sign"

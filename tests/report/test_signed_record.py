@@ -1,0 +1,57 @@
+"""The signature reaches the record; letters that no face has are told and never look alike."""
+
+from __future__ import annotations
+
+import io
+from datetime import UTC, datetime
+from pathlib import Path
+
+from pypdf import PdfReader
+
+from surveyapp import api
+from surveyapp.report.blocks import Document, Paragraph
+from surveyapp.report.pdf import write_pdf
+from tests.tui.helpers_tui import make_calibrations
+
+STATIONS = ("\u0645\u062d\u0637\u0629\u0661", "\u0646\u0642\u0637\u0629\u0662")
+
+
+def now() -> datetime:
+    return datetime(2026, 11, 28, 16, 0, tzinfo=UTC)
+
+
+def text_of(data: bytes) -> str:
+    return "".join(page.extract_text() for page in PdfReader(io.BytesIO(data)).pages)
+
+
+def test_a_signed_session_stands_on_the_first_page(tmp_path: Path) -> None:
+    folder = make_calibrations(tmp_path / "p")
+    output = tmp_path / "record.pdf"
+    api.report(folder, output)
+    assert "not signed as a whole" in text_of(output.read_bytes())
+    closed = api.close(folder, session="k1", by="M. Weber", now=now)
+    api.report(folder, output)
+    first = PdfReader(str(output)).pages[0].extract_text()
+    for word in ("verdict", "M. Weber", "2026-11-28T16:00:00", closed.head):
+        assert word in first, word
+    assert api.check(folder, seal=closed.head)[-1].passed
+
+
+def test_letters_that_no_face_has_are_told_and_look_different(tmp_path: Path) -> None:
+    document = Document("t", "", (), tuple(Paragraph(name) for name in STATIONS))
+    written = write_pdf(document)
+    assert {text for text, _ in written.missing} >= set(STATIONS)
+    text = text_of(written.data)
+    assert "[0645][062D]" in text
+    assert "[0646][0642]" in text
+
+
+def test_the_report_tells_what_it_cannot_print(tmp_path: Path) -> None:
+    folder = make_calibrations(tmp_path / "p")
+    path = folder / "project.toml"
+    path.write_text(path.read_text("utf-8").replace("3090", STATIONS[0]), encoding="utf-8")
+    assert STATIONS[0] in api.undrawn_text(api.open_project(folder))
+    made = api.report(folder, tmp_path / "record.pdf").to_dict()
+    assert [item["code"] for item in made["warnings"]] == ["glyphs_missing"]
+    told = {item["text"]: item["characters"] for item in made["missing_glyphs"]}
+    assert "U+0645" in told[STATIONS[0]]
