@@ -118,6 +118,10 @@ if TYPE_CHECKING:
     from surveyapp.workflows.pooling import InstrumentDiagnosis
 
 _TYPES: Final = {
+    "SensorDiagnosis": "surveyapp.diagnosis.sensors.diagnosis",
+    "CompensationResult": "surveyapp.workflows.compensating",
+    "FilterResult": "surveyapp.domain.noise",
+    "AllanResult": "surveyapp.domain.noise",
     "AngleResult": "surveyapp.domain.results",
     "BatchResult": "surveyapp.domain.filing",
     "BatchRow": "surveyapp.domain.filing",
@@ -275,4 +279,8 @@ __all__ = [
     "SimulatedFiles",
     "StationPlan",
     "VarianceComponent",
+    "AllanResult",
+    "FilterResult",
+    "CompensationResult",
+    "SensorDiagnosis",
 ]
