@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.diagnosis.case import Case
+from surveyapp.diagnosis.shifts import shift
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Effect
 
@@ -292,8 +293,9 @@ def _shifts(
     after = (position > place).astype(np.float64)
     if side is None:
         return (after,)
-    kick = float(kicked) * side * side[int(np.argmin(np.abs(position - place)))]
-    return tuple(after * (1.0 - kick * np.cos(np.pi * phase)) for phase in PULSE_PHASES)
+    if not kicked:
+        return (after,) * len(PULSE_PHASES)
+    return tuple(shift(position, side, place, phase) for phase in PULSE_PHASES)
 
 
 def _periodic(

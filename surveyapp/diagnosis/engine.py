@@ -12,6 +12,7 @@ from surveyapp.diagnosis.battery import run_battery
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.checks import check_input
 from surveyapp.diagnosis.compare import Level
+from surveyapp.diagnosis.events import event_notes
 from surveyapp.diagnosis.fits import Fit, unit_variance
 from surveyapp.diagnosis.gate import GATE
 from surveyapp.diagnosis.held_out import confirm_rms, forecast, leave_one_out
@@ -36,6 +37,7 @@ from surveyapp.diagnosis.result import (
     ModelResult,
     Verdict,
 )
+from surveyapp.diagnosis.run_average import is_short, short_average
 from surveyapp.diagnosis.run_value import (
     Value,
     averaged_value,
@@ -101,6 +103,8 @@ def _diagnosed(
     verdict = _verdict(problem, found, ambiguous)
     averaged = averaged_value(problem, found.levels[-1].every)
     averaged = _widened(problem, found, averaged, verdict)
+    if found.levels[-1].depth > 0 and is_short(problem, named=bool(found.adopted)):
+        averaged = short_average(problem, base, named=bool(found.adopted))
     best = found.best if ambiguous else found.after
     models = [_model(problem, fit, confirm) for fit in (base, found.after, best)]
     outlook = advice(problem, np.random.default_rng(int(digest[:15], 16)))
@@ -120,7 +124,11 @@ def _diagnosed(
         after_best=models[2],
         averaged=_quantity(problem, averaged),
         remedy=_remedies(problem, found),
-        warnings=(*problem.warnings, *_warnings(problem, found)),
+        warnings=(
+            *problem.warnings,
+            *_warnings(problem, found),
+            *event_notes(problem, found, confirm),
+        ),
         battery=battery,
         ledger=ledger_entry(problem, found, battery, digest=digest, draws=draws),
         residuals_before=_residuals(problem, base),

@@ -22,6 +22,7 @@ from surveyapp.diagnosis.compare import (
     best_with,
     most_parameters,
     next_level,
+    orthonormal_design,
     spans,
     within_margin,
 )
@@ -29,6 +30,7 @@ from surveyapp.diagnosis.fits import Fit, fit_members, with_noise
 from surveyapp.diagnosis.gate import GATE, Gate, open_gate
 from surveyapp.diagnosis.held_out import confirm_rms, flagged, leave_one_out, unforetold
 from surveyapp.diagnosis.run_value import plausible
+from surveyapp_models.arrays import Floats
 
 DEFAULT_DRAWS = 4000
 DEPTHS = ((45, 4), (20, 3), (12, 2), (8, 1))
@@ -41,6 +43,9 @@ NOISE_MARGIN = 2.0 * MARGIN
 """BIC by which noise that wanders must be worse: it is no single rival but stands for every shape
 that it may take by chance. By simulation of walks and of drifts and steps beside them
 (docs/reference/operating-characteristics.md)."""
+LEAST_TOGETHER = 3
+APART = 3.0
+"""Combined sigmas by which coefficients of two sets may differ."""
 NOISE_WORDS = {
     "random_walk": "a north that wanders at random",
     "amplitude_walk": "a following that is irregular at random",
@@ -216,6 +221,8 @@ def _failure(problem: Case, after: Fit, names: list[str], proofs: Proofs) -> tup
         without = reduced(problem, after, [n for n in names if n != name])
         if without.bic <= after.bic:
             return name, "the model is as good without it"
+        if slips_together(problem, after, name):
+            return name, "shifts of north that came and went would look the same"
         hidden = partly_missing(name, proofs.pool)
         if hidden:
             return name, f"{hidden} could look the same"
@@ -229,11 +236,35 @@ def _failure(problem: Case, after: Fit, names: list[str], proofs: Proofs) -> tup
         kind = imitating_noise(problem, after, without)
         if kind is not None:
             return name, f"{NOISE_WORDS[kind]} would look like it too often"
-        if proofs.confirm is not None:
+        if proofs.confirm is not None and not is_event(after, name):
             failure = unconfirmed(proofs.confirm, after, without)
+            failure = failure or other_coefficient(proofs.confirm, after, without, name)
             if failure is not None:
                 return name, failure
     return None
+
+
+def slips_together(problem: Case, after: Fit, name: str) -> bool:
+    """Whether three and more slips follow each other on one side, which chance does not do.
+
+    Of independent slips among 20 readings three stand so in one case of seventy; a north that
+    shifted and came back, with the kicks of it, stands so often.
+    """
+    rows = [
+        int(np.argmax(np.abs(column)))
+        for member in after.members
+        if member.candidate.id == name and member.candidate.effect is not None
+        if member.candidate.effect.acts_on == "observation"
+        for column in member.columns.T
+    ]
+    if len(rows) < LEAST_TOGETHER or problem.side is None:
+        return False
+    sides = {float(problem.side[row]) for row in rows}
+    if len(sides) != 1:
+        return False
+    own = np.flatnonzero(problem.side == sides.pop())
+    places = sorted(np.searchsorted(own, rows).tolist())
+    return bool(places[-1] - places[0] == len(rows) - 1)
 
 
 def partly_missing(name: str, pool: Iterable[Candidate]) -> str:
@@ -266,6 +297,50 @@ def unconfirmed(confirm: Case, after: Fit, without: Fit) -> str | None:
     if here is None or there is None:
         return "the second set lacks what is needed to confirm it"
     return "the second set is predicted no better with it" if here >= there else None
+
+
+def is_event(fit: Fit, name: str) -> bool:
+    """Whether a name stands for what happens once: it cannot recur in a second set."""
+    effects = [m.candidate.effect for m in fit.members if m.candidate.id == name]
+    return any(effect is not None and effect.event for effect in effects)
+
+
+def other_coefficient(confirm: Case, after: Fit, without: Fit, name: str) -> str | None:
+    """Why the coefficient of an instrument's effect is not that of the second set, else None.
+
+    What belongs to the instrument has the same coefficient in both; a trend that chance made has
+    not. Effects of one coefficient are compared, each beside the model without it.
+    """
+    member = next((m for m in after.members if m.candidate.id == name), None)
+    if member is None or member.candidate.size != 1 or member.candidate.count != 1:
+        return None
+    base = fit_members(confirm, ())
+    there = next((c for c in all_candidates(confirm, base.theta) if c.id == name), None)
+    if there is None or not there.points:
+        return None
+    gaps = [sum(abs(p[k] - member.point.get(k, p[k])) for k in p) for p in there.points]
+    columns = there.columns[int(np.argmin(gaps))][:, 0]
+    first = along(without, member.columns[:, 0])
+    second = along(base, columns)
+    if first is None or second is None:
+        return None
+    apart = abs(first[0] - second[0])
+    if apart <= APART * float(np.hypot(first[1], second[1])):
+        return None
+    return "its coefficient in the second set is another one"
+
+
+def along(fit: Fit, column: Floats) -> tuple[float, float] | None:
+    """Coefficient of a column beside a fit, and its sigma; None where nothing of it is left."""
+    q = orthonormal_design(fit)
+    left = column - q @ (q.T @ column)
+    square = float(left @ left)
+    dof = fit.residual.size - q.shape[1] - 1
+    if square <= 1e-8 * float(column @ column) or dof < 1:
+        return None
+    b = float(left @ fit.residual) / square
+    rest = max(fit.sum_of_squares - b * b * square, 1e-300)
+    return b, float(np.sqrt(rest / dof / square))
 
 
 def imitating_noise(problem: Case, after: Fit, without: Fit) -> str | None:

@@ -74,6 +74,13 @@ def _midpoint_columns(problem: Case, fit: Fit, member: Member) -> Floats:
     return np.asarray(member.columns / problem.root_weights[:, None])
 
 
+def midpoint_part(problem: Case, fit: Fit, member: Member) -> Floats:
+    """What the value takes of a member that a fit does not hold, shape (q,)."""
+    if member.candidate.is_law:
+        return np.zeros(member.candidate.size)
+    return effect_rows(problem, member, _midpoint_columns(problem, fit, member))
+
+
 def functional(problem: Case, fit: Fit) -> Floats:
     """Row that makes the value of the parameters of a fit, shape (p,)."""
     parts = [problem.value_base]

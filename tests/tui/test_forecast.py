@@ -79,16 +79,18 @@ def test_moments_refine_the_period_of_the_card() -> None:
 
 
 @pytest.mark.statistical
-def test_a_clean_run_alarms_in_one_percent_of_cases() -> None:
+def test_a_clean_run_seldom_alarms_at_any_time_of_its_length() -> None:
     rng = np.random.default_rng(8)
     alarms = 0
-    for _ in range(400):
-        values, index, sides = run(10, rng)
-        alarms += (
-            find_trouble(fit_damped_swing(values, index, sides), index, sides, rng) is not None
+    for _ in range(150):
+        values, index, sides = run(20, rng)
+        alarms += any(
+            find_trouble(fit_damped_swing(values[:n], index[:n], sides[:n]), index[:n], sides[:n])
+            is not None
+            for n in range(6, 21)
         )
-    # 400 draws at 1 %: 4 expected, standard deviation 2
-    assert alarms <= 11
+    # at most 5 % by Ville's inequality, .022 in the reference: 13 of 150 have a chance of .02
+    assert alarms <= 13
 
 
 @pytest.mark.parametrize(
@@ -97,16 +99,20 @@ def test_a_clean_run_alarms_in_one_percent_of_cases() -> None:
         (Trouble.GROSS_ERROR, lambda k, s: 120.0 * (k == 6)),
         (Trouble.STEP, lambda k, s: 60.0 * (k >= 7)),
         (Trouble.DAMPING, lambda k, s: -25.0 * s * np.maximum(k - 7, 0.0)),
+        (Trouble.DRIFT, lambda k, s: 6.0 * k),
+        (Trouble.WARM_UP, lambda k, s: 120.0 * np.exp(-k / 2.0)),
     ],
 )
 def test_each_trouble_is_called_by_its_name(trouble: Trouble, disturb: object) -> None:
     rng = np.random.default_rng(3)
     values, index, sides = run(14, rng)
     values = values + disturb(index, sides)  # type: ignore[operator]
-    found = find_trouble(fit_damped_swing(values, index, sides), index, sides, rng)
+    found = find_trouble(fit_damped_swing(values, index, sides), index, sides)
     assert found is not None
     assert found[0] is trouble
-    assert abs(found[1] - 7) <= 1
+    assert found[3] >= 0.5
+    if trouble not in (Trouble.DRIFT, Trouble.WARM_UP):
+        assert abs(found[1] - 7) <= 1
 
 
 def test_a_step_shows_in_the_midpoint_and_decay_in_the_amplitude() -> None:

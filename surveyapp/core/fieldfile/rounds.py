@@ -18,6 +18,8 @@ from surveyapp_models.angles import wrap_pi
 FACE_LIMIT: Final = math.radians(0.5)
 """Faces that differ by more are no pair: no theodolite in use has such a collimation error, and a
 circle is turned between sets by more."""
+MOST_OPEN: Final = 8
+"""So many sets of a set-up stay open for further pointings."""
 _FACES: Final[tuple[Face, ...]] = ("L", "R", "")
 _STEEPEST: Final = 0.05
 _SAME_HEIGHT_M: Final = 5e-4
@@ -45,6 +47,7 @@ class _SetUp:
     """The sets of one set-up, and the direction of each target in the circle of the first."""
 
     rounds: list[Round] = field(default_factory=list)
+    stated: dict[str, list[Round]] = field(default_factory=dict)
     directions: dict[str, float] = field(default_factory=dict)
 
 
@@ -87,13 +90,15 @@ def group(pointings: Iterable[Pointing]) -> Grouped:
                 repeated.append(pointing)
             home = Round(pointing.setup, pointing.at, len(setup.rounds) + 1, pointing.set)
             setup.rounds.append(home)
+            setup.stated.setdefault(pointing.set, []).append(home)
             ordered.append(home)
         _take(setup, home, pointing)
     return Grouped(tuple(ordered), tuple(repeated))
 
 
 def _rivals(setup: _SetUp, pointing: Pointing) -> list[Round]:
-    return [r for r in setup.rounds if r.stated == pointing.set]
+    """Sets that may still take a pointing: the last ones."""
+    return setup.stated.get(pointing.set, [])[-MOST_OPEN:]
 
 
 def _home(setup: _SetUp, pointing: Pointing) -> Round | None:

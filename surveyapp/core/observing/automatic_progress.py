@@ -87,8 +87,8 @@ def _alert(reduction: Reduction, residuals: Floats, rng: np.random.Generator) ->
         return None
     names = [(Trouble.GROSS_ERROR, place) for place in range(residuals.size)]
     basis = np.ones((residuals.size, 1))
-    found = search(residuals, basis, (np.eye(residuals.size), names), rng)
+    found = search(residuals, basis, (np.eye(residuals.size), names))
     if found is None:
         return None
-    trouble, place, p = found
-    return Alert(trouble, reduction.points[place].seq, place, p)
+    trouble, place, p, share = found
+    return Alert(trouble, reduction.points[place].seq, place, p, share)

@@ -27,11 +27,11 @@ def alert_of_readings(
     """Alarm of the turning points on the scale alone."""
     if fit is None:
         return None
-    found = find_trouble(fit, swing.index, swing.sides, rng)
+    found = find_trouble(fit, swing.index, swing.sides, sigma=swing.sigma_div)
     if found is None:
         return None
-    trouble, place, p = found
-    return Alert(trouble, rows.readings[place][1].seq, int(swing.index[place]), p)
+    trouble, place, p, share = found
+    return Alert(trouble, rows.readings[place][1].seq, int(swing.index[place]), p, share)
 
 
 def alert_of_swing(
@@ -66,15 +66,15 @@ def alert_of_swing(
     whitened = np.concatenate(
         [fit.reading_residuals / swing.sigma_div, fit.passage_residuals / swing.sigma_s]
     )
-    found = search(whitened, fit.jacobian, _candidates(swing, fit), rng)
+    found = search(whitened, fit.jacobian, _candidates(swing, fit), sigma=1.0)
     if found is None:
         return None
-    trouble, place, p = found
+    trouble, place, p, share = found
     passage = place - swing.readings.size
     if passage >= 0 and trouble is Trouble.MISTIMED:
-        return Alert(trouble, timed[passage].seq, passage, p)
+        return Alert(trouble, timed[passage].seq, passage, p, share)
     row = rows.readings[place][1]
-    return Alert(trouble, row.seq, int(swing.index[place]), p)
+    return Alert(trouble, row.seq, int(swing.index[place]), p, share)
 
 
 def _candidates(swing: ClampedSwing, fit: ClampedFit) -> Candidates:

@@ -214,8 +214,8 @@ def _alert(
 ) -> Alert | None:
     if fit is None:
         return None
-    found = find_trouble(fit, index, sides, rng)
+    found = find_trouble(fit, index, sides)
     if found is None:
         return None
-    trouble, place, p = found
-    return Alert(trouble, rows[place].seq, int(index[place]), p)
+    trouble, place, p, share = found
+    return Alert(trouble, rows[place].seq, int(index[place]), p, share)

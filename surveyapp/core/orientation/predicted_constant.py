@@ -15,13 +15,15 @@ import numpy as np
 
 from surveyapp.core.orientation.campaign_columns import Circumstances, columns_of
 from surveyapp.core.orientation.instrument_constant import Calibration, InstrumentConstant
+from surveyapp.core.orientation.prediction_notes import Wanted, one_block, told_of
 from surveyapp.core.prediction.average import Determinations, Predicted, predict
+from surveyapp.core.prediction.kernels import telling
 from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp.core.statistics.repeated import SHARED, RunScatter
 from surveyapp.core.uncertain import Source, Spread, Uncertain
 from surveyapp.domain.priors import DEFAULT_PRIORS, Priors
 from surveyapp.domain.project import ResultWarning
-from surveyapp_models.angles import RHO_ARCSEC, wrap_pi
+from surveyapp_models.angles import wrap_pi
 from surveyapp_models.arrays import Floats
 
 LEAST = 4
@@ -30,6 +32,8 @@ MOST = 240
 """The latest determinations that are used: older ones tell of another instrument."""
 CAUSE = "constant: cause not known"
 SCATTER = "constant: scatter of the determinations"
+TOGETHER = 16
+"""Lines that are predicted at once: work and memory grow with their number, no faster."""
 BESIDE = ("run-to-run scatter", "adopted effect outside its range")
 """Contributions that the prediction estimates itself, from the scatter and its causes."""
 UNIT_OF_EFFECT: Mapping[str, str] = {
@@ -47,24 +51,6 @@ SCENARIOS = (-1.2816, -0.5244, 0.0, 0.5244, 1.2816)
 """Equally likely states of what a later visit does not tell, in standard deviations."""
 LEAST_TEMPERATURE_K = 5.0
 """Standard deviation of a temperature that nobody read, at least."""
-ONE_TEMPERATURE_K = 3.0
-"""Beyond the range of the determinations, from which an extrapolation is told."""
-
-
-@dataclass(frozen=True, slots=True)
-class Wanted:
-    """A line whose constant is wanted: sessions with their weights.
-
-    Parameters
-    ----------
-    name : str
-        For messages.
-    visits : tuple of (float, Circumstances)
-        Weight (sum 1) and circumstances of each session.
-    """
-
-    name: str
-    visits: tuple[tuple[float, Circumstances], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,29 +100,75 @@ def predict_constants(
     priors : Priors
     """
     used = _latest(constant.calibrations, facts)
-    circumstances = [facts[item.session, item.target] for item in used]
-    n = len(used)
-    owns = [_own(item) for item in used]
-    sigmas = np.array([own.sigma for own in owns])
-    stated = bool(np.all(np.isfinite(sigmas) & (sigmas > 0.0)))
-    sources, carried = _shared(used)
-    visits = [visit for line in wanted for _, visit in line.visits]
-    columns, gaps, warnings = _columns(constant.instrument.id, circumstances, visits)
-    targets = _targets(wanted, n, sigmas if stated else None)
-    columns, targets, states = _scenarios(columns, targets, gaps, n)
-    first = used[0].value.value
-    values = np.array([first + wrap_pi(item.value.value - first) for item in used])
+    known = [facts[item.session, item.target] for item in used]
+    base = _Base(constant, used, known, *_shared(used))
     named = frozenset(
         UNIT_OF_EFFECT[e.id] for e in constant.instrument.effects if e.id in UNIT_OF_EFFECT
     )
-    found = predict(
-        Determinations(values, sigmas if stated else None, columns, targets, carried, states),
-        priors.without(named),
-    )
-    constants = _uncertain(constant.instrument.id, found, sources)
-    warnings += _told(constant.instrument.id, wanted, circumstances, gaps)
-    scatter = RunScatter(found.excess if stated else 0.0, round(found.dof), None)
-    return PredictedConstants(constants[0], constants[1:], found.weights, scatter, tuple(warnings))
+    priors = priors.without(named)
+    every = [visit for line in wanted for _, visit in line.visits]
+    alike = frozenset(telling(columns_of([*known, *every])))
+    average: Uncertain | None = None
+    lines: list[Uncertain] = []
+    warnings: list[ResultWarning] = []
+    found: Predicted | None = None
+    for start in range(0, max(len(wanted), 1), TOGETHER):
+        part = wanted[start : start + TOGETHER]
+        chosen = None if found is None else found.counting
+        more, gaps, told = base.predicted(part, alike, chosen, priors)
+        found = more if found is None else found
+        values = _uncertain(constant.instrument.id, more, base.sources, start)
+        average = values[0] if average is None else average
+        lines += values[1:]
+        warnings += [w for w in told if w not in warnings]
+        warnings += told_of(constant.instrument.id, part, known, gaps)
+    warnings += one_block(constant.instrument.id, known, bool(wanted))
+    assert found is not None
+    assert average is not None
+    scatter = RunScatter(found.excess if base.stated else 0.0, round(found.dof), None)
+    return PredictedConstants(average, tuple(lines), found.weights, scatter, tuple(warnings))
+
+
+@dataclass(frozen=True, slots=True)
+class _Base:
+    """The determinations that everything is predicted from, with what they share."""
+
+    constant: InstrumentConstant
+    used: Sequence[Calibration]
+    known: Sequence[Circumstances]
+    sources: list[Source]
+    carried: Floats
+
+    @property
+    def sigmas(self) -> Floats:
+        """Stated standard deviations of what belongs to one determination alone [rad]."""
+        return np.array([_own(item).sigma for item in self.used])
+
+    @property
+    def stated(self) -> bool:
+        """Whether every determination states one."""
+        return bool(np.all(np.isfinite(self.sigmas) & (self.sigmas > 0.0)))
+
+    def predicted(
+        self,
+        part: Sequence[Wanted],
+        alike: frozenset[str],
+        chosen: frozenset[int] | None,
+        priors: Priors,
+    ) -> tuple[Predicted, frozenset[str], list[ResultWarning]]:
+        """Predict the average and some lines with the members that count."""
+        visits = [visit for line in part for _, visit in line.visits]
+        columns, gaps, told = _columns(self.constant.instrument.id, self.known, visits)
+        columns = {name: values for name, values in columns.items() if name in alike}
+        gaps = gaps & alike
+        n, sigmas = len(self.used), self.sigmas if self.stated else None
+        columns, targets, states = _scenarios(columns, _targets(part, n, sigmas), gaps, n)
+        first = self.used[0].value.value
+        values = [first + wrap_pi(item.value.value - first) for item in self.used]
+        data = Determinations(
+            np.array(values), sigmas, columns, targets, self.carried, states, chosen
+        )
+        return predict(data, priors), gaps, told
 
 
 def _latest(
@@ -249,7 +281,7 @@ def _state(name: str, known: Floats, z: float) -> float:
 
 
 def _uncertain(
-    instrument: str, found: Predicted, sources: Sequence[Source]
+    instrument: str, found: Predicted, sources: Sequence[Source], start: int
 ) -> tuple[Uncertain, ...]:
     """Predicted values with their contributions.
 
@@ -275,86 +307,7 @@ def _uncertain(
         parts[Source(SCATTER, instrument, found.dof)] = float(found.readings[t])
         for k, part in enumerate(root[t]):
             if part != 0.0:
-                parts[Source(CAUSE, instrument, found.dof, str(k))] = float(part)
+                parts[Source(CAUSE, instrument, found.dof, f"{start}.{k}")] = float(part)
         kept = {source: part for source, part in parts.items() if part != 0.0}
         result.append(Uncertain(float(value), kept, Spread(CAUSE, found.mixtures[t])))
     return tuple(result)
-
-
-def _told(
-    instrument: str,
-    wanted: Sequence[Wanted],
-    known: Sequence[Circumstances],
-    gaps: frozenset[str],
-) -> list[ResultWarning]:
-    """What the reader of a predicted constant must know."""
-    warnings = []
-    for line in wanted:
-        missing = sorted(
-            name for name in gaps if any(_lacks(visit, name) for _, visit in line.visits)
-        )
-        if missing:
-            text = (
-                f"line {line.name}: {', '.join(missing)} not told: the constant is predicted for "
-                "all that it may have been, and its interval is wider for it"
-            )
-            warnings.append(ResultWarning("covariate_missing", text))
-        beyond = _beyond(line, known)
-        if beyond:
-            text = (
-                f"line {line.name}: {' and '.join(beyond)}: the constant of {instrument} is "
-                "extrapolated, and its interval is wider for it"
-            )
-            warnings.append(ResultWarning("prediction_extrapolated", text))
-    days = {item.block for item in known}
-    if len(known) > 1 and len(days) == 1 and known[0].elapsed_days is not None and wanted:
-        text = (
-            f"instrument {instrument}: all determinations were made in one block of work: "
-            "what changes from day to day is not seen in them"
-        )
-        warnings.append(ResultWarning("one_block", text))
-    return warnings
-
-
-def _lacks(visit: Circumstances, name: str) -> bool:
-    value = getattr(visit, name, None)
-    if name == "elapsed_days" and value is None:
-        value = visit.order
-    return value is None
-
-
-def _beyond(line: Wanted, known: Sequence[Circumstances]) -> list[str]:
-    """In what a line lies outside the circumstances of the determinations."""
-    found = []
-    thetas = [item.temperature_c for item in known if item.temperature_c is not None]
-    own = [visit.temperature_c for _, visit in line.visits if visit.temperature_c is not None]
-    if thetas and own:
-        low, high = min(thetas) - ONE_TEMPERATURE_K, max(thetas) + ONE_TEMPERATURE_K
-        far = max(own, key=lambda theta: max(low - theta, theta - high))
-        if not low <= far <= high:
-            found.append(
-                f"its temperature of {far:.1f} C lies outside the {min(thetas):.1f} to "
-                f"{max(thetas):.1f} C of the determinations"
-            )
-    days = [item.elapsed_days for item in known if item.elapsed_days is not None]
-    visits = [visit.elapsed_days for _, visit in line.visits if visit.elapsed_days is not None]
-    if len(days) == len(known) and visits:
-        span = max(days) - min(days)
-        gap = max(max(visits) - max(days), min(days) - min(visits))
-        if gap > max(span, 1.0):
-            found.append(
-                f"it was observed {gap:.0f} days from the nearest determination, and they span "
-                f"{span:.0f} days"
-            )
-    return found
-
-
-def leaves_out(choice: str, chosen: Uncertain, predicted: Uncertain, where: str) -> ResultWarning:
-    """What another choice of the constant leaves out, beside the prediction."""
-    text = (
-        f"{where}: constant_choice {choice} leaves out that the constant may have changed with "
-        f'time, temperature or place: it says {chosen.value * RHO_ARCSEC:.1f}" +- '
-        f'{chosen.interval95 * RHO_ARCSEC:.1f}", the average over what may be at work '
-        f'{predicted.value * RHO_ARCSEC:.1f}" +- {predicted.interval95 * RHO_ARCSEC:.1f}" (95 %)'
-    )
-    return ResultWarning("choice_leaves_out", text)

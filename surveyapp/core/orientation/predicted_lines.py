@@ -8,11 +8,8 @@ from dataclasses import dataclass, replace
 from surveyapp.core.geodesy import Position
 from surveyapp.core.orientation.campaign_columns import Circumstances, facts_of
 from surveyapp.core.orientation.instrument_constant import InstrumentConstant
-from surveyapp.core.orientation.predicted_constant import (
-    Wanted,
-    predict_constants,
-    predictable,
-)
+from surveyapp.core.orientation.predicted_constant import predict_constants, predictable
+from surveyapp.core.orientation.prediction_notes import Wanted
 from surveyapp.core.statistics.repeated import RunScatter, run_scatter, weights_of
 from surveyapp.core.swing.session import ReducedSession
 from surveyapp.core.uncertain import Uncertain, aligned

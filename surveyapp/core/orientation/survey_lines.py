@@ -9,8 +9,8 @@ from surveyapp.core.checks.blunders import azimuth_warnings
 from surveyapp.core.orientation.calibration_sessions import centring_of, own_centring, rounds_of
 from surveyapp.core.orientation.instrument_constant import Chosen, InstrumentConstant, choose
 from surveyapp.core.orientation.lines import LineGeometry, OrientedLine, Round, orient_line
-from surveyapp.core.orientation.predicted_constant import leaves_out
 from surveyapp.core.orientation.predicted_lines import Key, PredictedLine, survey_groups
+from surveyapp.core.orientation.prediction_notes import leaves_out
 from surveyapp.core.orientation.running_constant import running_constant
 from surveyapp.core.orientation.sequence import SessionOrder
 from surveyapp.core.statistics.repeated import RunScatter

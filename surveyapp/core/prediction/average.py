@@ -45,6 +45,8 @@ class Predicted:
     excess : float
         Standard deviation that every determination has beside its stated one, or 0 [rad]: what the
         next one will have too.
+    counting : frozenset of int
+        Members that are not negligible: enough for further visits.
     """
 
     values: Floats
@@ -55,6 +57,7 @@ class Predicted:
     weights: Mapping[str, float]
     dof: float
     excess: float
+    counting: frozenset[int]
 
     def half_width(self, target: int = 0, beside: float = 0.0) -> float:
         """Half-width of the 95 % interval [rad] beside an independent variance [rad^2]."""
@@ -85,7 +88,7 @@ def averaged(found: Members) -> Predicted:
             unit * apart[:, t],
             unit**2 * np.maximum(found.covariance[:, t, t] - own[t], 0.0),
             found.dof,
-        )
+        ).main()
         for t in range(mean.size)
     )
     return Predicted(
@@ -96,6 +99,7 @@ def averaged(found: Members) -> Predicted:
         carried=unit * np.einsum("m,mtr->tr", w, found.carried),
         weights=shares,
         dof=found.dof,
+        counting=found.counting,
         excess=unit * math.sqrt(max(float(w @ found.noise) - 1.0, 0.0)),
     )
 

@@ -70,6 +70,12 @@ def clock(days: Floats, n: int) -> Floats:
     return np.asarray(inside + on(over) - on(under))
 
 
+def telling(columns: Mapping[str, Floats]) -> dict[str, Floats]:
+    """The columns that vary at all, if only at later visits; those of time and place stay."""
+    kept = ("elapsed_days", "block", "line")
+    return {k: v for k, v in columns.items() if k in kept or np.unique(v[np.isfinite(v)]).size > 1}
+
+
 def kernels(columns: Mapping[str, Floats], n: int) -> tuple[Kernel, ...]:
     """Every cause that the columns allow, n determinations first."""
     found = [Kernel("excess", np.eye(columns_size(columns)))]
@@ -86,8 +92,8 @@ def columns_size(columns: Mapping[str, Floats]) -> int:
 
 
 def _varies(values: Floats | None) -> bool:
-    """Whether a column is told everywhere and says anything, if only of the later visits."""
-    return values is not None and bool(np.isfinite(values).all() and np.ptp(values) > 0.0)
+    """Whether a column is told everywhere; one that says nothing is handed over by nobody."""
+    return values is not None and bool(np.isfinite(values).all())
 
 
 def _outer(x: Floats) -> Floats:

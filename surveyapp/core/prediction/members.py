@@ -30,6 +30,7 @@ GROSS_VARIANCE = 36.0
 """A gross error is about six standard deviations."""
 LEAST_NOISE = 1e-6
 """Bound below the noise of a determination, in squares of the median sigma."""
+NEGLIGIBLE = 1e-5
 CHUNK = 64
 """Members that are factored at once: as many as fit into the cache."""
 ALIKE = frozenset({("temperature", "curve")})
@@ -56,6 +57,8 @@ class Determinations:
     scenarios : int
         Equally likely states of what later visits do not tell: the targets are those of the first
         state, then those of the second ...
+    chosen : frozenset of int or None
+        Numbers of the members that count, of those of the same determinations; None = all.
     """
 
     values: Floats
@@ -64,6 +67,7 @@ class Determinations:
     targets: Floats
     carried: Floats
     scenarios: int = 1
+    chosen: frozenset[int] | None = None
 
     @property
     def size(self) -> int:
@@ -84,6 +88,8 @@ class _Terms:
     units : tuple of str
     sizes : tuple of int
         Which of ``AMPLITUDES``; -1 where a member has no size of its own.
+    numbers : tuple of int
+        By which ``Determinations.chosen`` knows a member; -1 where it always counts.
     """
 
     log_prior: Floats
@@ -92,6 +98,7 @@ class _Terms:
     prior_cov: Floats
     units: tuple[str, ...]
     sizes: tuple[int, ...]
+    numbers: tuple[int, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +110,8 @@ class Members:
     units : tuple of str
     sizes : tuple of int
         Which of ``AMPLITUDES``; -1 where a member has no size of its own.
+    numbers : tuple of int
+        By which ``Determinations.chosen`` knows a member; -1 where it always counts.
     log_evidence : ndarray, shape (m,)
         Without the prior.
     log_prior : ndarray, shape (m,)
@@ -117,6 +126,7 @@ class Members:
 
     units: tuple[str, ...]
     sizes: tuple[int, ...]
+    numbers: tuple[int, ...]
     log_evidence: Floats
     log_prior: Floats
     means: Floats
@@ -132,6 +142,12 @@ class Members:
         log = self.log_evidence + self.log_prior
         found = np.exp(log - log.max())
         return np.asarray(found / found.sum())
+
+    @property
+    def counting(self) -> frozenset[int]:
+        """Numbers of the members that are not negligible, for further visits."""
+        kept = self.weights > NEGLIGIBLE
+        return frozenset(n for n, keep in zip(self.numbers, kept.tolist(), strict=True) if keep)
 
 
 def members(data: Determinations, priors: Priors) -> Members:
@@ -162,6 +178,7 @@ def members(data: Determinations, priors: Priors) -> Members:
     found = Members(
         units=terms.units,
         sizes=terms.sizes,
+        numbers=terms.numbers,
         log_evidence=evidence,
         log_prior=terms.log_prior,
         means=centre / unit + means,
@@ -181,6 +198,7 @@ def _in_every_state(found: Members, count: int) -> Members:
     return Members(
         units=found.units * count,
         sizes=found.sizes * count,
+        numbers=found.numbers * count,
         log_evidence=np.tile(found.log_evidence, count),
         log_prior=np.tile(found.log_prior, count) - np.log(count),
         means=np.concatenate([found.means[:, k] for k in rows]),
@@ -208,6 +226,7 @@ def _joined(parts: list[_Terms]) -> _Terms:
         np.concatenate([p.prior_cov for p in parts]),
         tuple(u for p in parts for u in p.units),
         tuple(k for p in parts for k in p.sizes),
+        tuple(k for p in parts for k in p.numbers),
     )
 
 
@@ -258,6 +277,7 @@ def _rank_one(
         variance[:, None, None] * both,
         (unit,) * len(x),
         (size,) * len(x),
+        (-1,) * len(x),
     )
 
 
@@ -268,11 +288,16 @@ def _dense(data: Determinations, priors: Priors, d: Floats, fixed: Floats) -> It
     own = np.stack([k.matrix[:n, :n] for k in found])
     cross = np.stack([targets @ k.matrix[:, :n] for k in found])
     ends = np.stack([targets @ k.matrix @ targets.T for k in found])
-    plan = [*_singles(found, priors), *_pairs(found, priors)]
+    whole = [*_singles(found, priors), *_pairs(found, priors)]
+    plan = [
+        (number, item)
+        for number, item in enumerate(whole)
+        if data.chosen is None or number in data.chosen
+    ]
     for start in range(0, len(plan), CHUNK):
         part = plan[start : start + CHUNK]
         mix = np.zeros((len(part), len(found)))
-        for row, item in enumerate(part):
+        for row, (_, item) in enumerate(part):
             for place, variance in item.causes:
                 mix[row, place] = variance
         a = np.tensordot(mix, own, axes=1)
@@ -280,12 +305,13 @@ def _dense(data: Determinations, priors: Priors, d: Floats, fixed: Floats) -> It
         k = np.tensordot(mix, cross, axes=1)
         log_det, products = _bordered(a, k, fixed)
         yield _Terms(
-            np.log(np.array([item.prior for item in part])),
+            np.log(np.array([item.prior for _, item in part])),
             log_det,
             products,
             np.tensordot(mix, ends, axes=1),
-            tuple(item.unit for item in part),
-            tuple(item.size for item in part),
+            tuple(item.unit for _, item in part),
+            tuple(item.size for _, item in part),
+            tuple(number for number, _ in part),
         )
 
 

@@ -18,7 +18,8 @@ import numpy as np
 from surveyapp_models.arrays import Floats
 
 PROBABILITY = 0.95
-LEAST_WEIGHT = 1e-5
+MOST_MEMBERS = 240
+LEAST_WEIGHT = 1e-4
 """Members below it are left out of an interval."""
 
 
@@ -44,6 +45,13 @@ class Mixture:
     dof: float = math.inf
     _cache: dict[float, float] = field(default_factory=dict, repr=False)
 
+    def main(self) -> Mixture:
+        """The same without the members that no interval shows, the others taking their weight."""
+        order = np.argsort(-self.weights)[:MOST_MEMBERS]
+        kept = order[self.weights[order] > LEAST_WEIGHT * self.weights[order[0]]]
+        weights = self.weights[kept] / self.weights[kept].sum()
+        return Mixture(weights, self.offsets[kept], self.variances[kept], self.dof)
+
     @property
     def variance(self) -> float:
         """Of the mixture, its members taken for normal."""
@@ -62,12 +70,10 @@ class Mixture:
         return self._cache[beside]
 
     def _half_width(self, beside: float) -> float:
-        kept = self.weights > LEAST_WEIGHT * self.weights.max()
-        weights = self.weights[kept] / self.weights[kept].sum()
-        scales = np.sqrt(np.maximum(self.variances[kept] + beside, 1e-300))
-        offsets = self.offsets[kept]
+        weights, offsets = self.weights, self.offsets
+        scales = np.sqrt(np.maximum(self.variances + beside, 1e-300))
         low, high = 0.0, float(np.max(np.abs(offsets) + 6.0 * scales))
-        for _ in range(60):
+        for _ in range(40):
             middle = 0.5 * (low + high)
             inside = student_cdf((middle - offsets) / scales, self.dof) - student_cdf(
                 (-middle - offsets) / scales, self.dof
@@ -76,7 +82,7 @@ class Mixture:
                 low = middle
             else:
                 high = middle
-            if high - low <= 1e-6 * high:
+            if high - low <= 1e-5 * high:
                 break
         return 0.5 * (low + high)
 

@@ -119,16 +119,18 @@ QUESTIONS: Final = {
     "half_swing": "{difference} after the point before; the card's swing makes {limit}.",
 }
 ALERTS: Final = {
-    "gross_error": "Point {number} stands out: strike it and repeat (p {p:.4f})",
-    "midpoint_step": "Midpoint jumps at point {number}: check the tripod (p {p:.4f})",
-    "damping_break": "Decay changes at point {number}: check follow-up (p {p:.4f})",
-    "unclear": "Run breaks at point {number}: go on to point 12 (p {p:.4f})",
+    "gross_error": "Point {number} stands out ({share:.0%} sure): strike it and repeat",
+    "midpoint_step": "Midpoint jumps at point {number} ({share:.0%} sure): check the tripod",
+    "midpoint_drift": "North drifts ({share:.0%} sure): tape, twist, sun on the tripod?",
+    "warm_up": "North settles as in warm-up ({share:.0%} sure): go on till it stands",
+    "damping_break": "Decay changes at point {number} ({share:.0%} sure): check follow-up",
+    "unclear": "The run breaks, the cause is open (p {p:.4f}): observe further points",
     "passage_missed": "Transit {number} is off the count: strike it, F5 per point",
     "passage_mistimed": "Transit {number} is mistimed: strike it, take the next",
 }
 CLAMPED_ALERTS: Final = {
-    "midpoint_step": "Midpoint jumps at point {number}: clamp, tripod (p {p:.4f})",
-    "damping_break": "Decay changes at point {number}: draught? (p {p:.4f})",
+    "midpoint_step": "Midpoint jumps at point {number} ({share:.0%} sure): clamp, tripod",
+    "damping_break": "Decay changes at point {number} ({share:.0%} sure): draught?",
 }
 ROUND_ALERT: Final = "Round {number} stands out: strike it and repeat (p {p:.4f})"
 LEDGER_COLUMNS: Final = ("row", "time", "kind", "reading", "", 'v "')

@@ -182,4 +182,4 @@ def alert_text(progress: Progress, method: str) -> str:
         pattern = texts.ROUND_ALERT
     elif method != "tracking":
         pattern = texts.CLAMPED_ALERTS.get(alert.trouble, pattern)
-    return pattern.format(number=alert.index + 1, p=alert.p)
+    return pattern.format(number=alert.index + 1, p=alert.p, share=alert.share)

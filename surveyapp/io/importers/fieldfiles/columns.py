@@ -9,6 +9,7 @@ from __future__ import annotations
 import csv
 import math
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -23,6 +24,7 @@ from surveyapp.io.importers.fieldfiles.units import (
 )
 from surveyapp_models.angles import AngleError, AngleUnit, parse_angle
 
+_LEAST_ROWS: Final = 5
 _SEPARATORS: Final = (",", ";", "\t", "|")
 _NUMBER = re.compile(r"[+\-−]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][+-]?\d{1,3})?")
 
@@ -255,15 +257,46 @@ def cells_of(line: str, columns: Columns) -> list[str]:
     return cells
 
 
-def cut_short(line: str, cells: Sequence[str], others: Sequence[str], columns: Columns) -> bool:
-    """Whether a last line without its end has lost decimals that the others have."""
+def usual_decimals(lines: Sequence[str], columns: Columns) -> int | None:
+    """Decimals of the last column, if the table writes every column with a fixed number of them.
+
+    A spreadsheet that drops idle zeros does so in every column; then nothing can be said.
+
+    Parameters
+    ----------
+    lines : sequence of str
+        Rows without the header.
+    columns : Columns
+
+    Returns
+    -------
+    int or None
+        A last cell with fewer was cut.
+    """
     sign = "," if columns.comma else "."
-    if len(others) < 3:
+    rows = [
+        cells for line in lines if len(cells := _split(line, columns.separator)) == columns.width
+    ]
+    if len(rows) < _LEAST_ROWS:
+        return None
+    numeric = [p for p in columns.places.values() if _NUMBER.fullmatch(rows[0][p])]
+    counts = {
+        place: Counter(
+            len(row[place].rpartition(sign)[2]) if sign in row[place] else 0 for row in rows
+        )
+        for place in {*numeric, columns.width - 1}
+    }
+    last = counts.pop(columns.width - 1)
+    usual, number = last.most_common(1)[0]
+    if not counts or any(len(found) > 1 for found in counts.values()) or number < 0.8 * len(rows):
+        return None
+    return usual or None
+
+
+def cut_short(cells: Sequence[str], usual: int | None, columns: Columns) -> bool:
+    """Whether the last cell has lost decimals that every row of the table has."""
+    sign = "," if columns.comma else "."
+    text = cells[-1].strip()
+    if usual is None or not text:
         return False
-
-    def decimals(text: str) -> int:
-        return len(text.rpartition(sign)[2]) if sign in text else 0
-
-    usual = [decimals(text.strip().rpartition(columns.separator)[2]) for text in others]
-    least = min(usual)
-    return least > 0 and decimals(cells[-1].strip()) < least
+    return (len(text.rpartition(sign)[2]) if sign in text else 0) < usual

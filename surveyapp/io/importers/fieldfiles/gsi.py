@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final
 
@@ -86,6 +86,8 @@ def read_gsi(path: Path, options: ReadOptions) -> FieldFile:
         Every damaged line; no station in either convention (codes are listed).
     """
     lines, encoding = file_lines(read_field_file(path), path.name)
+    if options.station_code is not None:  # blocks pad codes with zeros
+        options = replace(options, station_code=options.station_code.lstrip("0") or "0")
     state = _State(gathering(path, options))
     cleaned = [line.strip("\x1a\x00\t").lstrip() for line in lines]
     state.cut = cut_layouts(Counter(layout(b) for line in cleaned if line for b in blocks(line)))

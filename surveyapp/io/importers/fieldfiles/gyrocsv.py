@@ -21,6 +21,7 @@ from surveyapp.io.importers.fieldfiles.columns import (
     cells_of,
     cut_short,
     find_columns,
+    usual_decimals,
 )
 from surveyapp.io.importers.fieldfiles.gathering import (
     Gathering,
@@ -88,15 +89,15 @@ def read_gyro_csv(path: Path, options: ReadOptions) -> GyroFile:
     lines, _ = file_lines(data, path.name)
     columns = find_columns(lines, path.name, QUANTITIES, (options.columns, options.units))
     readings: list[GyroReading] = []
-    first, ended = columns.header_line, data.endswith((b"\n", b"\r"))
+    first = columns.header_line
+    usual = usual_decimals(lines[first:], columns)
     for number, line in gathered.numbered(lines[first:], start=first + 1):
         if not line.strip(" \t,;|") or line.lstrip().startswith("#"):
             continue
-        others = lines[first:-1] if number == len(lines) and not ended else []
         try:
             cells = cells_of(line, columns)
-            if others and cut_short(line, cells, others, columns):
-                raise CellError("the last line is cut short: decimals are missing")
+            if cut_short(cells, usual, columns):
+                raise CellError("the line is cut short: decimals of its last cell are missing")
             readings.append(_reading(columns, number, cells))
         except CellError as error:
             gathered.damaged(number, str(error), line)

@@ -18,6 +18,7 @@ from surveyapp.io.importers.fieldfiles.columns import (
     cells_of,
     cut_short,
     find_columns,
+    usual_decimals,
 )
 from surveyapp.io.importers.fieldfiles.gathering import (
     Gathering,
@@ -67,14 +68,12 @@ def read_csv(path: Path, options: ReadOptions) -> FieldFile:
         units = {name: "usft" if unit == "ft" else unit for name, unit in units.items()}
     columns = find_columns(lines, path.name, QUANTITIES, (options.columns, units))
     gathered.feet = not {"ft", "usft"}.isdisjoint(columns.units.values())
-    rows = _Rows(gathered, columns)
-    ended = data.endswith((b"\n", b"\r"))
+    rows = _Rows(gathered, columns, usual_decimals(lines[columns.header_line :], columns))
     first = columns.header_line
     for number, line in gathered.numbered(lines[first:], start=first + 1):
         if not line.strip(" \t,;|") or line.lstrip().startswith("#"):
             continue
-        last = number == len(lines) and not ended
-        rows.take(number, line, lines[first:-1] if last else ())
+        rows.take(number, line)
     gathered.warn("table_layout", columns.told)
     if encoding == "latin-1" and not data.isascii():
         gathered.warn("code_page", "the table is no UTF-8: names were read as Latin-1")
@@ -89,17 +88,17 @@ def read_csv(path: Path, options: ReadOptions) -> FieldFile:
 class _Rows:
     """Rows to pointings; follows the set-ups."""
 
-    def __init__(self, gathered: Gathering, columns: Columns) -> None:
-        self.gathered, self.columns = gathered, columns
+    def __init__(self, gathered: Gathering, columns: Columns, usual: int | None) -> None:
+        self.gathered, self.columns, self.usual = gathered, columns, usual
         self.setups: dict[tuple[str, str], str] = {}
         self.current = ""
         self.stated_sets = "set" in columns.places
 
-    def take(self, number: int, line: str, others: list[str] | tuple[str, ...]) -> None:
+    def take(self, number: int, line: str) -> None:
         try:
             cells = cells_of(line, self.columns)
-            if others and cut_short(line, cells, others, self.columns):
-                raise CellError("the last line is cut short: decimals are missing")
+            if cut_short(cells, self.usual, self.columns):
+                raise CellError("the line is cut short: decimals of its last cell are missing")
             self.gathered.add(self._pointing(number, cells))
         except CellError as error:
             self.gathered.damaged(number, str(error), line)

@@ -1,0 +1,114 @@
+"""The lines whose constant is wanted, and what the reader of a predicted constant must know."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from surveyapp.core.orientation.campaign_columns import Circumstances
+from surveyapp.core.uncertain import Uncertain
+from surveyapp.domain.project import ResultWarning
+from surveyapp_models.angles import RHO_ARCSEC
+
+ONE_TEMPERATURE_K = 3.0
+"""Beyond the range of the determinations, from which an extrapolation is told."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """A line whose constant is wanted: sessions with their weights.
+
+    Parameters
+    ----------
+    name : str
+        For messages.
+    visits : tuple of (float, Circumstances)
+        Weight (sum 1) and circumstances of each session.
+    """
+
+    name: str
+    visits: tuple[tuple[float, Circumstances], ...]
+
+
+def told_of(
+    instrument: str,
+    wanted: Sequence[Wanted],
+    known: Sequence[Circumstances],
+    gaps: frozenset[str],
+) -> list[ResultWarning]:
+    """What the reader of a predicted constant must know."""
+    warnings = []
+    for line in wanted:
+        missing = sorted(
+            name for name in gaps if any(_lacks(visit, name) for _, visit in line.visits)
+        )
+        if missing:
+            text = (
+                f"line {line.name}: {', '.join(missing)} not told: the constant is predicted for "
+                "all that it may have been, and its interval is wider for it"
+            )
+            warnings.append(ResultWarning("covariate_missing", text))
+        beyond = _beyond(line, known)
+        if beyond:
+            text = (
+                f"line {line.name}: {' and '.join(beyond)}: the constant of {instrument} is "
+                "extrapolated, and its interval is wider for it"
+            )
+            warnings.append(ResultWarning("prediction_extrapolated", text))
+    return warnings
+
+
+def one_block(instrument: str, known: Sequence[Circumstances], wanted: bool) -> list[ResultWarning]:
+    """Tell that all determinations belong together."""
+    one = len({item.block for item in known}) == 1 and known[0].elapsed_days is not None
+    if not one or not wanted:
+        return []
+    text = (
+        f"instrument {instrument}: all determinations were made in one block of work: "
+        "what changes from day to day is not seen in them"
+    )
+    return [ResultWarning("one_block", text)]
+
+
+def _lacks(visit: Circumstances, name: str) -> bool:
+    value = getattr(visit, name, None)
+    if name == "elapsed_days" and value is None:
+        value = visit.order
+    return value is None
+
+
+def _beyond(line: Wanted, known: Sequence[Circumstances]) -> list[str]:
+    """In what a line lies outside the circumstances of the determinations."""
+    found = []
+    thetas = [item.temperature_c for item in known if item.temperature_c is not None]
+    own = [visit.temperature_c for _, visit in line.visits if visit.temperature_c is not None]
+    if thetas and own:
+        low, high = min(thetas) - ONE_TEMPERATURE_K, max(thetas) + ONE_TEMPERATURE_K
+        far = max(own, key=lambda theta: max(low - theta, theta - high))
+        if not low <= far <= high:
+            found.append(
+                f"its temperature of {far:.1f} C lies outside the {min(thetas):.1f} to "
+                f"{max(thetas):.1f} C of the determinations"
+            )
+    days = [item.elapsed_days for item in known if item.elapsed_days is not None]
+    visits = [visit.elapsed_days for _, visit in line.visits if visit.elapsed_days is not None]
+    if len(days) == len(known) and visits:
+        span = max(days) - min(days)
+        gap = max(max(visits) - max(days), min(days) - min(visits))
+        if gap > max(span, 1.0):
+            found.append(
+                f"it was observed {gap:.0f} days from the nearest determination, and they span "
+                f"{span:.0f} days"
+            )
+    return found
+
+
+def leaves_out(choice: str, chosen: Uncertain, predicted: Uncertain, where: str) -> ResultWarning:
+    """What another choice of the constant leaves out, beside the prediction."""
+    text = (
+        f"{where}: constant_choice {choice} leaves out that the constant may have changed with "
+        f'time, temperature or place: it says {chosen.value * RHO_ARCSEC:.1f}" +- '
+        f'{chosen.interval95 * RHO_ARCSEC:.1f}", the average over what may be at work '
+        f'{predicted.value * RHO_ARCSEC:.1f}" +- {predicted.interval95 * RHO_ARCSEC:.1f}" (95 %)'
+    )
+    return ResultWarning("choice_leaves_out", text)
