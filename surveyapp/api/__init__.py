@@ -91,6 +91,7 @@ if TYPE_CHECKING:
     from surveyapp.core.network.variance_components import VarianceComponent
     from surveyapp.core.plan import StationPlan
     from surveyapp.core.sensors.rate.fog_station_plan import FogStationPlan
+    from surveyapp.diagnosis.sensors.diagnosis import SensorDiagnosis
     from surveyapp.domain.filing import (
         BatchResult,
         BatchRow,
@@ -101,6 +102,7 @@ if TYPE_CHECKING:
     )
     from surveyapp.domain.instrument_reading import FollowedTurn, InstrumentReading
     from surveyapp.domain.line_spectrum import LineSpectrum
+    from surveyapp.domain.noise import AllanResult, FilterResult
     from surveyapp.domain.north import NorthResult
     from surveyapp.domain.penetration_result import Prediction
     from surveyapp.domain.project import ResultWarning
@@ -110,11 +112,16 @@ if TYPE_CHECKING:
     from surveyapp.io.simulated import SimulatedFiles
     from surveyapp.report.written import ReportResult, SheetsResult
     from surveyapp.workflows.choosing import Diagnosable
+    from surveyapp.workflows.compensating import CompensationResult
     from surveyapp.workflows.computing import Computed
     from surveyapp.workflows.diagnosing import Diagnosed
     from surveyapp.workflows.pooling import InstrumentDiagnosis
 
 _TYPES: Final = {
+    "SensorDiagnosis": "surveyapp.diagnosis.sensors.diagnosis",
+    "CompensationResult": "surveyapp.workflows.compensating",
+    "FilterResult": "surveyapp.domain.noise",
+    "AllanResult": "surveyapp.domain.noise",
     "AngleResult": "surveyapp.domain.results",
     "BatchResult": "surveyapp.domain.filing",
     "BatchRow": "surveyapp.domain.filing",
@@ -264,4 +271,8 @@ __all__ = [
     "SimulatedFiles",
     "StationPlan",
     "VarianceComponent",
+    "AllanResult",
+    "FilterResult",
+    "CompensationResult",
+    "SensorDiagnosis",
 ]

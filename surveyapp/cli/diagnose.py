@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import argparse
 import textwrap
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from surveyapp.cli.output import heading, number, print_json, table
+from surveyapp.cli.output import WIDTH, heading, number, print_json, table
 
 if TYPE_CHECKING:
-    from surveyapp.diagnosis.result import Diagnosis, Estimate, ModelResult
     from surveyapp.workflows.diagnosing import Diagnosed
     from surveyapp.workflows.pooling import InstrumentDiagnosis
 
@@ -54,14 +52,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Diagnose and print; 0 with any verdict reached."""
     from surveyapp import api
+    from surveyapp.report.sections import diagnosis as section
+    from surveyapp.report.text import blocks_text
 
     if options.instrument is not None:
         return _instrument(options)
     _refuse_archive(options)
     if options.sensor is not None:
         return _sensor(options)
+    project = api.open_project(options.folder)
     found = api.diagnose(
-        options.folder,
+        project,
         session=options.session,
         campaign=options.campaign,
         traverse=options.traverse,
@@ -74,7 +75,8 @@ def run(options: argparse.Namespace) -> int:
     elif found.diagnosis is None:
         print(subjects_text(found))
     else:
-        print(diagnosis_text(found.diagnosis, found.words))
+        made = section.blocks(found.diagnosis, found.words, {}, unit=project.angle_unit)
+        print(blocks_text(made, WIDTH))
         for place in found.written:
             print(f"written: {place}")
     return 0
@@ -185,77 +187,3 @@ def subjects_text(found: Diagnosed) -> str:
         return "\n".join(textwrap.fill(text, 79) for text in found.words)
     rows = [[f"--{s.keyword}", s.id, str(s.observations)] for s in found.subjects]
     return "Choose one:\n" + table(["option", "", "rows"], rows)
-
-
-def diagnosis_text(diagnosis: Diagnosis, words: Sequence[str]) -> str:
-    """The whole diagnosis in words and tables."""
-    parts = [heading(f"{diagnosis.heading}: {diagnosis.verdict.replace('_', ' ')}")]
-    parts.append("\n".join(textwrap.fill(text, 79) for text in words))
-    parts.append(_models(diagnosis))
-    parts.append(_candidates(diagnosis))
-    return "\n\n".join(part for part in parts if part)
-
-
-def _models(diagnosis: Diagnosis) -> str:
-    unit = diagnosis.unit
-
-    def small(value: float | None) -> str:
-        return number(None if value is None else value / diagnosis.scale)
-
-    def row(name: str, model: ModelResult) -> list[str]:
-        return [
-            name,
-            number(model.parameters, 0),
-            small(model.rms),
-            small(model.loo_rms),
-            small(model.confirm_rms),
-            value_text(diagnosis, model.value),
-        ]
-
-    rows = [row("before", diagnosis.before), row("after", diagnosis.after)]
-    if diagnosis.ambiguous:
-        rows.append(row("after, best", diagnosis.after_best))
-    rows.append(["averaged", "", "", "", "", value_text(diagnosis, diagnosis.averaged)])
-    effects = [f"after: {' + '.join(diagnosis.after.effects) or 'the base model stands'}"]
-    if diagnosis.ambiguous:
-        effects.append(f"after, best: {' + '.join(diagnosis.after_best.effects)}")
-    head = ["model", "par.", f"rms {unit}", "left out", "confirm", "value +- sigma"]
-    return table(head, rows, indent=0) + "\n" + "\n".join(effects)
-
-
-def value_text(diagnosis: Diagnosis, quantity: Estimate) -> str:
-    """A value with its sigma, a direction in degrees-minutes-seconds."""
-    from surveyapp_models.angles import AngleUnit, format_angle, wrap_two_pi
-
-    sigma = number(quantity.sigma / diagnosis.scale if quantity.sigma is not None else None)
-    if diagnosis.direction:
-        return f"{format_angle(wrap_two_pi(quantity.value), AngleUnit.DMS)} +-{sigma}"
-    return f"{quantity.value / diagnosis.scale:+.2f} +-{sigma}"
-
-
-def _candidates(diagnosis: Diagnosis) -> str:
-    rows = [
-        [
-            item.effect,
-            item.verdict.replace("_", " "),
-            number(item.p, 4),
-            number(item.p_family, 4),
-            number(item.delta_bic),
-        ]
-        for item in diagnosis.candidates
-    ]
-    head = ["candidate", "verdict", "p", "p family", "delta BIC"]
-    return table(head, rows, indent=0) + _reasons(diagnosis) if rows else ""
-
-
-def _reasons(diagnosis: Diagnosis) -> str:
-    """Why candidates were not applicable or not adopted, one line for each reason."""
-    told: dict[tuple[str, str], list[str]] = {}
-    for item in diagnosis.candidates:
-        if item.reason:
-            told.setdefault((item.verdict.replace("_", " "), item.reason), []).append(item.effect)
-    lines = [
-        textwrap.fill(f"{verdict}: {', '.join(names)}: {reason}", 79, subsequent_indent="  ")
-        for (verdict, reason), names in told.items()
-    ]
-    return "".join(f"\n{line}" for line in lines)

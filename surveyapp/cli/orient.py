@@ -200,11 +200,11 @@ def checks_text(checks: Sequence[Check], *, told: Sequence[ResultWarning] = ()) 
     for check in answered:
         limit = "-" if check.limit is None else f"{check.limit:.4g}"
         value = "-" if check.value is None else f"{check.value:.4g}"
-        rows.append([_verdict(check), check.rule, check.where, value, limit, check.unit])
+        rows.append([check.verdict, check.rule, check.where, value, limit, check.unit])
     head = ["verdict", "check", "where", "value", "limit", "unit"]
     parts = [table(head, rows)] if rows else []
     parts += [
-        paragraph(f"{_verdict(check)}: {check.where}: {check.text}")
+        paragraph(f"{check.verdict}: {check.where}: {check.text}")
         for check in checks
         if check.passed is False
         and check.text
@@ -227,12 +227,6 @@ def _open(checks: Sequence[Check]) -> list[str]:
             name = f"{check.rule} ({check.where})" if check.where else check.rule
             missing.setdefault(check.text, {})[name] = None
     return [paragraph(f"open, {text}: {', '.join(rules)}") for text, rules in missing.items()]
-
-
-def _verdict(check: Check) -> str:
-    if check.passed is False:
-        return "NOT MET" if check.confirmed else "warning"
-    return "open" if check.passed is None else "met"
 
 
 def warnings_text(warnings: Sequence[ResultWarning]) -> str:

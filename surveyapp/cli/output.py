@@ -6,9 +6,11 @@ import json
 import re
 import sys
 import textwrap
-import unicodedata
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
+
+from surveyapp.report.blocks import Table
+from surveyapp.report.text import display_width, table_text
 
 WIDTH: Final = 80
 """Columns of a terminal; a table that is wider has its texts wrapped."""
@@ -34,45 +36,16 @@ def print_json(value: Mapping[str, Any]) -> None:
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]], *, indent: int = 2) -> str:
     """A plain table: columns as wide as needed, numbers to the right, long texts wrapped."""
-    widths = [max(columns(row[i]) for row in [head, *rows]) for i in range(len(head))]
-    numeric = [all(_is_number(row[i]) for row in rows) for i in range(len(head))]
-    _squeeze(widths, numeric, WIDTH - indent - _GAP * (len(head) - 1))
-    lines = []
-    for row in [head, *rows]:
-        cells = [
-            _wrapped(cell, width) if columns(cell) > width else [cell]
-            for cell, width in zip(row, widths, strict=True)
-        ]
-        for i in range(max(len(cell) for cell in cells)):
-            shown = [
-                _padded(cell[i] if i < len(cell) else "", width, right)
-                for cell, width, right in zip(cells, widths, numeric, strict=True)
-            ]
-            lines.append((" " * indent + (" " * _GAP).join(shown)).rstrip())
-    return "\n".join(lines)
-
-
-def _squeeze(widths: list[int], numeric: Sequence[bool], available: int) -> None:
-    """Take columns from the widest texts until the table fits, or no text has any left."""
-    while sum(widths) > available:
-        texts = [i for i, number in enumerate(numeric) if not number and widths[i] > _NARROWEST]
-        if not texts:
-            return
-        widths[max(texts, key=lambda i: widths[i])] -= 1
-
-
-def _wrapped(cell: str, width: int) -> list[str]:
-    return textwrap.wrap(cell, width) or [""]
+    align = "".join(
+        "r" if all(_is_number(row[i]) for row in rows) else "l" for i in range(len(head))
+    )
+    block = Table(tuple(head), tuple(tuple(row) for row in rows), align)
+    return table_text(block, WIDTH, indent=indent)
 
 
 def columns(text: str) -> int:
     """Columns of a terminal that a text takes: Chinese and the like take two each."""
-    return sum(2 if unicodedata.east_asian_width(letter) in "WF" else 1 for letter in text)
-
-
-def _padded(cell: str, width: int, right: bool) -> str:
-    space = " " * (width - columns(cell))
-    return space + cell if right else cell + space
+    return display_width(text)
 
 
 def _is_number(cell: str) -> bool:

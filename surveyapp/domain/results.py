@@ -83,6 +83,15 @@ class Check:
     text: str = ""
     subject: Subject = field(kw_only=True)
 
+    @property
+    def verdict(self) -> str:
+        """The verdict as a word: met, NOT MET, warning (an unconfirmed limit), open."""
+        if self.passed is None:
+            return "open"
+        if self.passed:
+            return "met"
+        return "NOT MET" if self.confirmed else "warning"
+
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""
         return {

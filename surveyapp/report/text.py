@@ -24,7 +24,10 @@ from surveyapp.report.blocks import (
     Table,
 )
 
-_WIDTH: Final = 100
+WIDTH: Final = 100
+_NARROWEST: Final = 8
+"""Columns below which no text is squeezed."""
+_GAP: Final = 2
 _MM_PER_COLUMN: Final = 2.0
 _MM_PER_ROW: Final = 4.0
 _INK: Final = {"axis": ".", "grid": " ", "data": "-", "mean": "=", "limit": "~", "bar": "|"}
@@ -37,12 +40,19 @@ def document_text(document: Document) -> str:
     return "\n".join(parts) + "\n\n" + blocks_text(document.blocks) + "\n"
 
 
-def blocks_text(blocks: Iterable[Block]) -> str:
-    """Blocks as text, an empty line between them."""
-    return "\n\n".join(part for block in blocks if (part := block_text(block)))
+def blocks_text(blocks: Iterable[Block], width: int = WIDTH) -> str:
+    """Blocks as text, an empty line between them.
+
+    Parameters
+    ----------
+    blocks : iterable of Block
+    width : int
+        Columns of the terminal: texts are wrapped, and texts of tables where they must be.
+    """
+    return "\n\n".join(part for block in blocks if (part := block_text(block, width)))
 
 
-def block_text(block: Block) -> str:
+def block_text(block: Block, width: int = WIDTH) -> str:
     """One block as text."""
     match block:
         case Heading():
@@ -50,12 +60,11 @@ def block_text(block: Block) -> str:
             return f"{block.text}\n{rule * display_width(block.text)}"
         case Paragraph():
             mark = "! " if block.tone == "warning" else ""
-            return textwrap.fill(mark + block.text, _WIDTH)
+            return textwrap.fill(mark + block.text, width, break_on_hyphens=False)
         case KeyValues():
-            width = max((display_width(key) for key, _ in block.pairs), default=0)
-            return "\n".join(f"  {_padded(key, width)}  {value}" for key, value in block.pairs)
+            return _facts(block, width)
         case Table():
-            return _table(block)
+            return table_text(block, width)
         case Figure():
             return _figure(block)
         case Signature():
@@ -74,18 +83,58 @@ def _padded(text: str, width: int, align: str = "l") -> str:
     return gap + text if align == "r" else text + gap
 
 
-def _table(table: Table) -> str:
+def _facts(block: KeyValues, width: int) -> str:
+    first = max((display_width(key) for key, _ in block.pairs), default=0)
+    lines = []
+    for key, value in block.pairs:
+        wrapped = _wrapped(value, max(width - first - 4, _NARROWEST))
+        lines.append(f"  {_padded(key, first)}  {wrapped[0]}")
+        lines += [f"  {'':{first}}  {more}" for more in wrapped[1:]]
+    return "\n".join(line.rstrip() for line in lines)
+
+
+def table_text(table: Table, width: int = WIDTH, *, indent: int = 2) -> str:
+    """A table: columns as wide as needed, the widest texts wrapped where the terminal ends."""
     align = table.align or "l" * len(table.head)
     rows = [
         tuple(f"~{cell}~" if cell else "" for cell in row) if index in table.struck else row
         for index, row in enumerate(table.rows)
     ]
-    widths = [max(display_width(row[i]) for row in (table.head, *rows)) for i in range(len(align))]
+    everything = (table.head, *rows) if any(table.head) else tuple(rows)
+    widths = [max(display_width(row[i]) for row in everything) for i in range(len(align))]
+    room = width - indent - _GAP * (len(align) - 1)
+    words = [max(_longest_word(row[i]) for row in everything) for i in range(len(align))]
+    for floors in ([max(_NARROWEST, word) for word in words], [_NARROWEST] * len(align)):
+        _squeeze(widths, align, floors, room)
     lines = []
-    for row in (table.head, *rows):
-        cells = [_padded(c, w, a) for c, w, a in zip(row, widths, align, strict=True)]
-        lines.append(("  " + "  ".join(cells)).rstrip())
+    for row in everything:
+        cells = [_wrapped(c, w) for c, w in zip(row, widths, strict=True)]
+        for i in range(max((len(cell) for cell in cells), default=0)):
+            shown = [
+                _padded(cell[i] if i < len(cell) else "", w, a)
+                for cell, w, a in zip(cells, widths, align, strict=True)
+            ]
+            lines.append((" " * indent + (" " * _GAP).join(shown)).rstrip())
     return "\n".join(lines)
+
+
+def _longest_word(cell: str) -> int:
+    return max((display_width(word) for word in cell.split()), default=0)
+
+
+def _squeeze(widths: list[int], align: str, floors: list[int], available: int) -> None:
+    """Take columns from the widest texts until the table fits, or no text has any left."""
+    while sum(widths) > available:
+        texts = [i for i, letter in enumerate(align) if letter != "r" and widths[i] > floors[i]]
+        if not texts:
+            return
+        widths[max(texts, key=lambda i: widths[i])] -= 1
+
+
+def _wrapped(cell: str, width: int) -> list[str]:
+    if display_width(cell) <= width:
+        return [cell]
+    return textwrap.wrap(cell, width) or [""]
 
 
 def _figure(figure: Figure) -> str:

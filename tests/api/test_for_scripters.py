@@ -23,6 +23,8 @@ PLAIN = {
     "has_breakthrough": "yes or no",
     "has_shafts": "yes or no",
     "report_text": "text for a terminal",
+    "undrawn_text": "text for a terminal",
+    "record_step": "it writes one step of a procedure",
     "batch_rows": "rows one by one, of a known type",
 }
 

@@ -124,3 +124,22 @@ def test_a_trial_of_two_hundred_sides_takes_less_than_a_tenth_of_a_second() -> N
     changed = tried.with_best_side().changed()
     prediction(changed, None, project="", software="", digest="")
     assert time.process_time() - began < 0.1
+
+
+async def test_a_step_is_recorded_on_the_screen(folder: Path) -> None:
+    app = SurveyApp(str(folder))
+    async with app.run_test(size=(80, 24)) as pilot:
+        await settle(app, pilot)
+        await pilot.press("p")
+        await settle(app, pilot)
+        await pilot.press("4")
+        await settle(app, pilot)
+        rows = app.screen.query_one("#steps DataTable", DataTable).row_count
+        await pilot.press("down", "down", "down", "down", "d")
+        await settle(app, pilot)
+        await pilot.press(*"crew", "enter")
+        await settle(app, pilot)
+        assert isinstance(app.screen, PenetrationScreen)
+        assert app.screen.query_one("#steps DataTable", DataTable).row_count == rows + 1
+    steps = api.predict(folder, monte_carlo=False).steps
+    assert (steps[-1].id, steps[-1].by) == (5, "crew")

@@ -7,15 +7,6 @@ from surveyapp.report.blocks import Block, Heading, Paragraph, Table
 from surveyapp.report.numbers import four_digits
 
 
-def verdict(check: Check) -> str:
-    """The verdict as a word."""
-    if check.passed is None:
-        return "open"
-    if check.passed:
-        return "met"
-    return "NOT MET" if check.confirmed else "warning"
-
-
 def blocks(result: OrientationResult) -> tuple[Block, ...]:
     """Answered checks, open ones, warnings."""
     found: list[Block] = [Heading("Checks")]
@@ -46,7 +37,7 @@ def _rule(check: Check) -> str:
 def _answered(checks: list[Check]) -> Table:
     rows = tuple(
         (
-            verdict(check),
+            check.verdict,
             check.where,
             four_digits(check.value),
             four_digits(check.limit),

@@ -36,13 +36,33 @@ def blocks(
     unit : AngleUnit
         Of the project, for directions.
     """
-    verdict = diagnosis.verdict.replace("_", " ")
-    found: list[Block] = [Heading(f"Diagnosis of {diagnosis.identity}: {verdict}")]
-    found += [Paragraph(text) for text in words]
-    found.append(_models(diagnosis, unit))
+    found: list[Block] = [*told(diagnosis, words), models(diagnosis, unit)]
     for name, (before, after) in channels.items():
         found += _figures(diagnosis, name, before, after)
-    found.append(_candidates(diagnosis))
+    return (*found, *candidates(diagnosis))
+
+
+def told(diagnosis: Diagnosis, words: Sequence[str]) -> tuple[Block, ...]:
+    """Verdict and words of a diagnosis."""
+    verdict = diagnosis.verdict.replace("_", " ")
+    heading = Heading(f"Diagnosis of {diagnosis.heading}: {verdict}")
+    return (heading, *(Paragraph(text) for text in words))
+
+
+def candidates(diagnosis: Diagnosis) -> tuple[Block, ...]:
+    """What was tried and why it was not taken, spectral lines, what cannot be told apart."""
+    found: list[Block] = []
+    if diagnosis.candidates:
+        found.append(_candidates(diagnosis))
+    reasons: dict[tuple[str, str], list[str]] = {}
+    for item in diagnosis.candidates:
+        if item.reason:
+            key = (item.verdict.replace("_", " "), item.reason)
+            reasons.setdefault(key, []).append(item.effect)
+    found += [
+        Paragraph(f"{verdict}: {', '.join(names)}: {reason}", "small")
+        for (verdict, reason), names in reasons.items()
+    ]
     if diagnosis.lines:
         found += [Heading("Spectral lines", 2), _lines(diagnosis)]
     if diagnosis.ambiguous:
@@ -61,7 +81,9 @@ def value_text(diagnosis: Diagnosis, quantity: Estimate, unit: AngleUnit) -> str
     return f"{plain(value, 2, sign=True)} \N{PLUS-MINUS SIGN}{plain(sigma)}"
 
 
-def _models(diagnosis: Diagnosis, unit: AngleUnit) -> Table:
+def models(diagnosis: Diagnosis, unit: AngleUnit) -> Table:
+    """Before, after, and averaged over the models."""
+
     def small(value: float | None) -> str:
         return plain(None if value is None else value / diagnosis.scale)
 

@@ -17,8 +17,10 @@ MOST_ROWS = 400
 """Rows of a table beyond which only the worst controlled and the suspects are shown."""
 
 
-def blocks(name: str, result: AdjustmentResult, *, unit: AngleUnit) -> tuple[Block, ...]:
-    """Blocks of one traverse.
+def blocks(
+    name: str, result: AdjustmentResult, *, unit: AngleUnit, title: str = ""
+) -> tuple[Block, ...]:
+    """Blocks of one traverse or network.
 
     Parameters
     ----------
@@ -26,8 +28,10 @@ def blocks(name: str, result: AdjustmentResult, *, unit: AngleUnit) -> tuple[Blo
     result : AdjustmentResult
     unit : AngleUnit
         Of the project, for directions.
+    title : str
+        Instead of ``Traverse NAME``.
     """
-    found: list[Block] = [Heading(f"Traverse {name}"), KeyValues(_facts(result))]
+    found: list[Block] = [Heading(title or f"Traverse {name}"), KeyValues(_facts(result))]
     if result.closures:
         found += [Heading("Closures before the adjustment", 2), _closures(result.closures)]
     found += [Heading("Points", 2), _points(result)]
@@ -37,19 +41,68 @@ def blocks(name: str, result: AdjustmentResult, *, unit: AngleUnit) -> tuple[Blo
     if result.shared:
         found += [Heading("Constants and orientations", 2), _shared(result, unit)]
     found += [Heading("Observations", 2), *_observations(result, unit)]
+    found += [*_suspects(result), *_removals(result)]
     found += [Paragraph(f"{w.code}: {w.text}", "warning") for w in result.warnings]
     return tuple(found)
+
+
+def _suspects(result: AdjustmentResult) -> tuple[Block, ...]:
+    test = result.snooping
+    if not test.suspects:
+        return ()
+    rows = tuple(
+        (
+            item.description,
+            plain(item.standardized, 2, sign=True),
+            plain(item.estimated_error * (RHO_ARCSEC if item.angular else MM), 1, sign=True),
+            '"' if item.angular else "mm",
+        )
+        for item in test.suspects
+    )
+    text = (
+        f"|v/sigma| above {plain(test.critical, 2)}, level {test.level:g} for all {test.tests} "
+        "tests together; only the first is accused."
+    )
+    head = ("observation", "v/sigma", "error", "unit")
+    return (
+        Heading("Suspected of a gross error", 2),
+        Table(head, rows, "lrrl", strong=frozenset({0})),
+        Paragraph(text, "small"),
+    )
+
+
+def _removals(result: AdjustmentResult) -> tuple[Block, ...]:
+    """What the adjustment says without each of the most suspicious observations."""
+    rows = tuple(
+        (
+            item.description,
+            plain(item.sum_of_squares, 2),
+            plain(item.ratio, 3),
+            {True: "met", False: "NOT MET", None: NOTHING}[item.passed],
+            str(item.suspects),
+        )
+        for item in result.removals
+    )
+    if not rows:
+        return ()
+    head = ("without", "v'Pv", "ratio", "global test", "suspects")
+    title = "The adjustment without one observation, the removal that helps most first"
+    return (Heading(title, 2), Table(head, rows, "lrrlr"))
 
 
 def _facts(result: AdjustmentResult) -> tuple[tuple[str, str], ...]:
     test = result.global_test
     facts = [
         ("observations", str(len(result.observations))),
-        ("degrees of freedom", str(result.dof)),
+        (
+            "degrees of freedom",
+            f"{result.dof} (rank defect {result.defect}, {result.iterations} iterations)",
+        ),
+        ("sigma0", f"{plain(result.sigma0, 4)} (a priori {test.sigma_apriori:g})"),
         ("sigmas in this section", "a priori" if result.sigma_scale == 1.0 else "from residuals"),
     ]
     if test.ratio is not None:
-        verdict = {True: "passed", False: "NOT passed", None: "not judged"}[test.passed]
+        verdict = {True: "met", False: "NOT MET", None: "open"}[test.passed]
         bounds = f"{plain(test.lower, 3)} to {plain(test.upper, 3)} at {test.probability:.0%}"
         facts.append(("global test", f"sigma0 / a priori = {test.ratio:.3f}, {bounds}: {verdict}"))
     else:

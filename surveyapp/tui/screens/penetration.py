@@ -19,10 +19,13 @@ from textual.widgets import DataTable, Footer, Static, TabbedContent, TabPane
 
 from surveyapp import api
 from surveyapp.api import Trial
+from surveyapp.domain.penetration import ProcedureStep
 from surveyapp.domain.penetration_result import Prediction
 from surveyapp.errors import SurveyError
 from surveyapp.tui import texts
+from surveyapp.tui.drafts import Draft
 from surveyapp.tui.page_keys import page_bindings
+from surveyapp.tui.screens.record_step import RecordStepScreen
 from surveyapp.tui.views import penetration as view
 from surveyapp.tui.widgets.heading_plan import HeadingPlan
 from surveyapp.tui.widgets.problems import Problems
@@ -56,6 +59,7 @@ class PenetrationScreen(Screen[None]):
         Binding("s", "try('survey')", texts.KEY_SURVEY, tooltip=texts.LONG_SURVEY),
         Binding("w", "try('angles')", texts.KEY_ANGLES, tooltip=texts.LONG_ANGLES),
         Binding("g", "try('gyro')", texts.KEY_GYRO, tooltip=texts.LONG_GYRO),
+        Binding("d", "done", texts.KEY_RECORD_STEP, tooltip=texts.LONG_RECORD_STEP, show=False),
         Binding("f5", "reload", texts.KEY_RELOAD, tooltip=texts.LONG_RELOAD, show=False),
         Binding("escape", "leave", texts.KEY_BACK),
     ]
@@ -84,6 +88,7 @@ class PenetrationScreen(Screen[None]):
         self.folder = folder
         self.trial: Trial | None = None
         self.before: Prediction | None = None
+        self.draft: Draft = {}
 
     def compose(self) -> ComposeResult:
         """Title, pages, keys."""
@@ -162,6 +167,36 @@ class PenetrationScreen(Screen[None]):
             pages.active = name
             for table in self.query(f"#{name} DataTable").results(DataTable):
                 table.focus()
+
+    def action_done(self) -> None:
+        """Record the step under the cursor."""
+        if self.trial is None or self.query_one(TabbedContent).active != "steps":
+            return
+        row = self.query_one("#steps DataTable", DataTable).cursor_row
+        step = view.step_of_row(self.trial.prediction, row)
+        self.app.push_screen(RecordStepScreen(step, self.draft), self._recorded)
+
+    def _recorded(self, entry: ProcedureStep | None) -> None:
+        if entry is not None:
+            self.write_step(entry)
+
+    @work(thread=True, exclusive=True)
+    def write_step(self, entry: ProcedureStep) -> None:
+        """Record in a thread and predict anew."""
+        try:
+            api.record_step(
+                self.folder,
+                entry.id,
+                by=entry.by,
+                file=entry.file,
+                note=entry.note,
+                centre_line_mm=entry.centre_line_mm,
+                waist_line_mm=entry.waist_line_mm,
+            )
+            self.post_message(self.Predicted(api.trial(self.folder)))
+        except SurveyError as error:
+            words = "; ".join(str(problem) for problem in error.problems)
+            self.app.call_from_thread(self.notify, words, severity="error", markup=False)
 
     def action_leave(self) -> None:
         """Back to the project."""

@@ -212,7 +212,8 @@ budget, the evaluation and the six steps.
 What if? A adds the gyro side that gains most, X takes it away again,
 R observes every gyro side from both ends, S adds an independent
 survey, W better angles (5/7 of the sigma), G a better gyro (2/3).
-The number in the title changes at once. Nothing is written.
+The number in the title changes at once. Nothing is written, but by D
+on the page of the steps: it records that a step is done.
 
         ■──●──G──●──●◯●──●──G──●──■
         A            K            B

@@ -14,15 +14,6 @@ CHECK_COLUMNS = (
 )
 
 
-def verdict_word(check: Check) -> str:
-    """Met, NOT MET, warning (an unconfirmed limit) or open."""
-    if check.passed is None:
-        return texts.OPEN
-    if check.passed:
-        return texts.MET
-    return texts.NOT_MET if check.confirmed else texts.WARNS
-
-
 def ordered_checks(result: OrientationResult) -> list[Check]:
     """The checks, what is not met first, what could not be answered last."""
     order = {False: 0, True: 1, None: 2}
@@ -33,7 +24,7 @@ def check_rows(result: OrientationResult) -> list[tuple[str, ...]]:
     """Each check in one row, what is not met first."""
     return [
         (
-            verdict_word(check),
+            check.verdict,
             check.rule,
             check.where,
             quantity_text(check.value, check.unit),

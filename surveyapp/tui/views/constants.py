@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from surveyapp.domain.results import Check, ConstantResult, OrientationResult
 from surveyapp.tui import texts
-from surveyapp.tui.views.checks import quantity_text, verdict_word
+from surveyapp.tui.views.checks import quantity_text
 from surveyapp.tui.views.form import arcsec_text, number_text
 
 CONSTANT_COLUMNS = (
@@ -86,4 +86,4 @@ def _test(check: Check) -> str:
     value, limit = quantity_text(check.value, check.unit), quantity_text(check.limit, check.unit)
     if '"' not in text:
         text = texts.CONSTANT_NUMBERS.format(text=text, value=value, limit=limit)
-    return texts.CONSTANT_TEST.format(verdict=verdict_word(check), text=text)
+    return texts.CONSTANT_TEST.format(verdict=check.verdict, text=text)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from surveyapp.api import Trial
 from surveyapp.domain.penetration import STEP_TITLES, ProcedureStep
 from surveyapp.domain.penetration_result import Prediction
@@ -105,6 +107,31 @@ def evaluation_text(result: Prediction) -> str:
         f"miss / sigma {t}; chi-square {test.chi2:.2f}, p {test.p:.4f}: "
         f"{test.verdict.replace('_', ' ')}. {test.text}"
     )
+
+
+CHECKS_STEP = 5
+"""The step with readings, recorded again and again."""
+
+
+def typed_reading(text: str) -> float | None:
+    """A reading as typed [mm]; empty is none.
+
+    Raises
+    ------
+    ValueError
+        If it is no number.
+    """
+    if not text:
+        return None
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(text)
+    return value
+
+
+def step_of_row(result: Prediction, row: int) -> int:
+    """Number of the step that stands in a row."""
+    return int(step_rows(result)[row][0].split()[0])
 
 
 def step_rows(result: Prediction) -> list[tuple[str, ...]]:

@@ -15,7 +15,7 @@ from surveyapp.domain.results import (
     SessionResult,
 )
 from surveyapp.tui import texts
-from surveyapp.tui.views.checks import ordered_checks, quantity_text, verdict_word
+from surveyapp.tui.views.checks import ordered_checks, quantity_text
 from surveyapp.tui.views.constants import constant_told
 from surveyapp.tui.views.form import (
     angle_text,
@@ -100,7 +100,7 @@ def _checks(result: OrientationResult) -> Text:
     checks = ordered_checks(result)
     rows = [
         (
-            f"{verdict_word(check):<8}{check.rule}",
+            f"{check.verdict:<8}{check.rule}",
             quantity_text(check.value, check.unit),
             texts.R_LIMIT.format(limit=quantity_text(check.limit, check.unit)),
         )

@@ -9,7 +9,7 @@ from surveyapp.domain.adjustment import AdjustedObservation, AdjustmentResult
 from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.results import Check
 from surveyapp.tui import texts
-from surveyapp.tui.views.checks import quantity_text, verdict_word
+from surveyapp.tui.views.checks import quantity_text
 from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, format_angle, wrap_two_pi
 
 MM = 1e3
@@ -153,7 +153,7 @@ def check_rows(checks: Sequence[Check]) -> list[tuple[str, ...]]:
     """Each check in one row."""
     return [
         (
-            verdict_word(check),
+            check.verdict,
             check.rule,
             quantity_text(check.value, check.unit),
             quantity_text(check.limit, check.unit),
