@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 from surveyapp.api.batch import batch, batch_rows
 from surveyapp.api.importing import export_survey, import_file
 from surveyapp.api.instruments import follow_turn, read_instrument
-from surveyapp.api.judgement import check, diagnose, subjects
+from surveyapp.api.judgement import check, diagnose, diagnose_sensor, subjects
 from surveyapp.api.network import (
     adjust,
     adjust_network,
@@ -60,7 +60,7 @@ from surveyapp.api.project import (
     open_project,
     simulate,
 )
-from surveyapp.api.rate import north, plan_fog_station, spectrum
+from surveyapp.api.rate import motion, north, plan_fog_station, plan_north_stops, spectrum
 from surveyapp.api.sensors import (
     LogOptions,
     allan,
@@ -90,6 +90,7 @@ if TYPE_CHECKING:
     from surveyapp.core.network.variance_components import VarianceComponent
     from surveyapp.core.plan import StationPlan
     from surveyapp.core.sensors.rate.fog_station_plan import FogStationPlan
+    from surveyapp.core.sensors.rate.stop_plan import StopPlan
     from surveyapp.diagnosis.sensors.diagnosis import SensorDiagnosis
     from surveyapp.domain.filing import (
         BatchResult,
@@ -101,6 +102,7 @@ if TYPE_CHECKING:
     )
     from surveyapp.domain.instrument_reading import FollowedTurn, InstrumentReading
     from surveyapp.domain.line_spectrum import LineSpectrum
+    from surveyapp.domain.motion import Motion
     from surveyapp.domain.noise import AllanResult, FilterResult
     from surveyapp.domain.north import NorthResult
     from surveyapp.domain.penetration_result import Prediction
@@ -114,6 +116,7 @@ if TYPE_CHECKING:
     from surveyapp.workflows.compensating import CompensationResult
     from surveyapp.workflows.computing import Computed
     from surveyapp.workflows.diagnosing import Diagnosed
+    from surveyapp.workflows.diagnosing_sensor import SensorDiagnosed
     from surveyapp.workflows.pooling import InstrumentDiagnosis
 
 _TYPES: Final = {
@@ -142,16 +145,19 @@ _TYPES: Final = {
     "LineSpectrum": "surveyapp.domain.line_spectrum",
     "Listing": "surveyapp.domain.records",
     "MadeProject": "surveyapp.domain.filing",
+    "Motion": "surveyapp.domain.motion",
     "NorthResult": "surveyapp.domain.north",
     "OpenedLog": "surveyapp.api.sensors",
     "Prediction": "surveyapp.domain.penetration_result",
     "ReportResult": "surveyapp.report.written",
     "ResultWarning": "surveyapp.domain.project",
+    "SensorDiagnosed": "surveyapp.workflows.diagnosing_sensor",
     "SessionResult": "surveyapp.domain.results",
     "ShaftResult": "surveyapp.domain.shaft_result",
     "SheetsResult": "surveyapp.report.written",
     "SimulatedFiles": "surveyapp.io.simulated",
     "StationPlan": "surveyapp.core.plan",
+    "StopPlan": "surveyapp.core.sensors.rate.stop_plan",
     "VarianceComponent": "surveyapp.core.network.variance_components",
 }
 """Types of results by the module that holds them: a script that names one imports it then."""
@@ -197,6 +203,7 @@ __all__ = [
     "subjects",
     "check",
     "diagnose",
+    "diagnose_sensor",
     "allan",
     "diagnose_instrument",
     "calibrate",
@@ -204,8 +211,10 @@ __all__ = [
     "compensate",
     "diagnose_log",
     "plan_fog_station",
+    "plan_north_stops",
     "north",
     "spectrum",
+    "motion",
     "open_sensor_log",
     "LogOptions",
     "batch",
@@ -259,6 +268,9 @@ __all__ = [
     "LineSpectrum",
     "Listing",
     "MadeProject",
+    "Motion",
+    "SensorDiagnosed",
+    "StopPlan",
     "NorthResult",
     "OpenedLog",
     "Prediction",

@@ -59,7 +59,12 @@ def require(name: str, known: Iterable[str], kind: str, more: str = "") -> None:
 
 
 def new_project(
-    folder: Folder, *, name: str | None = None, crs: str | None = None, angle_unit: str = "dms"
+    folder: Folder,
+    *,
+    name: str | None = None,
+    crs: str | None = None,
+    angle_unit: str = "dms",
+    mine_grid: str | None = None,
 ) -> MadeProject:
     """Make a new project folder with a commented project.toml.
 
@@ -68,9 +73,11 @@ def new_project(
     Raises
     ------
     SurveyError
-        If the folder holds anything already, or if the crs is no projected grid.
+        If the folder holds anything already, or if the crs is no projected grid, or the mine grid
+        (``ROTATION E N BASE_E BASE_N [SIGMA]``, without a crs ``LAT LON``) is none.
     """
     from surveyapp.core.geodesy import open_grid
+    from surveyapp.io.grid_line import mine_grid_line
     from surveyapp.io.template import create_project
     from surveyapp_models.angles import AngleUnit
 
@@ -78,7 +85,9 @@ def new_project(
     if crs is not None:
         open_grid(crs)
     title = name if name is not None else path.resolve().name
-    create_project(path, name=title, crs=crs, angle_unit=AngleUnit(angle_unit))
+    unit = AngleUnit(angle_unit)
+    line = None if mine_grid is None else mine_grid_line(mine_grid, crs=crs, unit=unit)
+    create_project(path, name=title, crs=crs, angle_unit=unit, grid_line=line)
     return MadeProject(str(path))
 
 

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING
 from surveyapp.api.project import Folder
 from surveyapp.api.sensors import LogOptions, open_sensor_log
 from surveyapp.domain.line_spectrum import LineSpectrum
+from surveyapp.domain.motion import Motion
 from surveyapp.domain.north import NorthResult
-from surveyapp.errors import Problem, SurveyError
+from surveyapp.errors import Problem, SurveyError, nearest_names
 
 if TYPE_CHECKING:
     from surveyapp.core.sensors.rate.fog_station_plan import FogStationPlan
+    from surveyapp.core.sensors.rate.stop_plan import StopPlan
     from surveyapp.io.sensor_logs.blocks import Progress
 
 
@@ -59,6 +61,55 @@ def plan_fog_station(
         relative_rate_sigma=(
             plan.RELATIVE_RATE_SIGMA if relative_rate_sigma is None else relative_rate_sigma
         ),
+    )
+
+
+def plan_north_stops(
+    *,
+    grade: str | None = None,
+    latitude_deg: float | None = None,
+    want_deg: float | None = None,
+    route_m: float | None = None,
+) -> StopPlan:
+    """What stops of 10 to 300 s, every 0 to 100 m, would reach with a grade of gyro.
+
+    Parameters
+    ----------
+    grade : str, optional
+        Default mems.
+    latitude_deg : float
+        Must be stated.
+    want_deg : float, optional
+        Wanted standard deviation of the heading.
+    route_m : float, optional
+        Default 1000 m.
+
+    Raises
+    ------
+    SurveyError
+    """
+    from surveyapp.core.sensors.rate import stop_plan as plan
+
+    problems = []
+    if latitude_deg is None:
+        problems.append(Problem("the latitude is not stated", "latitude", "", "degrees"))
+    elif not -90.0 < latitude_deg < 90.0:
+        expected = "-90 to 90, the poles not among them"
+        problems.append(Problem("this is no latitude", "latitude", f"{latitude_deg:g}", expected))
+    name = grade or "mems"
+    if name not in plan.GRADES:
+        hint = nearest_names(name, plan.GRADES)
+        problems.append(Problem("there is no such grade", "grade", name, hint=hint))
+    for option, value in (("want_deg", want_deg), ("route_m", route_m)):
+        if value is not None and not 0.0 < value < 1e9:
+            problems.append(Problem("out of range", option, f"{value:g}", "above 0"))
+    if problems or latitude_deg is None:
+        raise SurveyError(problems)
+    return plan.plan_stops(
+        plan.GRADES[name],
+        latitude_deg=latitude_deg,
+        want_deg=want_deg,
+        route_m=plan.ROUTE_M if route_m is None else route_m,
     )
 
 
@@ -155,3 +206,36 @@ def spectrum(
         against=other,
         progress=progress,
     )
+
+
+def motion(
+    source: Folder,
+    *,
+    sensor: str | None = None,
+    log: LogOptions | None = None,
+    allow_outside: bool = False,
+    options: Mapping[str, object] | None = None,
+    progress: Progress | None = None,
+) -> Motion:
+    """State of motion of a vehicle, and its path.
+
+    Parameters
+    ----------
+    source : path
+    sensor : str, optional
+    log : LogOptions, optional
+    allow_outside : bool
+    options : mapping, optional
+        ``false_alarm``, ``path``, ``begin`` ("E,N,AZIMUTH"), ``end`` ("E,N"), ``snap``,
+        ``snap_power_cycle``, ``still_gate_factor``.
+    progress : callable, optional
+
+    Raises
+    ------
+    SurveyError
+        For input that cannot be used.
+    """
+    from surveyapp.workflows.motion import find_motion
+
+    opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
+    return find_motion(opened.file, options or {}, progress=progress)

@@ -34,7 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE.toml",
         help="with --instrument: write what the campaigns teach, for [[instrument]] priors",
     )
-    parser.add_argument("--sensor", metavar="ID", help="this [[sensor_log]]: compass or tilt")
+    parser.add_argument("--sensor", metavar="ID", help="this [[sensor_log]]: compass, tilt or rate")
     parser.add_argument(
         "--allow-outside", action="store_true", help="read a log outside the project folder"
     )
@@ -117,7 +117,10 @@ def _sensor(options: argparse.Namespace) -> int:
     from surveyapp import api
     from surveyapp.errors import Problem, SurveyError
 
-    others = (options.session, options.campaign, options.traverse, options.confirm, options.effects)
+    kinds = {log.id: log.kind for log in api.open_project(options.folder).sensor_logs}
+    rate = kinds.get(options.sensor) == "rate"
+    others = [options.session, options.campaign, options.traverse, options.confirm]
+    others += [] if rate else [options.effects]
     if any(other is not None for other in others) or options.adopt:
         raise SurveyError(
             Problem(
@@ -128,6 +131,8 @@ def _sensor(options: argparse.Namespace) -> int:
                 "calibrate KIND DIR --sensor ID --card OUT.toml writes what is determined",
             )
         )
+    if rate:
+        return _rate_sensor(options)
     found = api.diagnose_log(
         options.folder, sensor=options.sensor, allow_outside=options.allow_outside
     )
@@ -136,6 +141,28 @@ def _sensor(options: argparse.Namespace) -> int:
         return 0
     for sentence in found.words:
         print(textwrap.fill(sentence, 80, subsequent_indent="  "))
+    return 0
+
+
+def _rate_sensor(options: argparse.Namespace) -> int:
+    """The stops of a rate sensor."""
+    from surveyapp import api
+    from surveyapp.report.sections import diagnosis as section
+    from surveyapp.report.text import blocks_text
+
+    found_sensor = api.diagnose_sensor(
+        options.folder,
+        options.sensor,
+        effects=options.effects,
+        allow_outside=options.allow_outside,
+    )
+    if options.json:
+        print_json(found_sensor.to_dict())
+    else:
+        project = api.open_project(options.folder)
+        unit = project.angle_unit
+        made = section.blocks(found_sensor.diagnosis, found_sensor.words, {}, unit=unit)
+        print(blocks_text(made, WIDTH))
     return 0
 
 

@@ -55,6 +55,7 @@ COMMANDS: tuple[Command, ...] = (
         "interference lines of a record, and a magnetic bias budget",
         waits=False,
     ),
+    Command("motion", "motion", "state of motion of a vehicle, and its path", waits=False),
     Command(
         "north", "north", "north by a rate sensor: on a total station, indexed, turned", waits=False
     ),

@@ -12,6 +12,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folder", metavar="DIR", help="folder to make; must not hold anything")
     parser.add_argument("--name", help="name of the project (default: the folder's)")
     parser.add_argument("--crs", help="projected grid: EPSG code, PROJ string or WKT")
+    parser.add_argument(
+        "--mine-grid",
+        metavar="LINE",
+        help="the mine's own grid: 'ROTATION E N BASE_E BASE_N [SIGMA]', its origin in the crs; "
+        "without a crs 'ROTATION E N LAT LON [SIGMA]', rotation from true north",
+    )
     parser.add_argument("--angle-unit", choices=("dms", "gon", "deg"), default="dms")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
@@ -21,7 +27,11 @@ def run(options: argparse.Namespace) -> int:
     from surveyapp import api
 
     path = api.new_project(
-        options.folder, name=options.name, crs=options.crs, angle_unit=options.angle_unit
+        options.folder,
+        name=options.name,
+        crs=options.crs,
+        angle_unit=options.angle_unit,
+        mine_grid=options.mine_grid,
     )
     if options.json:
         print_json(path.to_dict())

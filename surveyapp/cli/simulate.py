@@ -13,7 +13,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "kind",
         metavar="KIND",
         help=" | ".join(
-            ("reversal-run", "campaign", "compass", "tilt", "noise", "rate", "fog-station")
+            (
+                "reversal-run",
+                "campaign",
+                "compass",
+                "tilt",
+                "noise",
+                "rate",
+                "fog-station",
+                "indexing",
+                "vehicle",
+            )
         ),
     )
     parser.add_argument("out", metavar="OUT", help="folder to make; must not hold anything")
@@ -25,7 +35,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="a disturbing effect and its size; may be given several times",
     )
     parser.add_argument(
-        "--programme", metavar="NAME", help="of rate: six-position (default) | temperature"
+        "--programme",
+        metavar="NAME",
+        help="of rate: six-position (default) | temperature | multi-position; of "
+        "indexing: one-stop (default) | several-stops",
     )
     parser.add_argument(
         "--coefficient",

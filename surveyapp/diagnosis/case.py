@@ -91,6 +91,9 @@ class Case:
         What can be observed next.
     members : tuple of Subject
         The session and target of each observation, where it has one.
+    groups : ndarray or None, shape (n,)
+        What is left out together when a model is proved: the rows of one stop; None = each row by
+        itself.
     base_of : callable or None
         The base design of other rows; None = the mean of the record's own rows.
     """
@@ -125,6 +128,7 @@ class Case:
     actions: tuple[Action, ...] = ()
     members: tuple[Subject, ...] = ()
     base_of: Callable[[Columns], Floats] | None = None
+    groups: Floats | None = None
 
     def __post_init__(self) -> None:
         """Hand out what effects may read so that they cannot write into it."""

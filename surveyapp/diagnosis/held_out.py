@@ -79,6 +79,11 @@ def leave_one_out(problem: Case, fit: Fit, skip: Floats | None = None) -> float 
     """
     errors, left = [], []
     for trial in _alternatives(problem, fit):
+        if problem.groups is not None:
+            error, rest = _without_groups(trial, problem.groups)
+            errors.append(error)
+            left.append(rest)
+            continue
         q, _ = np.linalg.qr(trial.design)
         free = 1.0 - np.einsum("np,np->n", q, q)
         usable = free > LEAST_CONTROL
@@ -93,6 +98,24 @@ def leave_one_out(problem: Case, fit: Fit, skip: Floats | None = None) -> float 
     if error.size == 0:
         return None
     return float(np.sqrt(np.mean(error**2)))
+
+
+def _without_groups(trial: Fit, groups: Floats) -> tuple[Floats, Floats]:
+    """Errors of each group predicted from the others, and the sum of squares of its fold.
+
+    With the rows b left out the prediction errs by (I - Q_b Q_b')^-1 r_b (the block form of the
+    leave-one-out identity); infinite where the others hardly determine it.
+    """
+    q, _ = np.linalg.qr(trial.design)
+    error, left = np.full(q.shape[0], np.inf), np.full(q.shape[0], np.inf)
+    for group in np.unique(groups):
+        rows = np.flatnonzero(groups == group)
+        free = np.eye(rows.size) - q[rows] @ q[rows].T
+        if float(np.linalg.eigvalsh(free)[0]) <= LEAST_CONTROL:
+            continue
+        error[rows] = np.linalg.solve(free, trial.residual[rows])
+        left[rows] = trial.sum_of_squares - float(trial.residual[rows] @ error[rows])
+    return error, left
 
 
 def unforetold(fit: Fit) -> Floats:

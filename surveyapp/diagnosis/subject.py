@@ -109,6 +109,8 @@ class Record:
     warnings : tuple of ResultWarning
     extra : tuple of Effect
         The user's own.
+    groups : ndarray or None, shape (n,)
+        What is left out together, such as the rows of one stop.
     """
 
     observations: Sequence[float] | Floats
@@ -122,6 +124,7 @@ class Record:
     grid_labels: Mapping[str, Mapping[float, str]] = field(default_factory=dict)
     warnings: tuple[ResultWarning, ...] = ()
     extra: tuple[Effect, ...] = ()
+    groups: Floats | None = None
 
 
 def case_of(subject: Subject, record: Record) -> Case:
@@ -168,6 +171,7 @@ def case_of(subject: Subject, record: Record) -> Case:
         value_name=subject.value_name,
         actions=subject.actions,
         base_of=subject.base,
+        groups=record.groups,
     )
 
 

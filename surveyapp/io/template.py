@@ -81,7 +81,12 @@ def _only_leftovers(folder: Path) -> bool:
 
 
 def create_project(
-    folder: Path, *, name: str, crs: str | None = None, angle_unit: AngleUnit = AngleUnit.DMS
+    folder: Path,
+    *,
+    name: str,
+    crs: str | None = None,
+    angle_unit: AngleUnit = AngleUnit.DMS,
+    grid_line: str | None = None,
 ) -> Path:
     """Begin a project in a folder that does not exist or is empty.
 
@@ -94,6 +99,8 @@ def create_project(
     crs : str, optional
         EPSG code, PROJ string or WKT.
     angle_unit : AngleUnit
+    grid_line : str, optional
+        Of a mine's own grid, which names its base itself.
 
     Returns
     -------
@@ -127,6 +134,7 @@ def create_project(
         ) from None
     example = _EXAMPLES[angle_unit]
     crs_line = f"crs = {toml_value(crs)}" if crs else '# crs = "EPSG:4546"    # the grid'
+    crs_line = grid_line or crs_line
     text = _TEMPLATE.format(
         name=toml_value(name),
         crs=crs_line,

@@ -54,6 +54,8 @@ class NewProject:
     folder, name : str
     crs : str
         EPSG code, PROJ string or WKT; empty for none.
+    mine_grid : str
+        Rotation, origin and its place in the crs, in one line; empty for none.
     angle_unit : str
         dms | gon | deg.
     angle_typing : str
@@ -71,6 +73,7 @@ class NewProject:
     folder: str
     name: str
     crs: str = ""
+    mine_grid: str = ""
     angle_unit: str = "dms"
     angle_typing: str = "separated"
     rule_book: str = ""
@@ -251,6 +254,7 @@ def create_project(form: NewProject) -> str:
         name=form.name,
         crs=f"EPSG:{form.crs}" if form.crs.isdecimal() else form.crs or None,
         angle_unit=form.angle_unit,
+        mine_grid=form.mine_grid or None,
     )
     path = folder / "project.toml"
     if form.angle_typing != "separated":

@@ -349,12 +349,15 @@ def _with_latitude(
     project: Project, plan: Penetration, stations: Mapping[str, Station]
 ) -> Penetration:
     """Latitude of the deflections from the grid where the project states none."""
-    if plan.deflection is None or math.isfinite(plan.deflection.latitude) or project.crs is None:
+    if plan.deflection is None or math.isfinite(plan.deflection.latitude):
         return plan
-    from surveyapp.core.geodesy import open_grid
+    from surveyapp.core.geodesy import grid_of
 
     try:
-        latitude, _ = open_grid(project.crs).geographic(e=plan.meeting.e, n=plan.meeting.n)
+        grid = grid_of(project)
+        if grid is None:
+            return plan
+        latitude, _ = grid.geographic(e=plan.meeting.e, n=plan.meeting.n)
     except SurveyError:
         return plan
     return replace(plan, deflection=replace(plan.deflection, latitude=latitude))

@@ -23,7 +23,18 @@ BY_HAND = {
     "metro": (20.0, 7.0711, 13.8590, False),
     "mvt-2": (120.0, 42.4264, 83.1542, False),
 }
-SILENT = {"gb-50026-tunnel", "gotthard", "jtg-c10-road-tunnel", "qld-rs10", "tb-10101-rail-tunnel"}
+SILENT = {
+    "gb-50026-tunnel",
+    "gotthard",
+    "jtg-c10-road-tunnel",
+    "qld-rs10",
+    "tb-10101-rail-tunnel",
+    "at-mvo-2013",
+    "de-markschbergv",
+    "ussr-1985",
+    "vsn-160-69",
+    "wa-mines-2022",
+}
 
 
 def session(**override: object) -> OrientationSession:

@@ -6,7 +6,7 @@ or handed over by the user does not exist.
 
 from __future__ import annotations
 
-from surveyapp_models.effects import campaign, reversal_run, traverse
+from surveyapp_models.effects import campaign, rate, reversal_run, traverse
 from surveyapp_models.effects.campaign import circle_eccentricity as _c_circle_eccentricity
 from surveyapp_models.effects.campaign import gyro_block as _c_gyro_block
 from surveyapp_models.effects.campaign import latitude as _c_latitude
@@ -16,6 +16,13 @@ from surveyapp_models.effects.campaign import time_drift as _c_time_drift
 from surveyapp_models.effects.campaign import transport_step as _c_transport_step
 from surveyapp_models.effects.campaign import warm_up as _c_warm_up
 from surveyapp_models.effects.effect import Effect, SubjectId
+from surveyapp_models.effects.rate import bias_ramp as _s_bias_ramp
+from surveyapp_models.effects.rate import flip_error as _s_flip_error
+from surveyapp_models.effects.rate import g_sensitivity as _s_g_sensitivity
+from surveyapp_models.effects.rate import gross_error as _s_gross_error
+from surveyapp_models.effects.rate import magnetic_sensitivity as _s_magnetic_sensitivity
+from surveyapp_models.effects.rate import scale_asymmetry as _s_scale_asymmetry
+from surveyapp_models.effects.rate import temperature as _s_temperature
 from surveyapp_models.effects.reversal_run import amplitude_asymmetry as _r_amplitude_asymmetry
 from surveyapp_models.effects.reversal_run import damping_break as _r_damping_break
 from surveyapp_models.effects.reversal_run import dry_friction as _r_dry_friction
@@ -60,6 +67,13 @@ CATALOGUE: tuple[Effect, ...] = (
     _t_lateral_refraction.EFFECT,
     _t_gyro_constant_shift.EFFECT,
     _t_gross_error.EFFECT,
+    _s_g_sensitivity.EFFECT,
+    _s_temperature.EFFECT,
+    _s_bias_ramp.EFFECT,
+    _s_scale_asymmetry.EFFECT,
+    _s_flip_error.EFFECT,
+    _s_magnetic_sensitivity.EFFECT,
+    _s_gross_error.EFFECT,
 )
 
 
@@ -68,4 +82,13 @@ def of_subject(subject: SubjectId) -> tuple[Effect, ...]:
     return tuple(effect for effect in CATALOGUE if effect.subject == subject)
 
 
-__all__ = ["CATALOGUE", "Effect", "SubjectId", "campaign", "of_subject", "reversal_run", "traverse"]
+__all__ = [
+    "CATALOGUE",
+    "Effect",
+    "SubjectId",
+    "campaign",
+    "of_subject",
+    "rate",
+    "reversal_run",
+    "traverse",
+]

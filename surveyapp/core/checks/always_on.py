@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from surveyapp.core.checks.coordinate_checks import coordinate_checks
+from surveyapp.core.checks.determination_checks import determination_checks
 from surveyapp.core.checks.grid_checks import grid_checks
 from surveyapp.core.checks.session_blunders import session_blunder_checks
 from surveyapp.core.orientation.whole_project import Orientation
@@ -15,4 +16,5 @@ def always_on_checks(orientation: Orientation) -> list[Check]:
         *grid_checks(orientation),
         *session_blunder_checks(orientation),
         *coordinate_checks(orientation),
+        *determination_checks(orientation),
     ]

@@ -70,7 +70,7 @@ def _line_pairs(orientation: Orientation) -> list[Pair]:
             difference = line.grid - Uncertain(bearing, error.parts)
             fixed = geometry.start.fixed and geometry.end.fixed
             text = "grid azimuth minus that of the coordinates"
-            pairs.append(("line.coordinates", result.subject, difference, fixed, text))
+            pairs.append(("coordinates.line", result.subject, difference, fixed, text))
         pairs += _stated_pairs(orientation, line, geometry)
     return pairs
 
@@ -89,7 +89,7 @@ def _stated_pairs(
         error = known_error(orientation.project, session, geometry).error
         difference = line.grid - Uncertain(session.azimuth_known, error.parts)
         text = f"grid azimuth minus the known azimuth of session {name}"
-        pairs.append(("line.known_azimuth", line.result.subject, difference, True, text))
+        pairs.append(("known_azimuth.line", line.result.subject, difference, True, text))
     return pairs
 
 
@@ -114,7 +114,7 @@ def _known_pairs(orientation: Orientation) -> list[Pair]:
         text = "known azimuth minus that of the coordinates"
         subject = Subject.session(session.id)
         fixed = start.fixed and end.fixed
-        pairs.append(("known_azimuth.coordinates", subject, difference, fixed, text))
+        pairs.append(("coordinates.known_azimuth", subject, difference, fixed, text))
     return pairs
 
 

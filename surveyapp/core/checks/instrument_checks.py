@@ -13,9 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from surveyapp.core.orientation.whole_project import Orientation
-from surveyapp.core.statistics.distributions import normal_quantile
+from surveyapp.core.statistics.distributions import normal_quantile, student_quantile
 from surveyapp.core.statistics.levels import LOUD
 from surveyapp.core.swing.card_physics import card_at
+from surveyapp.core.swing.clamped import NOMINAL_SIGMA_S
 from surveyapp.core.swing.session import ReducedSession
 from surveyapp.core.swing.sights import moments
 from surveyapp.core.swing.tape_zero import mean_level
@@ -92,10 +93,37 @@ def _period_limit(item: ReducedSession, predicted: Estimate, expected: float) ->
     """What chance makes of the difference at 1 %, from the card's sigma and the times' scatter."""
     if predicted.sigma <= 0.0:
         return PERIOD_LIMIT * expected
-    rows = item.session.book.of_kind(ReadingKind.REVERSAL)
-    own = _slope_sigma(rows)
     quantile = normal_quantile(1.0 - 0.5 * LOUD)
-    return quantile * math.hypot(predicted.sigma, own)
+    if item.session.method == "tracking":
+        own = _slope_sigma(item.session.book.of_kind(ReadingKind.REVERSAL))
+        return quantile * math.hypot(predicted.sigma, own)
+    found = _passage_sigma(item)
+    if found is None:
+        return PERIOD_LIMIT * expected
+    sigma, dof = found
+    wider = student_quantile(1.0 - 0.5 * LOUD, dof) if dof < math.inf else quantile
+    return math.hypot(quantile * predicted.sigma, wider * sigma)
+
+
+def _passage_sigma(item: ReducedSession) -> tuple[float, float] | None:
+    """Sigma of the clamped period [s] from the passages' own scatter, and degrees of freedom.
+
+    Passages of one division come in two kinds, to the right and to the left: each has its moment.
+    """
+    rows = item.session.book.of_kind(ReadingKind.TRANSIT)
+    of_one = [row for row in rows if row.value == rows[0].value]
+    times = moments(of_one)
+    if times is None or times.size < 3:
+        return None
+    index = np.arange(times.size, dtype=np.float64)
+    columns = np.column_stack([np.ones_like(index), index, (-1.0) ** index])
+    inverse = np.linalg.pinv(columns)
+    slope = float(np.sqrt(inverse[1] @ inverse[1]))
+    dof = times.size - 3
+    if dof < 1:
+        return 2.0 * slope * NOMINAL_SIGMA_S, math.inf
+    residuals = times - columns @ (inverse @ times)
+    return 2.0 * slope * math.sqrt(float(residuals @ residuals) / dof), float(dof)
 
 
 def _slope_sigma(rows: tuple[Reading, ...]) -> float:

@@ -21,6 +21,7 @@ from surveyapp.core.statistics.distributions import (
     student_quantile,
 )
 from surveyapp.core.statistics.levels import level_of_one
+from surveyapp.core.swing.card_physics import card_at
 from surveyapp.core.swing.session import ReducedSession, TargetReduction
 from surveyapp.core.swing.sights import moments
 from surveyapp.core.swing.tape_zero import MIN_POINTS_FOR_RESIDUALS
@@ -39,6 +40,8 @@ COLLIMATION_CHANGE: Final = 5.0 * ARCSEC
 a bound of reason."""
 PERIODS_S: Final = (150.0, 1200.0)
 """Full periods of suspended gyros: 6 to 9 minutes in use (physics.md 7), with a margin."""
+MOST_APART_PERCENT: Final = 5.0
+"""Of two statements of C: further apart, one of them is in another unit (physics.md 1.4)."""
 UNEVEN: Final = 0.05
 """Of one full swing against the others: the amplitude term makes 0.002 (physics.md 1.2)."""
 TAPE_ZERO_CHANGE_DIV: Final = 0.5
@@ -59,6 +62,7 @@ def session_blunder_checks(orientation: Orientation) -> list[Check]:
         *_tape_zeros(orientation, items),
     ]
     for item in items:
+        checks += _transit_constant(orientation, item)
         checks += _period(item)
         checks += _evenness(item)
     return checks
@@ -252,6 +256,31 @@ def _period(item: ReducedSession) -> list[Check]:
             unit="s",
             clause="physics of the swing",
             passed=low <= period <= high,
+        )
+    ]
+
+
+def _transit_constant(orientation: Orientation, item: ReducedSession) -> list[Check]:
+    """A stated C against (pi/2) mu (1 + lambda) / T2 with the period of the session itself."""
+    card = orientation.project.instrument(item.session.instrument).card
+    if item.session.method != "transit" or card.transit_c is None:
+        return []
+    here = card_at(card, orientation.positions[item.session.station].latitude)
+    ratio, period = here.torsion_ratio, item.reduction.period_s
+    if ratio is None or here.transit_c is None or period is None or card.scale_value is None:
+        return []
+    theory = 0.5 * math.pi * card.scale_value * (1.0 + ratio.value) / period
+    apart = here.transit_c.value / theory - 1.0
+    return [
+        _made(
+            "transit.constant",
+            item,
+            f"C {here.transit_c.value * RHO_ARCSEC:.4g} stated, {theory * RHO_ARCSEC:.4g} "
+            "arcsec/(div s) from scale value, torsion ratio and the period of this session",
+            value=100.0 * abs(apart),
+            limit=MOST_APART_PERCENT,
+            unit="%",
+            clause="C = (pi/2) mu (1 + lambda) / T2",
         )
     ]
 

@@ -67,7 +67,7 @@ def unsettled(folder: Path) -> bool:
     """Whether an interrupted program has left a journal or temporary files."""
     try:
         names = [item.name for item in folder.iterdir()]
-    except OSError:
+    except (OSError, ValueError):  # a path with a null character is no folder
         return False
     return any(name == JOURNAL_FILE or _LEFTOVER.fullmatch(name) for name in names)
 

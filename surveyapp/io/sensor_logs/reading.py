@@ -84,6 +84,9 @@ class Need:
         ``no``: not read.
     unit_stated : tuple of str
         Columns that need a stated unit, counts among them.
+    biased : bool
+        Whether a large bias is part of what is calibrated (counts about the middle of their
+        range), so that the size of a vector says nothing of its unit.
     """
 
     columns: tuple[str, ...] = ()
@@ -92,6 +95,7 @@ class Need:
     others: tuple[str, ...] = ()
     timed: Literal["required", "optional", "no"] = "required"
     unit_stated: tuple[str, ...] = ()
+    biased: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,7 +211,8 @@ class LogFile:
             problems += checks.bad_times(columns["time_s"], where=where, first_row=first)
         stated = [name for name in columns if self.places[name].stated]
         problems += checks.mixed_units(columns, where=where)
-        problems += checks.implausible(columns, stated=stated, where=where)
+        if not need.biased or not stated:
+            problems += checks.implausible(columns, stated=stated, where=where)
         problems += checks.unstated_counts(columns, stated=stated, where=where)
         return problems
 

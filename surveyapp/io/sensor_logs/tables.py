@@ -31,6 +31,13 @@ OPTIONS: Final = (
     "room",
     "index_axis",
     "predict_at",
+    "constant_deg",
+    "constant_sigma_arcsec",
+    "rate_sigma_deg_h",
+    "bias_prior_deg_h",
+    "bias_prior_sigma_deg_h",
+    "initial_heading_deg",
+    "initial_reference",
     "gravity_m_s2",
     "method",
 )

@@ -58,10 +58,28 @@ def _traverse_columns(generator: np.random.Generator) -> dict[str, Floats]:
     }
 
 
+def _rate_columns(generator: np.random.Generator) -> dict[str, Floats]:
+    """A row for each gyro of some stops, turned about one axis after the other."""
+    stop = np.arange(SIZE) // 3
+    rates = np.sign(generator.normal(size=SIZE))[:, None] * np.eye(3)[stop % 3]
+    rates = rates[3 * stop.clip(max=SIZE // 3 - 1)] + 0.1
+    return {
+        "axis": np.asarray(np.arange(SIZE) % 3, dtype=np.float64),
+        "stop": np.asarray(stop + 1, dtype=np.float64),
+        "place": np.asarray(stop % 3 + 1, dtype=np.float64),
+        "elapsed_s": np.asarray(60.0 * stop, dtype=np.float64),
+        "temperature_c": generator.uniform(10.0, 30.0, SIZE),
+        **{f"input_{a}": rates[:, i] for i, a in enumerate("xyz")},
+        **{f"force_{a}": generator.uniform(-9.8, 9.8, SIZE) for a in "xyz"},
+        **{f"field_{a}": generator.uniform(-5e-5, 5e-5, SIZE) for a in "xyz"},
+    }
+
+
 _MAKERS: dict[str, Callable[[np.random.Generator], dict[str, Floats]]] = {
     "reversal_run": _run_columns,
     "campaign": _campaign_columns,
     "traverse": _traverse_columns,
+    "rate": _rate_columns,
 }
 COLUMNS = {subject: tuple(make(np.random.default_rng(0))) for subject, make in _MAKERS.items()}
 """Columns that a project has, by subject; subjects of sensors have those of their log."""

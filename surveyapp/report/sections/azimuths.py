@@ -101,7 +101,7 @@ def _steps(
     station = project.station(line.station)
     known = "of the station" if station.deflection.known else "not known, 0 assumed with its sigma"
     small("- deflection of the vertical", line.deflection, None, known)
-    where = f"{line.station} in the grid" if project.crs else "no grid"
+    where = f"{line.station} in the grid" if project.crs or project.grid else "as stated"
     small("- meridian convergence", line.convergence, None, where)
     ends = "both ends in the grid" if line.arc_to_chord is not None else "a position is missing"
     small("- arc-to-chord", line.arc_to_chord, None, ends)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 
+from surveyapp.domain.mine_grid import MineGrid
 from surveyapp.domain.project import Project, Station
 from surveyapp.domain.results import OrientationResult
 from surveyapp.domain.rulebook import RuleBook
 from surveyapp.report.blocks import Block, Heading, KeyValues, Paragraph, Table
 from surveyapp.report.numbers import NOTHING, plain, seconds
+from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, format_angle
 
 _LONGEST_CRS = 160
 
@@ -81,7 +83,21 @@ def _instrument(project: Project, identity: str) -> str:
     return f"{identity}: {item.card.title}{serial} (card {item.card.id}, {item.card.kind})"
 
 
+def _mine_grid(grid: MineGrid) -> str:
+    """The mine's own grid in one line."""
+    base = "true north at the origin" if grid.base is None else " ".join(grid.base.split())
+    turned = format_angle(grid.rotation % (2.0 * math.pi), AngleUnit.DMS, 1)
+    text = f"mine grid, north bears {turned} against {base[:_LONGEST_CRS]}"
+    if grid.rotation_sigma > 0.0:
+        text += f' +-{grid.rotation_sigma * RHO_ARCSEC:.1f}"'
+    if grid.scale != 1.0:
+        text += f", scale {grid.scale:.8f}"
+    return f"{text}; origin {grid.e:.3f} {grid.n:.3f}"
+
+
 def _grid(project: Project) -> str:
+    if project.grid is not None:
+        return _mine_grid(project.grid)
     if project.crs is None:
         return "none: no convergence and no grid azimuth"
     text = " ".join(project.crs.split())

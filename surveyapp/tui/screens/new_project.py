@@ -62,6 +62,7 @@ class NewProjectScreen(Screen[str | None]):
             yield TextField(texts.F_GRID, "grid", hint=texts.F_GRID_HINT)
             yield Static(id="grids-told", classes="told", markup=False)
             yield OptionList(id="grids", compact=True)
+            yield TextField(texts.F_MINE_GRID, "mine-grid", hint=texts.F_MINE_GRID_HINT)
             cards = {"": texts.NOT_DETERMINED, **{c.id: c.title for c in api.models()}}
             yield ChoiceField(texts.F_INSTRUMENT, "card", cards)
             yield Static(id="card-told", classes="told", markup=False)
@@ -149,6 +150,7 @@ class NewProjectScreen(Screen[str | None]):
             folder=typed(self, "folder") or typed(self, "name"),
             name=typed(self, "name") or Path(typed(self, "folder")).name,
             crs=typed(self, "grid"),
+            mine_grid=typed(self, "mine-grid"),
             angle_unit=chosen(self, "unit"),
             angle_typing=chosen(self, "typing"),
             rule_book=chosen(self, "rules"),

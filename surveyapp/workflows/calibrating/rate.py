@@ -8,6 +8,11 @@ from pathlib import Path
 from typing import Final
 
 from surveyapp.core.sensors.rate.accelerometers import Resting
+from surveyapp.core.sensors.rate.multi_position_log import NEEDED as HAND_HELD
+from surveyapp.core.sensors.rate.multi_position_log import (
+    MultiPositionOptions,
+    calibrate_multi_position,
+)
 from surveyapp.core.sensors.rate.position_log import (
     ACCELEROMETERS,
     GYROS,
@@ -95,6 +100,14 @@ def _six_positions(request: CalibrationRequest) -> Calibration:
     return calibrate_six_positions(request.read(need), options)
 
 
+def _multi_position(request: CalibrationRequest) -> Calibration:
+    gravity = request.number("gravity_m_s2", STANDARD_GRAVITY_M_S2) or STANDARD_GRAVITY_M_S2
+    log = request.read(
+        Need(columns=HAND_HELD, varying=HAND_HELD, optional=("temperature_c",), biased=True)
+    )
+    return calibrate_multi_position(log, MultiPositionOptions(latitude_of(request), gravity))
+
+
 def _temperature(request: CalibrationRequest) -> Calibration:
     problems: list[Problem] = []
     latitude = latitude_of(request)
@@ -175,5 +188,6 @@ def _room(request: CalibrationRequest, name: str) -> tuple[Resting, ...]:
 PROGRAMMES: Final[Mapping[str, Callable[[CalibrationRequest], Calibration]]] = {
     "six-position": _six_positions,
     "temperature": _temperature,
+    "multi-position": _multi_position,
 }
 """Programme to what runs it."""

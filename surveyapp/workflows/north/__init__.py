@@ -14,6 +14,8 @@ from surveyapp.workflows.north.request import NorthRequest, declination_problems
 
 METHODS: Final = {
     "fog-station": "fog_station",
+    "indexing": "indexing",
+    "rotation": "rotation",
 }
 """Method to its module."""
 

@@ -9,6 +9,14 @@ from typing import Any, Final
 
 import numpy as np
 
+from surveyapp.core.simulate.rate.effect_kinds import (
+    FOG_EFFECTS,
+    HAND_EFFECTS,
+    INDEXING_EFFECTS,
+    TABLE_EFFECTS,
+    VEHICLE_EFFECTS,
+)
+from surveyapp.core.simulate.rate.indexing import IndexingRun, indexing_log, indexing_sets
 from surveyapp.core.simulate.rate.log import SimulatedLog
 from surveyapp.core.simulate.rate.table_programmes import (
     DEG_H,
@@ -18,6 +26,13 @@ from surveyapp.core.simulate.rate.table_programmes import (
     fog_station_log,
     six_position_log,
     temperature_log,
+)
+from surveyapp.core.simulate.rate.vehicle import (
+    HandRun,
+    VehicleRun,
+    hand_held_log,
+    usual_drive,
+    vehicle_log,
 )
 from surveyapp.core.simulate.specification import Effect, EffectKind
 from surveyapp.errors import Problem, SurveyError
@@ -31,28 +46,6 @@ LATITUDE: Final = math.radians(45.77)
 """Of source 003."""
 NODES_C: Final = (-10.0, 5.0, 20.0, 30.0, 40.0)
 """Chamber temperatures of source 000-25."""
-
-TABLE_EFFECTS: Final = (
-    EffectKind("flip_error", "arcsec", ARCSEC, "sigma of the seating about each body axis"),
-    EffectKind("rate_error", "1", 1.0, "relative sigma of the table's rate, each way anew"),
-    EffectKind("scale_asymmetry", "1", 1.0, "excess of the scale factor for positive rates"),
-    EffectKind(
-        "g_sensitivity", "deg/h/g", DEG_H, "bias of gyro x per g along y, half of it z to x"
-    ),
-    EffectKind("bias_ramp", "deg/h/h", DEG_H / 3600.0, "drift of every bias"),
-    EffectKind("temperature", "deg/h/K", DEG_H, "bias per kelvin; the record warms by 5 K"),
-    EffectKind("interference_line", "deg/h", DEG_H, "amplitude of a line", (("hz", 2.48),)),
-    EffectKind("magnetic_sensitivity", "deg/h/uT", DEG_H, "bias per field along the axis"),
-    EffectKind("gross_error", "deg/h", DEG_H, "one position's output of gyro x is off"),
-)
-"""Effects of a unit on a table."""
-
-FOG_EFFECTS: Final = (
-    EffectKind("rate_error", "1", 1.0, "relative sigma of the table's rate, each way anew"),
-    EffectKind("scale_factor", "ppm", 1e-6, "error of the gyro's scale factor"),
-    EffectKind("gross_error", "deg/h", DEG_H, "one set's output is off while turning clockwise"),
-)
-"""Effects of a gyro on a total station."""
 
 
 def _sizes(effects: Sequence[Effect]) -> dict[str, float]:
@@ -185,18 +178,126 @@ def _fog_station(effects: Sequence[Effect], rng: np.random.Generator) -> Simulat
     return SimulatedLog(log.columns, log.texts, dict(log.truth) | {"effects": sizes})
 
 
+def _indexing_unit(sizes: Mapping[str, float], rng: np.random.Generator) -> IndexingRun:
+    g = np.zeros((3, 3))
+    g[0, 1], g[2, 0] = sizes.get("g_sensitivity", 0.0), 0.5 * sizes.get("g_sensitivity", 0.0)
+    return IndexingRun(
+        latitude=math.radians(35.0),
+        heading=rng.uniform(0.0, 2.0 * math.pi),
+        pitch=math.radians(6.0),
+        roll=math.radians(-3.0),
+        gyro=Triad(
+            bias=rng.normal(0.0, 5.0, 3) * DEG_H,
+            noise=0.05 * DEG_H * math.sqrt(600.0),
+            g_sensitivity=g,
+        ),
+        accelerometer=Triad(bias=np.array([0.01, -0.02, 0.0]), noise=0.01),
+        index_error=sizes.get("index_error", 0.0),
+    )
+
+
+def _indexing(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
+    sizes = _sizes(effects)
+    log = indexing_log(_indexing_unit(sizes, rng), rng)
+    return SimulatedLog(log.columns, log.texts, dict(log.truth) | {"effects": sizes})
+
+
+def _indexing_stops(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
+    """Six stops of a vehicle; at the third the index axis is level and points east-west."""
+    sizes = _sizes(effects)
+    first = _indexing_unit(sizes, rng)
+    bias = first.gyro.bias
+    runs = []
+    for k in range(6):
+        bias = bias + rng.normal(0.0, 0.02, 3) * DEG_H
+        if k == 1:
+            bias = bias + np.array([sizes.get("bias_step", 0.0), 0.0, 0.0])
+        bad = k == 2
+        runs.append(
+            replace(
+                first,
+                heading=math.radians(90.0) if bad else rng.uniform(0.0, 2.0 * math.pi),
+                pitch=math.radians(89.0) if bad else math.radians(rng.uniform(-8.0, 8.0)),
+                gyro=replace(first.gyro, bias=bias),
+            )
+        )
+    log = indexing_sets(runs, rng, every_s=1200.0)
+    return SimulatedLog(log.columns, log.texts, dict(log.truth) | {"effects": sizes})
+
+
+def _vehicle(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
+    sizes = _sizes(effects)
+    noise = sizes.get("noise", 1.0)
+    cycle = sizes.get("power_cycle")
+    run = VehicleRun(
+        legs=usual_drive(),
+        heading=math.radians(30.0),
+        gyro=Triad(
+            bias=np.array([0.002, -0.001, 0.0015 + sizes.get("gyro_drift", 0.0)]),
+            noise=0.001 * noise,
+        ),
+        accelerometer=Triad(noise=0.02 * noise),
+        shake=0.15 * noise,
+        power_cycle_after=None if cycle is None else round(cycle),
+    )
+    log = vehicle_log(run, rng)
+    return SimulatedLog(log.columns, log.texts, dict(log.truth) | {"effects": sizes})
+
+
+def hand_run(sizes: Mapping[str, float], rng: np.random.Generator) -> HandRun:
+    """A micro-mechanical unit with the effects that are asked for."""
+    stops = round(sizes.get("stops", 18.0))
+    sensitivity = rng.normal(0.0, 1.0, (3, 3)) * sizes.get("g_sensitivity", 0.0) * 9.80665
+    seconds = stops * 6.0 - 2.0
+    return HandRun(
+        gyro=Triad(
+            scale=np.array([0.01, -0.008, 0.005]),
+            misalignment=np.array([[0.0, 0.01, -0.006], [0.004, 0.0, 0.02], [-0.01, 0.005, 0.0]]),
+            bias=np.radians([0.3, -0.5, 0.2]),
+            g_sensitivity=sensitivity,
+            asymmetry=np.full(3, sizes.get("scale_asymmetry", 0.0)),
+            noise=math.radians(0.05),
+        ),
+        accelerometer=Triad(
+            scale=np.array([2e-3, -5e-3, 1e-3]),
+            misalignment=np.array([[0.0] * 3, [3e-3, 0.0, 0.0], [5e-3, -4e-3, 0.0]]),
+            bias=np.array([0.05, -0.08, 0.03]),
+            noise=0.01,
+        ),
+        stops=stops,
+        ramp=sizes.get("bias_ramp", 0.0) / seconds,
+        temperature=sizes.get("temperature", 0.0),
+        walk=math.radians(0.006),
+        random_walk=sizes.get("random_walk", 0.0),
+        gross=sizes.get("gross_error", 0.0),
+    )
+
+
+def _hand_held(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
+    sizes = _sizes(effects)
+    log = hand_held_log(hand_run(sizes, rng), rng)
+    return SimulatedLog(log.columns, log.texts, dict(log.truth) | {"effects": sizes})
+
+
 Recipe = Callable[[Sequence[Effect], np.random.Generator], SimulatedLog]
 
 PROGRAMMES: Final[Mapping[str, Mapping[str, tuple[Recipe, tuple[EffectKind, ...]]]]] = {
     "rate": {
         "six-position": (_six_positions, TABLE_EFFECTS),
         "temperature": (_temperature, TABLE_EFFECTS[:2]),
+        "multi-position": (_hand_held, HAND_EFFECTS),
     },
     "fog-station": {"": (_fog_station, FOG_EFFECTS)},
+    "indexing": {
+        "one-stop": (_indexing, INDEXING_EFFECTS[:2]),
+        "several-stops": (_indexing_stops, INDEXING_EFFECTS),
+    },
+    "vehicle": {"": (_vehicle, VEHICLE_EFFECTS)},
 }
 """Kind of log to its programmes, the first one the default, and the effects that each knows."""
 
 _ENTRY_KEYS: Final[Mapping[str, str]] = {
+    "indexing": 'method = "indexing"\n',
     "fog-station": 'reading_from_elevation = "increases"\n',
 }
 

@@ -1,0 +1,33 @@
+"""Effects of a rate sensor: what the outputs of its stops hold beside bias, scale and misalignment.
+
+A row is one gyro at one stop; the columns that all effects read stand here once.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from surveyapp_models.arrays import Floats
+from surveyapp_models.effects.effect import Column, Columns
+
+AXIS = Column("axis", "gyro of the row: 0, 1, 2 = x, y, z")
+STOP = Column("stop", "number of the stop, from 1")
+ELAPSED = Column("elapsed_s", "seconds since the first stop")
+TEMPERATURE = Column("temperature_c", "degree Celsius")
+FORCES = tuple(Column(f"force_{a}", "specific force in the body, m/s2") for a in "xyz")
+INPUTS = tuple(Column(f"input_{a}", "known rate of the body, rad/s") for a in "xyz")
+FIELDS = tuple(Column(f"field_{a}", "magnetic flux density in the body, T") for a in "xyz")
+PLACE = Column("place", "number of the position on the table, from 1")
+DEG_S = 0.017453292519943295
+"""One degree per second [rad/s]."""
+
+
+def by_axis(columns: Columns, values: Floats) -> Floats:
+    """One column a gyro: the values in its own rows, else 0; shape (n, 3)."""
+    return np.asarray((columns["axis"][:, None] == np.arange(3.0)) * values[:, None])
+
+
+def own(columns: Columns, name: str) -> Floats:
+    """Of three columns ``name_x/y/z`` the one along the row's own axis, shape (n,)."""
+    three = np.column_stack([columns[f"{name}_{a}"] for a in "xyz"])
+    return np.asarray(three[np.arange(three.shape[0]), columns["axis"].astype(np.intp)])

@@ -1,0 +1,260 @@
+"""Calibration from hand-held stops: accelerometers by the size of gravity, gyros by its direction.
+
+At each stop the accelerometers must show one gravity whatever the attitude; from stop to stop the
+gyros must carry its direction to where the accelerometers find it. Source: Tedaldi, Pretto and
+Menegatti 2014. The accelerometer triad is the frame: its x axis is the body's, y lies in the xy
+plane of the body.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from surveyapp_models.arrays import Floats
+from surveyapp_models.rate import quaternions
+
+LEVELS = ("bias_scale", "three_scales", "misalignment")
+"""Accelerometer models, each with more parameters: 4, 6, 9."""
+PARAMETERS = {"bias_scale": 4, "three_scales": 6, "misalignment": 9}
+_ITERATIONS = 40
+
+
+@dataclass(frozen=True, slots=True)
+class HeldStop:
+    """Mean outputs of one stop.
+
+    Parameters
+    ----------
+    start, stop : int
+        Rows, stop exclusive.
+    force, rate : ndarray, shape (3,)
+        [m/s2], [rad/s]
+    time_s : float
+        Of its middle.
+    """
+
+    start: int
+    stop: int
+    force: Floats
+    rate: Floats
+    time_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class ForceModel:
+    """True force = matrix (output - bias).
+
+    Parameters
+    ----------
+    level : str
+    bias : ndarray, shape (3,)
+        [m/s2]
+    matrix : ndarray, shape (3, 3)
+    vector : ndarray, shape (p,)
+        The parameters as fitted: bias, then scales, then the three lower elements.
+    covariance : ndarray, shape (p, p)
+        From the residuals.
+    rms : float
+        Of the size of gravity [m/s2].
+    dof : int
+    """
+
+    level: str
+    bias: Floats
+    matrix: Floats
+    vector: Floats
+    covariance: Floats
+    rms: float
+    dof: int
+
+    def corrected(self, force: Floats) -> Floats:
+        """True forces of outputs, shape (..., 3)."""
+        return np.asarray((force - self.bias) @ self.matrix.T)
+
+
+def _parts(level: str, vector: Floats) -> tuple[Floats, Floats]:
+    """Bias and output matrix K (1 + M) of a parameter vector."""
+    bias = vector[:3]
+    if level == "bias_scale":
+        return bias, np.eye(3) * vector[3]
+    out = np.diag(vector[3:6])
+    if level == "misalignment":
+        out = out.copy()
+        out[1, 0] = vector[6] * vector[4]
+        out[2, 0], out[2, 1] = vector[7] * vector[5], vector[8] * vector[5]
+    return bias, out
+
+
+def fit_forces(forces: Floats, *, level: str, gravity: float) -> ForceModel:
+    """Fit one model to the stops' outputs.
+
+    Parameters
+    ----------
+    forces : ndarray, shape (n, 3)
+        Outputs [m/s2].
+    level : str
+    gravity : float
+        [m/s2]
+    """
+    vector = _first_guess(forces, level, gravity)
+    count = PARAMETERS[level]
+    steps = np.where(np.arange(count) < 3, 1e-5, 1e-7)
+
+    def residual(v: Floats) -> Floats:
+        bias, out = _parts(level, v)
+        true = np.linalg.solve(out, (forces - bias).T).T
+        return np.asarray(np.linalg.norm(true, axis=1) - gravity)
+
+    jacobian = np.zeros((forces.shape[0], count))
+    damping = 1e-6
+    rest = residual(vector)
+    for _ in range(_ITERATIONS):
+        for k in range(count):
+            shift = np.zeros(count)
+            shift[k] = steps[k]
+            jacobian[:, k] = (residual(vector + shift) - residual(vector - shift)) / (2 * steps[k])
+        size = np.maximum(np.linalg.norm(jacobian, axis=0), 1e-12)
+        rows = np.vstack([jacobian / size, math.sqrt(damping) * np.eye(count)])
+        step = np.linalg.lstsq(rows, np.append(-rest, np.zeros(count)), rcond=None)[0] / size
+        after = residual(vector + step)
+        if float(after @ after) <= float(rest @ rest) + 1e-18:
+            done = float(np.abs(step).max()) < 1e-12
+            vector, rest, damping = vector + step, after, max(damping * 0.1, 1e-12)
+            if done:
+                break
+        else:
+            damping = min(damping * 10.0, 1e3)
+    bias, out = _parts(level, vector)
+    dof = forces.shape[0] - count
+    scale = float(rest @ rest) / max(dof, 1)
+    covariance = np.linalg.pinv(jacobian.T @ jacobian) * scale
+    rms = math.sqrt(float(np.mean(rest**2)))
+    inverse = np.asarray(np.linalg.inv(out), dtype=np.float64)
+    return ForceModel(level, bias, inverse, vector, covariance, rms, dof)
+
+
+def _first_guess(forces: Floats, level: str, gravity: float) -> Floats:
+    """Centre and radius of the sphere through the stops, by linear least squares."""
+    design = np.column_stack([2.0 * forces, np.ones(forces.shape[0])])
+    solution, *_ = np.linalg.lstsq(design, np.sum(forces**2, axis=1), rcond=None)
+    centre = solution[:3]
+    radius = math.sqrt(max(float(solution[3] + centre @ centre), 1e-6))
+    if np.linalg.cond(design / np.linalg.norm(design, axis=0)) > 1e8:
+        centre, radius = np.zeros(3), gravity
+    scale = radius / gravity
+    tail = {"bias_scale": [scale], "three_scales": [scale] * 3}.get(level, [scale] * 3 + [0.0] * 3)
+    return np.concatenate([centre, tail])
+
+
+def left_out(forces: Floats, *, level: str, gravity: float) -> float | None:
+    """Root mean square of the size of gravity at stops that had no part in the fit [m/s2]."""
+    count = forces.shape[0]
+    if count <= PARAMETERS[level] + 1:
+        return None
+    rest = []
+    for k in range(count):
+        keep = np.arange(count) != k
+        model = fit_forces(forces[keep], level=level, gravity=gravity)
+        rest.append(float(np.linalg.norm(model.corrected(forces[k]))) - gravity)
+    return math.sqrt(float(np.mean(np.square(rest))))
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """A turn from one stop to the next.
+
+    Parameters
+    ----------
+    rates : ndarray, shape (k, 3)
+        Outputs less the bias [rad/s].
+    before, after : ndarray, shape (3,)
+        Directions of up in the body at the two stops.
+    interval_s : float
+    """
+
+    rates: Floats
+    before: Floats
+    after: Floats
+    interval_s: float
+
+    def carried(self, inverse: Floats) -> Floats:
+        """Direction of up after the turn, by gyros whose true rate is ``inverse`` output."""
+        q = quaternions.integrate(self.rates @ inverse.T, interval_s=self.interval_s)[-1]
+        return quaternions.rotate_back(q, self.before)
+
+
+@dataclass(frozen=True, slots=True)
+class RateModel:
+    """True rate = matrix (output - bias).
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (3, 3)
+    output : ndarray, shape (3, 3)
+        Its inverse: output per true rate.
+    covariance : ndarray, shape (9, 9)
+        Of ``output``, row by row.
+    rms_before, rms_after : float
+        Of the direction of gravity after a turn [rad].
+    dof : int
+    """
+
+    matrix: Floats
+    output: Floats
+    covariance: Floats
+    rms_before: float
+    rms_after: float
+    dof: int
+
+
+def direction_errors(turns: Sequence[Turn], inverse: Floats) -> Floats:
+    """Angle between carried and felt direction of gravity of each turn, shape (n, 3)."""
+    return np.array([np.cross(t.carried(inverse), t.after) for t in turns])
+
+
+def fit_rates(turns: Sequence[Turn]) -> RateModel:
+    """Fit nine elements to the turns; each turn tells two angles.
+
+    Parameters
+    ----------
+    turns : sequence of Turn
+    """
+    inverse = np.eye(3)
+    before = direction_errors(turns, inverse)
+    rest = before
+    step = 1e-6
+    jacobian = np.zeros((rest.size, 9))
+    for _ in range(12):
+        for k in range(9):
+            shift = np.zeros(9)
+            shift[k] = step
+            high = direction_errors(turns, inverse + shift.reshape(3, 3))
+            low = direction_errors(turns, inverse - shift.reshape(3, 3))
+            jacobian[:, k] = ((high - low) / (2.0 * step)).ravel()
+        change = np.linalg.lstsq(jacobian, -rest.ravel(), rcond=1e-10)[0]
+        inverse = inverse + change.reshape(3, 3)
+        rest = direction_errors(turns, inverse)
+        if float(np.abs(change).max()) < 1e-10:
+            break
+    dof = 2 * len(turns) - 9
+    scale = float(np.sum(rest**2)) / max(dof, 1)
+    of_inverse = np.linalg.pinv(jacobian.T @ jacobian) * scale
+    output = np.asarray(np.linalg.inv(inverse), dtype=np.float64)
+    # d(output) = -output d(inverse) output
+    chain = -np.kron(output, output.T)
+    return RateModel(
+        inverse,
+        output,
+        chain @ of_inverse @ chain.T,
+        _rms(before),
+        _rms(rest),
+        dof,
+    )
+
+
+def _rms(errors: Floats) -> float:
+    return math.sqrt(float(np.mean(np.sum(errors**2, axis=1))))

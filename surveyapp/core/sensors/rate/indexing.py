@@ -1,0 +1,294 @@
+"""Attitude, heading and biases from a sensor turned about one axis at rest (indexing, maytagging).
+
+Turning the sensor tells the biases of the two axes across the index axis from the earth; gravity
+tells the level; and with the latitude known the earth's rotation leaves one unknown, the heading.
+Everything is solved together by least squares from many beginnings, so that every heading that
+fits is found; which of them is right is a matter of odds, never of the nearest root.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from surveyapp.core.sensors.rate.indexing_values import Indexed, Root, Setting, Stop
+from surveyapp_models.angles import wrap_pi
+from surveyapp_models.arrays import Floats
+from surveyapp_models.rate import quaternions
+from surveyapp_models.rate.attitude import (
+    attitude_matrix,
+    axis_rotation,
+    earth_rate,
+)
+
+ODDS_GAP = 2.0 * math.log(1e6)
+"""Chi-square between two headings at posterior odds of a million: 27.6."""
+BEGINNINGS = 24
+SAME_HEADING = math.radians(0.5)
+"""Solutions closer than this are one."""
+FORCE_BIAS_PRIOR = 0.1
+"""Standard deviation of an accelerometer bias before anything is known: 10 mg [m/s2]."""
+_STEPS = 25
+ATTITUDE, BIAS, FORCE_BIAS = slice(0, 3), slice(3, 6), slice(6, 8)
+_UNKNOWNS = 8
+
+
+CURVED = math.radians(1.0)
+"""From this standard deviation on chi-square is no parabola in the heading any more [rad]."""
+UNDETERMINED_SIGMA = math.radians(30.0)
+"""A heading with a larger standard deviation is none [rad]."""
+
+
+def rotation_of(stop: Stop, axis: int) -> Floats:
+    """Body at index angle 0 to the sensor at this stop, shape (3, 3).
+
+    The sensor has turned clockwise, that is by minus the angle about the axis.
+    """
+    return axis_rotation(axis, -stop.angle).T
+
+
+def solve_indexing(stops: Sequence[Stop], setting: Setting) -> Indexed:
+    """Solve attitude and biases.
+
+    Parameters
+    ----------
+    stops : sequence of Stop
+        At least two different index angles.
+    setting : Setting
+    """
+    turns = np.array([rotation_of(s, setting.axis) for s in stops])
+    rate, rate_sigma = (np.array([getattr(s, n) for s in stops]) for n in ("rate", "rate_sigma"))
+    force, force_sigma = (
+        np.array([getattr(s, n) for s in stops]) for n in ("force", "force_sigma")
+    )
+    scale = _scatter(turns, rate, rate_sigma, setting.axis)
+    rate_sigma = _with_index_error(rate, rate_sigma * scale, setting)
+    problem = _System(turns, rate, rate_sigma, force, force_sigma, setting)
+    found = [problem.refined(start) for start in problem.beginnings()]
+    roots = _distinct([r for r in found if r is not None])
+    if roots and roots[0].heading_sigma() > CURVED:
+        roots[0] = replace(roots[0], profile_sigma=problem.profile(roots[0]))
+    plane, sigma = problem.across()
+    dof = 6 * len(stops) - _UNKNOWNS
+    told = setting.bias_prior is not None or index_angles(stops) > 1
+    return Indexed(tuple(roots), _verdict(roots, told=told), plane, sigma, scale, dof)
+
+
+def index_angles(stops: Sequence[Stop]) -> int:
+    """How many different index angles there are, to a tenth of a degree."""
+    return len({round(math.degrees(s.angle) % 360.0, 1) % 360.0 for s in stops})
+
+
+def _scatter(turns: Floats, rate: Floats, sigma: Floats, axis: int) -> float:
+    """Factor by which stops scatter more than their samples allow, where that is significant."""
+    from surveyapp.core.statistics.distributions import chi_square_tail
+
+    design = np.concatenate([turns, np.tile(np.eye(3), (turns.shape[0], 1, 1))], axis=2)
+    weighted = (design / sigma[:, :, None]).reshape(-1, 6)
+    weighted = np.delete(weighted, 3 + axis, axis=1)
+    target = (rate / sigma).ravel()
+    solution, *_ = np.linalg.lstsq(weighted, target, rcond=None)
+    rest = target - weighted @ solution
+    dof = target.size - 5
+    chi = float(rest @ rest)
+    if dof < 2 or chi_square_tail(chi, dof) > 0.01:
+        return 1.0
+    return math.sqrt(chi / dof)
+
+
+def _with_index_error(rate: Floats, sigma: Floats, setting: Setting) -> Floats:
+    if setting.index_sigma == 0.0:
+        return sigma
+    across = np.delete(rate - rate.mean(axis=0), setting.axis, axis=1)
+    size = math.sqrt(float(np.mean(np.sum(across**2, axis=1))))
+    extra = np.full(3, size * setting.index_sigma)
+    extra[setting.axis] = 0.0
+    return np.asarray(np.hypot(sigma, extra))
+
+
+@dataclass(frozen=True, slots=True)
+class _System:
+    """Observation equations of all stops, and the prior."""
+
+    turns: Floats
+    rate: Floats
+    rate_sigma: Floats
+    force: Floats
+    force_sigma: Floats
+    setting: Setting
+
+    def beginnings(self) -> list[Floats]:
+        """Attitudes level with gravity at headings all round, shape (3, 3) each."""
+        felt = np.einsum("kji,kj->ki", self.turns, self.force).mean(axis=0)
+        up = felt / np.linalg.norm(felt)
+        pitch = math.asin(min(1.0, max(-1.0, float(up[1]))))
+        roll = math.atan2(-float(up[0]), float(up[2]))
+        step = 2.0 * math.pi / BEGINNINGS
+        return [
+            attitude_matrix(heading=k * step, pitch=pitch, roll=roll) for k in range(BEGINNINGS)
+        ]
+
+    def gravity(self) -> float:
+        """Size of the specific force [m/s2]."""
+        if self.setting.gravity is not None:
+            return self.setting.gravity
+        return float(np.mean(np.linalg.norm(self.force, axis=1)))
+
+    def refined(self, start: Floats) -> Root | None:
+        """Gauss-Newton from one attitude; None where it does not converge."""
+        attitude, linear = start, np.zeros(5)
+        damping = 1e-3
+        design, rest = self._equations(attitude, linear)
+        chi = float(rest @ rest)
+        for _ in range(_STEPS):
+            size = np.maximum(np.linalg.norm(design, axis=0), 1e-12)
+            rows = np.vstack([design / size, math.sqrt(damping) * np.eye(_UNKNOWNS)])
+            target = np.concatenate([rest, np.zeros(_UNKNOWNS)])
+            step = np.linalg.lstsq(rows, target, rcond=None)[0] / size
+            turn = float(np.linalg.norm(step[ATTITUDE]))
+            if turn > 0.5:
+                step = step * (0.5 / turn)
+            moved = _turned(attitude, step[ATTITUDE])
+            there = linear + step[3:]
+            next_design, next_rest = self._equations(moved, there)
+            next_chi = float(next_rest @ next_rest)
+            if next_chi <= chi:
+                small = chi - next_chi < 1e-9 * (1.0 + chi) and turn < 1e-7
+                attitude, linear, design, rest = moved, there, next_design, next_rest
+                chi, damping = next_chi, max(damping * 0.1, 1e-12)
+                if small:
+                    break
+            else:
+                damping = min(damping * 10.0, 1e6)
+        return Root(attitude, linear[:3], chi, _covariance(design))
+
+    def _equations(self, attitude: Floats, linear: Floats) -> tuple[Floats, Floats]:
+        """Whitened design, shape (m, 8), and residuals at an attitude and biases."""
+        axis = self.setting.axis
+        earth = earth_rate(self.setting.latitude)
+        up = np.array([0.0, 0.0, self.gravity()])
+        bias = linear[:3]
+        others = [k for k in range(3) if k != axis]
+        force_bias = np.zeros(3)
+        force_bias[others] = linear[3:]
+        count = self.turns.shape[0]
+        body_rate, body_force = attitude.T @ earth, attitude.T @ up
+        to_sensor = self.turns @ attitude.T
+        design = np.zeros((2, count, 3, _UNKNOWNS))
+        design[0, :, :, ATTITUDE] = to_sensor @ _skew(earth)
+        design[0, :, :, BIAS] = np.eye(3)
+        design[1, :, :, ATTITUDE] = to_sensor @ _skew(up)
+        for column, k in enumerate(others):
+            design[1, :, k, 6 + column] = 1.0
+        rest = np.stack(
+            [
+                self.rate - self.turns @ body_rate - bias,
+                self.force - self.turns @ body_force - force_bias,
+            ]
+        )
+        sigma = np.stack([self.rate_sigma, self.force_sigma])
+        rows = (design / sigma[..., None]).reshape(-1, _UNKNOWNS)
+        values = (rest / sigma).ravel()
+        held = np.zeros((2, _UNKNOWNS))
+        held[:, FORCE_BIAS] = np.eye(2) / FORCE_BIAS_PRIOR
+        rows, values = np.vstack([rows, held]), np.append(values, -linear[3:] / FORCE_BIAS_PRIOR)
+        prior, spread = self.setting.bias_prior, self.setting.bias_prior_sigma
+        if prior is None or np.all(spread <= 0.0):
+            return rows, values
+        extra = np.zeros((3, _UNKNOWNS))
+        extra[:, BIAS] = np.diag(1.0 / spread)
+        return np.vstack([rows, extra]), np.concatenate([values, (prior - bias) / spread])
+
+    def profile(self, root: Root) -> float:
+        """Half the 95 % interval of the heading over 1.96, everything else free [rad].
+
+        Used where an index axis level and east-west makes the fit blind to small turns.
+        """
+        ends = []
+        for sign in (1.0, -1.0):
+            inside, step = 0.0, math.radians(0.25)
+            while inside < math.pi and self._held(root, sign * (inside + step)) < 3.84:
+                inside += step
+                step *= 1.15
+            ends.append(inside + 0.5 * step)
+        return 0.5 * (ends[0] + ends[1]) / 1.96
+
+    def _held(self, root: Root, turn: float) -> float:
+        """Increase of chi-square with the heading held at a turn from the root."""
+        attitude, linear = _turned(root.attitude, np.array([0.0, 0.0, -turn])), np.zeros(5)
+        linear[:3] = root.bias
+        free = [0, 1, *range(3, _UNKNOWNS)]
+        chi = math.inf
+        for _ in range(4):
+            design, rest = self._equations(attitude, linear)
+            chi = min(chi, float(rest @ rest))
+            size = np.maximum(np.linalg.norm(design[:, free], axis=0), 1e-12)
+            part = np.linalg.lstsq(design[:, free] / size, rest, rcond=1e-10)[0] / size
+            step = np.zeros(_UNKNOWNS)
+            step[free] = part
+            attitude, linear = _turned(attitude, step[ATTITUDE]), linear + step[3:]
+        return chi - root.chi_square
+
+    def across(self) -> tuple[float, float]:
+        """Earth rate across the index axis from the two axes alone, and its sigma [rad/s]."""
+        axis = self.setting.axis
+        others = [k for k in range(3) if k != axis]
+        back = np.einsum("kji,kj->ki", self.turns, self.rate)[:, others]
+        offset = np.einsum("kji->kij", self.turns)[:, others][:, :, others]
+        count = back.shape[0]
+        rows = np.concatenate([np.tile(np.eye(2), (count, 1, 1)), offset], axis=2).reshape(-1, 4)
+        solution, *_ = np.linalg.lstsq(rows, back.ravel(), rcond=None)
+        noise = float(np.mean(self.rate_sigma[:, others]))
+        spread = noise * math.sqrt(float(np.linalg.pinv(rows.T @ rows)[0, 0]))
+        return math.hypot(*solution[:2].tolist()), spread
+
+
+def _skew(vector: Floats) -> Floats:
+    x, y, z = vector.tolist()
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+def _turned(attitude: Floats, rotation: Floats) -> Floats:
+    """exp([rotation]) attitude: the body turned about axes of the navigation frame."""
+    return np.asarray(quaternions.to_matrix(quaternions.from_rotation_vector(rotation)) @ attitude)
+
+
+def _covariance(design: Floats) -> Floats:
+    """Of attitude and gyro biases, shape (6, 6); what nothing tells has a huge variance."""
+    size = np.maximum(np.linalg.norm(design, axis=0), 1e-300)
+    _, s, right = np.linalg.svd(design / size, full_matrices=False)
+    s = np.maximum(s, 1e-9 * s[0])
+    whole = (right.T / s**2) @ right / np.outer(size, size)
+    return np.asarray(whole[:6, :6])
+
+
+def _distinct(found: list[Root]) -> list[Root]:
+    roots: list[Root] = []
+    for root in sorted(found, key=lambda r: r.chi_square):
+        if all(_apart(root.attitude, other.attitude) > SAME_HEADING for other in roots):
+            roots.append(root)
+    if not roots:
+        return []
+    best = roots[0].chi_square
+    return [r for r in roots if r.chi_square - best < 4.0 * ODDS_GAP][:4]
+
+
+def _apart(one: Floats, other: Floats) -> float:
+    """Angle between two attitudes [rad]."""
+    cosine = 0.5 * (float(np.trace(one @ other.T)) - 1.0)
+    return math.acos(min(1.0, max(-1.0, cosine)))
+
+
+def _verdict(roots: Sequence[Root], *, told: bool) -> str:
+    if not roots or not told or roots[0].heading_sigma() > UNDETERMINED_SIGMA:
+        return "undetermined"
+    rivals = [
+        r
+        for r in roots[1:]
+        if r.chi_square - roots[0].chi_square < ODDS_GAP
+        and abs(wrap_pi(r.heading - roots[0].heading)) > 3.0 * roots[0].heading_sigma()
+    ]
+    return "ambiguous" if rivals else "resolved"

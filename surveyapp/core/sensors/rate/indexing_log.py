@@ -1,0 +1,355 @@
+"""``north --method indexing``: a log of index positions to heading, attitude and biases."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from surveyapp.core.sensors.rate.bias_track import Tracked, track_bias
+from surveyapp.core.sensors.rate.indexing import solve_indexing
+from surveyapp.core.sensors.rate.indexing_values import Indexed, Root, Setting, Stop
+from surveyapp.core.sensors.rate.parameters import DEG_H
+from surveyapp.domain.calibration import SensorParameter
+from surveyapp.domain.north import NorthDirection, NorthResult
+from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.errors import Problem, SurveyError
+from surveyapp_models.angles import ARCSEC
+from surveyapp_models.arrays import Floats
+from surveyapp_models.constants import EARTH_RATE
+from surveyapp_models.rate import quaternions
+from surveyapp_models.rate.attitude import azimuth_of, earth_rate
+
+GYROS = ("gyr_x_rad_s", "gyr_y_rad_s", "gyr_z_rad_s")
+ACCELEROMETERS = ("acc_x_m_s2", "acc_y_m_s2", "acc_z_m_s2")
+NEEDED = (*GYROS, *ACCELEROMETERS, "index_angle_deg")
+OPTIONAL = ("temperature_c", "set", "round", "pass")
+MOVING_SIGMAS = 8.0
+"""Samples farther from the median of their stop were taken while something moved."""
+MOVING_SHARE = 0.2
+"""A stop with more of them is not used."""
+LEVEL_AXIS = math.radians(10.0)
+EAST_WEST = math.radians(15.0)
+ALIGNED = math.radians(5.0)
+"""Within these angles a degenerate attitude is told [rad]."""
+NORMAL_95 = 1.959963984540054
+
+
+@dataclass(frozen=True, slots=True)
+class IndexingOptions:
+    """What is stated beside the log.
+
+    Parameters
+    ----------
+    setting : Setting
+    track : bool
+    fixed : SensorLog or None
+        Log of a second unit that was not turned.
+    """
+
+    setting: Setting
+    track: bool = False
+    fixed: SensorLog | None = None
+
+
+def stops_of(log: SensorLog) -> tuple[list[Stop], list[int], list[ResultWarning]]:
+    """Mean outputs of each index position, the rows at which each begins, and what was left out.
+
+    Raises
+    ------
+    SurveyError
+        Without any stop.
+    """
+    angle = log.columns["index_angle_deg"]
+    change = np.concatenate([[True], np.abs(np.diff(angle)) > 1e-6])
+    for name in OPTIONAL[1:]:
+        if name in log.columns:
+            change[1:] |= np.diff(log.columns[name]) != 0.0
+    edges = np.append(np.flatnonzero(change), log.size).tolist()
+    lengths = np.diff(edges)
+    least = max(int(0.05 * float(np.max(lengths))), 1)
+    rates, forces = (np.column_stack([log.columns[c] for c in n]) for n in (GYROS, ACCELEROMETERS))
+    stops, rows, dropped = [], [], 0
+    for first, last in pairwise(edges):
+        if last - first < least:
+            continue  # the index was still turning
+        keep = _calm(rates[first:last]) & _calm(forces[first:last])
+        if float(np.mean(~keep)) > MOVING_SHARE:
+            dropped += 1
+            continue
+        stops.append(
+            _stop(math.radians(angle[first]), rates[first:last][keep], forces[first:last][keep])
+        )
+        rows.append(first)
+    warnings = []
+    if dropped:
+        text = f"{dropped} index positions were not used: the unit was moving"
+        warnings.append(ResultWarning("motion_in_stop", text))
+    if not stops:
+        raise SurveyError(
+            Problem(
+                "no index position at rest was found",
+                log.path,
+                "the index turns or the unit moves throughout",
+                "stretches of constant index_angle_deg",
+            )
+        )
+    return stops, rows, warnings
+
+
+def _calm(values: Floats) -> np.ndarray:
+    if values.shape[0] < 8:
+        return np.ones(values.shape[0], dtype=bool)
+    off = np.abs(values - np.median(values, axis=0))
+    spread = 1.4826 * np.median(off, axis=0)
+    return np.asarray(np.all(off <= MOVING_SIGMAS * spread + 1e-12, axis=1))
+
+
+def _stop(angle: float, rates: Floats, forces: Floats) -> Stop:
+    count = rates.shape[0]
+    if count < 2:
+        unknown = np.full(3, math.nan)
+        return Stop(angle, rates[0], unknown, forces[0], unknown)
+    root = math.sqrt(count)
+    return Stop(
+        angle,
+        rates.mean(axis=0),
+        np.maximum(rates.std(axis=0, ddof=1) / root, 1e-12),
+        forces.mean(axis=0),
+        np.maximum(forces.std(axis=0, ddof=1) / root, 1e-9),
+    )
+
+
+def _with_sigmas(stops: list[Stop], axis: int) -> tuple[list[Stop], bool]:
+    """Stops of one row each get the scatter about the turned means as their sigma."""
+    if all(np.all(np.isfinite(s.rate_sigma)) for s in stops):
+        return stops, True
+    known = []
+    for name, floor in (("rate", 1e-9), ("force", 1e-5)):
+        values = np.array([getattr(s, name) for s in stops])
+        known.append(max(_residual_sd(values, [s.angle for s in stops], axis), floor))
+    filled = [
+        replace(s, rate_sigma=np.full(3, known[0]), force_sigma=np.full(3, known[1])) for s in stops
+    ]
+    return filled, False
+
+
+def _residual_sd(values: Floats, angles: Sequence[float], axis: int) -> float:
+    """Scatter about a vector that turns with the index and a constant one."""
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    rows, target = [], []
+    for value, angle in zip(values, angles, strict=True):
+        c, s = math.cos(angle), math.sin(angle)
+        rows += [[c, -s, 1.0, 0.0, 0.0], [s, c, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 0.0, 1.0]]
+        target += [value[i], value[j], value[axis]]
+    design = np.array(rows)
+    solution, *_ = np.linalg.lstsq(design, np.array(target), rcond=None)
+    rest = np.array(target) - design @ solution
+    dof = max(len(target) - int(np.linalg.matrix_rank(design)), 1)
+    return math.sqrt(float(rest @ rest) / dof)
+
+
+def find_heading(log: SensorLog, options: IndexingOptions) -> NorthResult:
+    """Heading, attitude and biases from a log.
+
+    Raises
+    ------
+    SurveyError
+    """
+    stops, rows, warnings = stops_of(log)
+    stops, sampled = _with_sigmas(stops, options.setting.axis)
+    if not sampled:
+        text = "one row a stop: the sigmas are the scatter of the stops about the solution"
+        warnings.append(ResultWarning("rows_are_means", text))
+    tracking: list[Tracked] = []
+    if options.track:
+        groups = _groups(log, stops, rows)
+        tracking = track_bias(groups, options.setting)
+        last = tracking[-1]
+        found, used = last.indexed, len(groups[-1][2])
+    else:
+        found, used = solve_indexing(stops, options.setting), len(stops)
+    if not found.roots:
+        raise SurveyError(Problem("no attitude fits the log", log.path))
+    return _result(log, options, found, tracking, warnings, stops=used)
+
+
+def _groups(
+    log: SensorLog, stops: Sequence[Stop], rows: Sequence[int]
+) -> list[tuple[int, float, list[Stop]]]:
+    """Stops by set: number, time of its beginning [s], stops."""
+    name = next((n for n in OPTIONAL[1:] if n in log.columns), None)
+    groups: dict[int, tuple[float, list[Stop]]] = {}
+    for stop, row in zip(stops, rows, strict=True):
+        number = 1 if name is None else round(float(log.columns[name][row]))
+        time = float(log.columns["time_s"][row])
+        groups.setdefault(number, (time, []))[1].append(stop)
+    return [(number, time, inside) for number, (time, inside) in groups.items()]
+
+
+def _result(
+    log: SensorLog,
+    options: IndexingOptions,
+    found: Indexed,
+    tracking: Sequence[Tracked],
+    warnings: list[ResultWarning],
+    *,
+    stops: int,
+) -> NorthResult:
+    setting = options.setting
+    best = found.roots[0]
+    resolved = found.verdict == "resolved"
+    sigma = best.heading_sigma()
+    axis = "xyz"[setting.axis]
+    missing: tuple[str, ...] = () if resolved else ("heading", f"bias_{axis}")
+    spread = np.sqrt(np.maximum(np.diag(best.covariance), 0.0))
+    parameters = []
+    for k, letter in enumerate("xyz"):
+        known = f"bias_{letter}" not in missing and spread[3 + k] < 1e3 * DEG_H
+        value = float(best.bias[k]) / DEG_H if known else None
+        one = float(spread[3 + k]) / DEG_H if known else None
+        parameters.append(SensorParameter(f"bias_{letter}", value, one, "deg/h"))
+    missing += tuple(p.name for p in parameters if p.value is None and p.name not in missing)
+    direction = NorthDirection(
+        math.degrees(best.heading) if resolved else None,
+        sigma / ARCSEC if resolved else None,
+        NORMAL_95 * sigma / ARCSEC if resolved else None,
+    )
+    geometry, told = _geometry(best, found, setting)
+    q = quaternions.from_matrix(best.attitude)
+    extra: dict[str, Any] = {
+        "attitude_quaternion": q.tolist() if resolved else None,
+        "attitude_sigma_deg": _attitude_sigma(best) if resolved else None,
+        **_covariance(best),
+        "third_axis": {
+            "axis": axis,
+            "verdict": found.verdict,
+            "roots": [_root(r, best, setting.axis) for r in found.roots],
+        },
+        "geometry": geometry,
+        "tracking": [t.to_dict() for t in tracking],
+        "stops": stops,
+        "fixed_gyro": None if options.fixed is None else _fixed(options.fixed, best, setting),
+    }
+    return NorthResult(
+        method="indexing",
+        source=log.id,
+        key="heading",
+        direction=direction,
+        parameters=tuple(parameters),
+        undetermined=missing,
+        warnings=(*log.warnings, *warnings, *told, *_warnings(found)),
+        met=resolved and not missing,
+        n=log.size,
+        sha256=log.sha256,
+        extra=extra,
+        direction_extra={"axis": "z" if best.vertical else "y"},
+    )
+
+
+def _attitude_sigma(root: Root) -> float:
+    """Of the rotation from the true to the found attitude [deg]."""
+    variance = np.diag(root.covariance)[:3].copy()
+    if root.profile_sigma is not None:
+        variance[2] = root.profile_sigma**2
+    return math.degrees(math.sqrt(float(np.sum(np.maximum(variance, 0.0)))))
+
+
+def _covariance(root: Root) -> dict[str, Any]:
+    scale = np.array([math.degrees(1.0)] * 3 + [1.0 / DEG_H] * 3)
+    matrix = root.covariance * np.outer(scale, scale)
+    names = ["rotation_east", "rotation_north", "rotation_up", "bias_x", "bias_y", "bias_z"]
+    return {
+        "covariance": matrix.tolist(),
+        "covariance_names": names,
+        "covariance_units": ["deg"] * 3 + ["deg/h"] * 3,
+    }
+
+
+def _root(root: Root, best: Root, axis: int) -> dict[str, Any]:
+    gap = root.chi_square - best.chi_square
+    return {
+        "heading_deg": math.degrees(root.heading),
+        "bias_deg_h": float(root.bias[axis]) / DEG_H,
+        "chi_square_gap": gap,
+        "odds_against": math.exp(min(0.5 * gap, 700.0)),
+    }
+
+
+def _geometry(
+    root: Root, found: Indexed, setting: Setting
+) -> tuple[dict[str, Any], list[ResultWarning]]:
+    """Where the index axis points, and which degenerate attitude that is."""
+    pointer = root.attitude[:, setting.axis]
+    elevation = math.asin(min(1.0, max(-1.0, float(pointer[2]))))
+    azimuth = azimuth_of(pointer)
+    pole = earth_rate(setting.latitude) / EARTH_RATE
+    to_pole = math.acos(min(1.0, abs(float(pole @ pointer))))
+    told = []
+    if to_pole < ALIGNED:
+        text = (
+            "the index axis lies along the earth's axis: two axes alone cannot point; gravity and "
+            "the latitude still give the attitude"
+        )
+        told.append(ResultWarning("two_axis_pointing_lost", text))
+    east_west = min(abs(math.cos(azimuth)), 1.0) < math.sin(EAST_WEST)
+    if abs(elevation) < LEVEL_AXIS and east_west:
+        text = (
+            "the index axis is level and points east-west, the worst attitude of all: the heading "
+            "is good to degrees only unless the bias is known beforehand"
+        )
+        told.append(ResultWarning("index_axis_east_west", text))
+    if root.vertical:
+        text = "the vehicle stands nearly upright: no heading; the azimuth of its z axis is given"
+        told.append(ResultWarning("near_vertical", text))
+    return {
+        "two_axis_rate_deg_h": found.two_axis_rate / DEG_H,
+        "two_axis_sigma_deg_h": found.two_axis_sigma / DEG_H,
+        "index_axis_elevation_deg": math.degrees(elevation),
+        "index_axis_azimuth_deg": math.degrees(azimuth),
+        "index_axis_to_earth_axis_deg": math.degrees(to_pole),
+        "near_vertical": root.vertical,
+    }, told
+
+
+def _fixed(log: SensorLog, root: Root, setting: Setting) -> dict[str, Any]:
+    """Biases of the unit that was not turned, from the attitude of the other."""
+    rates = np.column_stack([log.columns[c] for c in GYROS])
+    keep = _calm(rates)
+    rates = rates[keep]
+    earth = root.attitude.T @ earth_rate(setting.latitude)
+    bias = rates.mean(axis=0) - earth
+    sigma = rates.std(axis=0, ddof=1) / math.sqrt(rates.shape[0])
+    return {
+        "source": log.id,
+        "parameters": [
+            SensorParameter(f"bias_{a}", float(b) / DEG_H, float(s) / DEG_H, "deg/h").to_dict()
+            for a, b, s in zip("xyz", bias, sigma, strict=True)
+        ],
+    }
+
+
+def _warnings(found: Indexed) -> list[ResultWarning]:
+    warnings = []
+    if found.verdict == "ambiguous":
+        headings = " and ".join(f"{math.degrees(r.heading):.2f}" for r in found.roots[:2])
+        text = (
+            f"two headings fit, {headings} degrees, at odds below a million: a bias known "
+            "beforehand (--bias-prior-deg-h) or another attitude separates them"
+        )
+        warnings.append(ResultWarning("ambiguous", text))
+    if found.verdict == "undetermined":
+        text = "the index positions do not determine the heading"
+        warnings.append(ResultWarning("undetermined", text))
+    if found.residual_scale > 1.0:
+        text = (
+            f"the stops scatter {found.residual_scale:.1f} times as much as their samples allow "
+            "(index angles, wandering biases); the sigmas are widened by that"
+        )
+        warnings.append(ResultWarning("stops_scatter", text))
+    return warnings

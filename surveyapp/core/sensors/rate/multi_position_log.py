@@ -1,0 +1,312 @@
+"""``calibrate rate --programme multi-position``: a hand-held record to accelerometers and gyros."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from surveyapp.core.sensors.rate.hand_held import (
+    LEVELS,
+    PARAMETERS,
+    ForceModel,
+    HeldStop,
+    RateModel,
+    Turn,
+    fit_forces,
+    fit_rates,
+    left_out,
+)
+from surveyapp.core.sensors.rate.parameters import DEG_H, PPM
+from surveyapp.core.sensors.rate.still import (
+    FALSE_ALARM,
+    WINDOW_S,
+    bridged,
+    gate_of,
+    rest_noise,
+    runs_of,
+    statistic,
+)
+from surveyapp.domain.calibration import (
+    Calibration,
+    CalibrationModel,
+    Geometry,
+    HeldOut,
+    Misfit,
+    SensorParameter,
+)
+from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2, SensorLog
+from surveyapp.errors import Problem, SurveyError
+from surveyapp_models.angles import ARCSEC
+from surveyapp_models.arrays import Floats
+from surveyapp_models.constants import EARTH_RATE
+
+GYROS = ("gyr_x_rad_s", "gyr_y_rad_s", "gyr_z_rad_s")
+ACCELEROMETERS = ("acc_x_m_s2", "acc_y_m_s2", "acc_z_m_s2")
+NEEDED = (*GYROS, *ACCELEROMETERS)
+LEAST_STOP_S = 1.0
+"""A shorter stop does not average the noise of a hand."""
+LEAST_STOPS = 5
+"""Stops below which no model is determined: one more than bias and scale need."""
+LEAST_TURNS = 6
+"""Turns below which the nine elements of the gyros are not determined."""
+GUARD_S = 0.1
+FEW_DOF = 3
+
+
+@dataclass(frozen=True, slots=True)
+class MultiPositionOptions:
+    """What is stated beside the log: latitude [rad] or None, gravity [m/s2]."""
+
+    latitude: float | None = None
+    gravity: float = STANDARD_GRAVITY_M_S2
+
+
+def held_stops(log: SensorLog) -> list[HeldStop]:
+    """Stops at which the record is as quiet as its quietest parts."""
+    force = np.column_stack([log.columns[c] for c in ACCELEROMETERS])
+    rate = np.column_stack([log.columns[c] for c in GYROS])
+    hz = log.rate_hz or 100.0
+    noise = rest_noise(force, rate, rate_hz=hz)
+    window = max(round(WINDOW_S * hz), 3)
+    values = statistic(force, rate, noise, window=window)
+    gate = gate_of(values, window=window, false_alarm=FALSE_ALARM)
+    still = bridged(values <= gate.threshold, rate_hz=hz, least_s=LEAST_STOP_S)
+    guard = round(GUARD_S * hz)
+    found: list[HeldStop] = []
+    for first, last in runs_of(still):
+        a, b = first + guard, last - guard
+        if b - a < 2:
+            continue
+        mean = force[a:b].mean(axis=0)
+        span = float(np.median(np.linalg.norm(force, axis=1)))
+        if found and float(np.linalg.norm(mean - found[-1].force)) < 0.02 * span:
+            last_one = found.pop()  # bumped, not turned
+            a = last_one.start
+            mean = np.average(
+                [last_one.force, mean], axis=0, weights=[last_one.stop - last_one.start, b - a]
+            )
+        middle = float(log.columns["time_s"][(a + b) // 2])
+        found.append(HeldStop(a, b, mean, rate[a:b].mean(axis=0), middle))
+    return found
+
+
+def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> Calibration:
+    """Accelerometers and gyros from hand-held stops.
+
+    Raises
+    ------
+    SurveyError
+        If there are too few stops for any model, or a gyro is saturated.
+    """
+    stops = held_stops(log)
+    if len(stops) < LEAST_STOPS:
+        raise SurveyError(
+            Problem(
+                "too few stops at rest for any model",
+                log.path,
+                f"{len(stops)} stops as quiet as the record can be",
+                f"{LEAST_STOPS} or more, of {LEAST_STOP_S:g} s and more, in different attitudes",
+                "lay the unit down at each stop: a hand that holds it moves it",
+            )
+        )
+    forces = np.array([s.force for s in stops])
+    models = _force_models(forces, options.gravity)
+    held = {m.level: left_out(forces, level=m.level, gravity=options.gravity) for m in models}
+    chosen = _chosen(models, held)
+    turns, bias, sigma_bias = _turns(log, stops, chosen, options)
+    gyro = fit_rates(turns) if len(turns) >= LEAST_TURNS else None
+    parameters = (
+        *_force_parameters(chosen),
+        *_rate_parameters(gyro, bias, sigma_bias),
+    )
+    missing = tuple(p.name for p in parameters if p.value is None)
+    raw = np.linalg.norm(forces, axis=1) - options.gravity
+    return Calibration(
+        kind="multi-position",
+        source=log.id,
+        parameters=parameters,
+        before=Misfit(math.sqrt(float(np.mean(raw**2))), "m/s2", "size of gravity at the stops"),
+        after=Misfit(chosen.rms, "m/s2", "size of gravity at the stops"),
+        geometry=Geometry("good" if not missing else "restricted", None, missing),
+        held_out=HeldOut(
+            "one stop after the other", held.get("bias_scale"), held.get(chosen.level), "m/s2"
+        ),
+        models=tuple(
+            CalibrationModel(m.level, m.rms, held[m.level], m.level == chosen.level) for m in models
+        ),
+        warnings=(*log.warnings, *_warnings(log, chosen, gyro, options)),
+        met=not missing,
+        n=log.size,
+        sha256=log.sha256,
+        extra={
+            "stops": [_stop_dict(log, s, chosen) for s in stops],
+            "dof": {"accelerometer": chosen.dof, "gyro": None if gyro is None else gyro.dof},
+            "gravity_direction": None
+            if gyro is None
+            else {
+                "before_deg": math.degrees(gyro.rms_before),
+                "after_deg": math.degrees(gyro.rms_after),
+                "of": "angle between carried and felt direction after a turn, rms",
+                "turns": len(turns),
+            },
+        },
+    )
+
+
+def force_model(forces: Floats, options: MultiPositionOptions) -> ForceModel:
+    """The accelerometer model that predicts left-out stops best.
+
+    Parameters
+    ----------
+    forces : ndarray, shape (n, 3)
+        Outputs of the stops [m/s2].
+    options : MultiPositionOptions
+    """
+    models = _force_models(forces, options.gravity)
+    held = {m.level: left_out(forces, level=m.level, gravity=options.gravity) for m in models}
+    return _chosen(models, held)
+
+
+def _force_models(forces: Floats, gravity: float) -> list[ForceModel]:
+    return [
+        fit_forces(forces, level=level, gravity=gravity)
+        for level in LEVELS
+        if forces.shape[0] > PARAMETERS[level]
+    ]
+
+
+def _chosen(models: Sequence[ForceModel], held: dict[str, float | None]) -> ForceModel:
+    """The model that predicts left-out stops best; the simplest where none can be left out."""
+    known = [m for m in models if held[m.level] is not None]
+    if not known:
+        return models[0]
+    return min(known, key=lambda m: held[m.level] or 0.0)
+
+
+def _turns(
+    log: SensorLog,
+    stops: Sequence[HeldStop],
+    model: ForceModel,
+    options: MultiPositionOptions,
+) -> tuple[list[Turn], Floats, Floats]:
+    """Turns between the stops, and the gyros' bias with its sigma from the stops' scatter."""
+    rate = np.column_stack([log.columns[c] for c in GYROS])
+    ups = np.array([model.corrected(s.force) for s in stops])
+    ups /= np.linalg.norm(ups, axis=1)[:, None]
+    means = rest_rates(stops, ups, options.latitude)
+    bias = means.mean(axis=0)
+    sigma = means.std(axis=0, ddof=1) / math.sqrt(len(stops))
+    interval = 1.0 / (log.rate_hz or 100.0)
+    turns = []
+    for k, (one, other) in enumerate(pairwise(stops)):
+        inside = slice(one.stop, other.start)
+        local = 0.5 * (one.rate + other.rate)  # earth and slow bias as the two rests show them
+        turns.append(Turn(rate[inside] - local, ups[k], ups[k + 1], interval))
+    return turns, bias, sigma
+
+
+def rest_rates(stops: Sequence[HeldStop], ups: Floats, latitude: float | None) -> Floats:
+    """Mean rates at the stops, the vertical earth rate taken out where the latitude is known."""
+    means = np.array([s.rate for s in stops])
+    if latitude is None:
+        return means
+    return np.asarray(means - EARTH_RATE * math.sin(latitude) * ups)
+
+
+def _force_parameters(model: ForceModel) -> list[SensorParameter]:
+    spread = np.sqrt(np.maximum(np.diag(model.covariance), 0.0))
+    known = model.dof > 0
+    vector = model.vector
+    found = []
+    for i, a in enumerate("xyz"):
+        one = float(spread[i]) if known else None
+        found.append(SensorParameter(f"accelerometer_bias_{a}", float(vector[i]), one, "m/s2"))
+    for i, a in enumerate("xyz"):
+        name = f"accelerometer_scale_factor_{a}"
+        if model.level == "bias_scale":
+            common = float(spread[3]) / PPM if known else None
+            found.append(SensorParameter(name, (float(vector[3]) - 1.0) / PPM, common, "ppm"))
+            continue
+        one = float(spread[3 + i]) / PPM if known else None
+        found.append(SensorParameter(name, (float(vector[3 + i]) - 1.0) / PPM, one, "ppm"))
+    for k, pair in enumerate(("yx", "zx", "zy")):
+        name = f"accelerometer_misalignment_{pair}"
+        if model.level != "misalignment":
+            found.append(SensorParameter(name, None, None, "arcsec"))
+            continue
+        one = float(spread[6 + k]) / ARCSEC if known else None
+        found.append(SensorParameter(name, float(vector[6 + k]) / ARCSEC, one, "arcsec"))
+    return found
+
+
+def _rate_parameters(
+    gyro: RateModel | None, bias: Floats, sigma_bias: Floats
+) -> list[SensorParameter]:
+    found = []
+    for i, a in enumerate("xyz"):
+        value = None if gyro is None else (float(gyro.output[i, i]) - 1.0) / PPM
+        sigma = None if gyro is None else _spread(gyro, 3 * i + i) / PPM
+        found.append(SensorParameter(f"scale_factor_{a}", value, sigma, "ppm"))
+    for i, a in enumerate("xyz"):
+        for j, b in enumerate("xyz"):
+            if i == j:
+                continue
+            value = None if gyro is None else float(gyro.output[i, j] / gyro.output[i, i]) / ARCSEC
+            sigma = None if gyro is None else _spread(gyro, 3 * i + j) / ARCSEC
+            found.append(SensorParameter(f"misalignment_{a}{b}", value, sigma, "arcsec"))
+    found += [
+        SensorParameter(f"bias_{a}", float(bias[i]) / DEG_H, float(sigma_bias[i]) / DEG_H, "deg/h")
+        for i, a in enumerate("xyz")
+    ]
+    return found
+
+
+def _spread(gyro: RateModel, index: int) -> float:
+    return math.sqrt(max(float(gyro.covariance[index, index]), 0.0))
+
+
+def _stop_dict(log: SensorLog, stop: HeldStop, model: ForceModel) -> dict[str, Any]:
+    size = float(np.linalg.norm(model.corrected(stop.force)))
+    return {
+        "start_s": float(log.columns["time_s"][stop.start]),
+        "end_s": float(log.columns["time_s"][stop.stop - 1]),
+        "force_m_s2": stop.force.tolist(),
+        "rate_deg_s": np.degrees(stop.rate).tolist(),
+        "gravity_m_s2": size,
+    }
+
+
+def _warnings(
+    log: SensorLog,
+    model: ForceModel,
+    gyro: RateModel | None,
+    options: MultiPositionOptions,
+) -> list[ResultWarning]:
+    warnings = []
+    if model.dof <= FEW_DOF or (gyro is not None and gyro.dof <= FEW_DOF):
+        text = (
+            f"few degrees of freedom: accelerometer {model.dof}, gyro "
+            f"{'none' if gyro is None else gyro.dof}; the residuals say little of the fit"
+        )
+        warnings.append(ResultWarning("few_degrees_of_freedom", text))
+    if options.latitude is None:
+        text = (
+            "no --latitude: the vertical earth rate (up to 15 deg/h, .0042 deg/s) stays in the "
+            "rests and looks like a sensitivity to gravity"
+        )
+        warnings.append(ResultWarning("latitude_unknown", text))
+    if log.clipped:
+        names = ", ".join(f"{name} in {rows} rows" for name, rows in log.clipped.items())
+        warnings.append(ResultWarning("saturated", f"at the end of their range: {names}"))
+    text = (
+        f"scale factors of the accelerometers refer to {options.gravity:.5f} m/s2; "
+        "--gravity-m-s2 states the local one"
+    )
+    warnings.append(ResultWarning("gravity", text))
+    return warnings

@@ -1,0 +1,375 @@
+"""``north --method rotation``: steps 101 to 113 of source 002, a gyro carried through a rotation.
+
+The unit warms up, its rest is filtered, its tilt is measured and taken out by turns about Y and X,
+and the heading that it had at first is carried through the rotation by quaternions. The heading
+keeps the reference that it began with; a declination turns a magnetic one into a true one.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Final, Literal
+
+import numpy as np
+
+from surveyapp.core.sensors.rate.parameters import DEG_H
+from surveyapp.core.statistics.distributions import student_tail
+from surveyapp.domain.calibration import SensorParameter
+from surveyapp.domain.north import NorthDirection, NorthResult, Reference
+from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.errors import Problem, SurveyError
+from surveyapp_models.angles import ARCSEC, wrap_two_pi
+from surveyapp_models.arrays import Floats
+from surveyapp_models.rate import quaternions
+from surveyapp_models.rate.attitude import (
+    EULER_LIMIT,
+    attitude_matrix,
+    axis_rotation,
+    azimuth_of,
+    euler_angles,
+)
+
+GYROS = ("gyr_x_rad_s", "gyr_y_rad_s", "gyr_z_rad_s")
+ACCELEROMETERS = ("acc_x_m_s2", "acc_y_m_s2", "acc_z_m_s2")
+NEEDED = (*GYROS, *ACCELEROMETERS, "phase")
+PHASES = ("warm-up", "filter", "level", "run")
+TREND_S = 600.0
+"""The last ten minutes of the warm-up are asked for a trend."""
+WARM_UP_S = 1800.0
+TREND_LEVEL = 0.01
+ZERO_SIGMAS = 3.0
+"""A tilt below this many sigmas is none."""
+NORMAL_95 = 1.959963984540054
+
+STEP_TITLES: Final = (
+    (101, "take the unit: three gyros and three accelerometers"),
+    (102, "a table with two axes or more"),
+    (103, "set the table to zero"),
+    (104, "mount the unit: X lateral (pitch), Y forward (roll), Z up (heading)"),
+    (105, "warm up for 30 min, until the rest has no trend"),
+    (106, "link the unit and record"),
+    (107, "filter the rest"),
+    (108, "temperature of the record"),
+    (109, "installation matrix and biases: w = K^-T (reading - bias)"),
+    (110, "initial attitude (0, 0, heading) with its reference"),
+    (111, "environment: temperature, pitch and roll"),
+    (112, "level by turns about Y, then X"),
+    (113, "carry the heading through the rotation"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class RotationOptions:
+    """What is stated beside the log.
+
+    Parameters
+    ----------
+    heading : float
+        At the beginning [rad].
+    reference : str
+    declination, declination_sigma : float or None
+        [rad]
+    latitude : float or None
+        [rad]
+    matrix, bias : ndarray
+        Output matrix M of the card (output = M rate + bias), shape (3, 3), and bias [rad/s].
+    card : str
+        Its id, for the result.
+    """
+
+    heading: float
+    reference: Reference
+    declination: float | None = None
+    declination_sigma: float | None = None
+    latitude: float | None = None
+    matrix: Floats = field(default_factory=lambda: np.eye(3))
+    bias: Floats = field(default_factory=lambda: np.zeros(3))
+    card: str = ""
+
+
+def find_heading(log: SensorLog, options: RotationOptions) -> NorthResult:
+    """Carry a heading through the record.
+
+    Raises
+    ------
+    SurveyError
+        If a phase is missing.
+    """
+    phases = np.array([word.strip() for word in log.texts["phase"]])
+    problems = _phase_problems(phases, log.path)
+    if problems:
+        raise SurveyError(problems)
+    rates = np.column_stack([log.columns[c] for c in GYROS])
+    rates = np.asarray(np.linalg.solve(options.matrix, (rates - options.bias).T).T)
+    forces = np.column_stack([log.columns[c] for c in ACCELEROMETERS])
+    interval = 1.0 / (log.rate_hz or 100.0)
+    warm = _warm_up(rates[phases == "warm-up"], interval)
+    rest_rows = np.flatnonzero((phases == "filter") | (phases == "level"))
+    rest, rest_sigma, gained = _filtered(rates[rest_rows])
+    levelling = _levelling(forces[phases == "level"])
+    run_rows = np.flatnonzero(phases == "run")
+    carried = _carried(rates[run_rows] - rest, forces, levelling, options, run_rows, interval)
+    sigma = rest_sigma[2] * run_rows.size * interval
+    noise = float(np.std(np.diff(rates[rest_rows, 2]))) / math.sqrt(2.0)
+    sigma = math.hypot(sigma, noise * interval * math.sqrt(run_rows.size))
+    sigma = math.hypot(sigma, options.declination_sigma or 0.0)
+    return _result(log, options, carried, sigma, (warm, levelling, rest, gained))
+
+
+def _phase_problems(phases: np.ndarray, where: str) -> list[Problem]:
+    problems = []
+    strange = sorted(set(phases.tolist()) - set(PHASES))
+    if strange:
+        expected = " or ".join(PHASES)
+        problems.append(Problem("there is no such phase", where, ", ".join(strange), expected))
+    problems += [
+        Problem("a phase is missing", where, "", name, "rows with phase = " + name)
+        for name in ("level", "run")
+        if np.count_nonzero(phases == name) < 2
+    ]
+    return problems
+
+
+@dataclass(frozen=True, slots=True)
+class WarmUp:
+    """Length [s] of the warm-up, and whether its last ten minutes still drift."""
+
+    seconds: float
+    p: float | None
+    drift_deg_h_h: float | None
+
+    @property
+    def ended(self) -> bool:
+        """Whether no trend is left."""
+        return self.p is None or self.p > TREND_LEVEL
+
+
+def _warm_up(rates: Floats, interval: float) -> WarmUp:
+    """Straight line through means of 20 s of the last ten minutes, of the worst axis."""
+    seconds = rates.shape[0] * interval
+    last = rates[-round(TREND_S / interval) :]
+    size = max(round(20.0 / interval), 1)
+    count = last.shape[0] // size
+    if count < 6:
+        return WarmUp(seconds, None, None)
+    means = last[: count * size].reshape(count, size, 3).mean(axis=1)
+    t = (np.arange(count) - 0.5 * (count - 1)) * size * interval
+    slope = (t @ means) / float(t @ t)
+    rest = means - means.mean(axis=0) - np.outer(t, slope)
+    sigma = np.sqrt(np.sum(rest**2, axis=0) / (count - 2) / float(t @ t))
+    k = int(np.argmax(np.abs(slope) / np.maximum(sigma, 1e-300)))
+    score = float(abs(slope[k]) / max(float(sigma[k]), 1e-300))
+    p = min(1.0, 3.0 * 2.0 * student_tail(score, count - 2))
+    return WarmUp(seconds, p, float(slope[k]) * 3600.0 / DEG_H)
+
+
+def _filtered(rates: Floats) -> tuple[Floats, Floats, dict[str, float]]:
+    """Mean of the rest as a scalar Kalman filter of a constant ends, its sigma, and the gain."""
+    mean = rates.mean(axis=0)
+    sample = rates.std(axis=0, ddof=1)
+    size = max(rates.shape[0] // 20, 1)
+    whole = rates[: rates.shape[0] - rates.shape[0] % size].reshape(-1, size, 3).mean(axis=1)
+    blocks = whole.std(axis=0, ddof=1) / math.sqrt(whole.shape[0]) if whole.shape[0] > 2 else sample
+    sigma = np.maximum(sample / math.sqrt(rates.shape[0]), blocks)
+    return (
+        mean,
+        sigma,
+        {
+            "sd_sample_deg_h": float(np.mean(sample)) / DEG_H,
+            "sd_filtered_deg_h": float(np.mean(sigma)) / DEG_H,
+        },
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Levelling:
+    """Tilt of the unit and the turns that take it out [rad].
+
+    Case A1: none; A2: -roll about Y; A3: -pitch about X; A4: Y first, then X.
+    """
+
+    pitch: float
+    roll: float
+    sigma: float
+    case: Literal["A1", "A2", "A3", "A4"]
+    rotations: tuple[tuple[str, float], ...]
+
+
+def level_case(pitch: float, roll: float, sigma: float) -> Levelling:
+    """Decision of source 002; a tilt below three sigmas is zero.
+
+    Parameters
+    ----------
+    pitch, roll, sigma : float
+        [rad]
+    """
+    rolls, pitches = abs(roll) >= ZERO_SIGMAS * sigma, abs(pitch) >= ZERO_SIGMAS * sigma
+    turns = (("y", -roll),) * rolls + (("x", -pitch),) * pitches
+    cases: Mapping[tuple[bool, bool], Literal["A1", "A2", "A3", "A4"]] = {
+        (False, False): "A1",
+        (True, False): "A2",
+        (False, True): "A3",
+        (True, True): "A4",
+    }
+    return Levelling(pitch, roll, sigma, cases[(rolls, pitches)], turns)
+
+
+def _levelling(forces: Floats) -> Levelling:
+    mean = forces.mean(axis=0)
+    size = float(np.linalg.norm(mean))
+    pitch = math.asin(min(1.0, max(-1.0, float(mean[1]) / size)))
+    roll = math.atan2(-float(mean[0]), float(mean[2]))
+    sigma = float(np.mean(forces[:, :2].std(axis=0, ddof=1))) / math.sqrt(forces.shape[0]) / size
+    return level_case(pitch, roll, sigma)
+
+
+@dataclass(frozen=True, slots=True)
+class Carried:
+    """Heading after the rotation [rad], and the attitude of the levelled unit as a quaternion."""
+
+    heading: float
+    quaternion: Floats
+    vertical: bool
+
+
+def _carried(
+    rates: Floats,
+    forces: Floats,
+    levelling: Levelling,
+    options: RotationOptions,
+    rows: np.ndarray,
+    interval: float,
+) -> Carried:
+    """Quaternion update of the body, and the levelling turns after it (equations 4 and 5)."""
+    tilted = _tilt_at(forces, rows, interval) or (levelling.pitch, levelling.roll)
+    start = attitude_matrix(heading=options.heading, pitch=tilted[0], roll=tilted[1])
+    q = quaternions.integrate(rates, interval_s=interval, start=quaternions.from_matrix(start))[-1]
+    level = axis_rotation(1, -tilted[1]) @ axis_rotation(0, -tilted[0])
+    attitude = quaternions.to_matrix(q) @ level
+    vertical = abs(euler_angles(attitude).pitch) > EULER_LIMIT
+    return Carried(
+        azimuth_of(attitude[:, 2 if vertical else 1]), quaternions.from_matrix(attitude), vertical
+    )
+
+
+def _tilt_at(forces: Floats, rows: np.ndarray, interval: float) -> tuple[float, float] | None:
+    """Pitch and roll at the beginning of the run, if the unit rests there for half a second."""
+    part = forces[rows[0] : rows[0] + max(round(0.5 / interval), 3)]
+    size = float(np.median(np.linalg.norm(forces, axis=1)))
+    mean = part.mean(axis=0)
+    if abs(float(np.linalg.norm(mean)) - size) > 0.01 * size:
+        return None
+    pitch = math.asin(min(1.0, max(-1.0, float(mean[1]) / float(np.linalg.norm(mean)))))
+    return pitch, math.atan2(-float(mean[0]), float(mean[2]))
+
+
+def _result(
+    log: SensorLog,
+    options: RotationOptions,
+    carried: Carried,
+    sigma: float,
+    found: tuple[WarmUp, Levelling, Floats, dict[str, float]],
+) -> NorthResult:
+    warm, levelling, rest, gained = found
+    heading, reference = carried.heading, options.reference
+    if options.declination is not None:
+        heading, reference = wrap_two_pi(heading + options.declination), "ASTRONOMIC"
+    parameters = tuple(
+        SensorParameter(f"rest_rate_{a}", float(rest[i]) / DEG_H, None, "deg/h")
+        for i, a in enumerate("xyz")
+    )
+    warnings = []
+    if not warm.ended:
+        text = (
+            f"the last ten minutes of the warm-up still drift by {warm.drift_deg_h_h:.3g} deg/h "
+            "per hour: it has not ended"
+        )
+        warnings.append(ResultWarning("warm_up", text))
+    if warm.seconds < 0.99 * WARM_UP_S:
+        text = f"{warm.seconds / 60.0:.1f} min of warm-up; the source asks for 30"
+        warnings.append(ResultWarning("short_warm_up", text))
+    text = (
+        "bias and vertical earth rate are those of the rest before the run; the level earth rate "
+        "is not followed through the rotation"
+    )
+    warnings.append(ResultWarning("rest_rate", text))
+    return NorthResult(
+        method="rotation",
+        source=log.id,
+        key="heading",
+        direction=NorthDirection(
+            math.degrees(heading), sigma / ARCSEC, NORMAL_95 * sigma / ARCSEC, reference
+        ),
+        parameters=parameters,
+        warnings=(*log.warnings, *warnings),
+        n=log.size,
+        sha256=log.sha256,
+        extra={
+            "attitude_quaternion": carried.quaternion.tolist(),
+            "levelling": {
+                "case": levelling.case,
+                "pitch_deg": math.degrees(levelling.pitch),
+                "roll_deg": math.degrees(levelling.roll),
+                "sigma_deg": math.degrees(levelling.sigma),
+                "rotations": [
+                    {"axis": axis, "deg": math.degrees(angle)}
+                    for axis, angle in levelling.rotations
+                ],
+            },
+            "steps": _steps(log, options, warm, gained, levelling),
+            "turned_deg": math.degrees(carried.heading - options.heading) % 360.0,
+        },
+        direction_extra={"axis": "z" if carried.vertical else "y"},
+    )
+
+
+def _steps(
+    log: SensorLog,
+    options: RotationOptions,
+    warm: WarmUp,
+    gained: Mapping[str, float],
+    levelling: Levelling,
+) -> list[dict[str, Any]]:
+    """Steps 101 to 113 with what this record says of each."""
+    temperature = log.columns.get("temperature_c")
+    degrees = None if temperature is None else float(np.nanmean(temperature))
+    told: dict[int, dict[str, Any]] = {
+        105: {"seconds": warm.seconds, "trend_p": warm.p, "ended": warm.ended},
+        106: {"rows": log.size, "rate_hz": log.rate_hz},
+        107: dict(gained),
+        108: {"temperature_c": degrees},
+        109: {"card": options.card or None},
+        110: {"heading_deg": math.degrees(options.heading), "reference": options.reference},
+        111: {
+            "temperature_c": degrees,
+            "pitch_deg": math.degrees(levelling.pitch),
+            "roll_deg": math.degrees(levelling.roll),
+        },
+        112: {"case": levelling.case},
+        113: {"rows": int(sum(word.strip() == "run" for word in log.texts["phase"]))},
+    }
+    return [{"step": n, "title": title, **told.get(n, {})} for n, title in STEP_TITLES]
+
+
+def card_matrix(values: Mapping[str, float | None]) -> tuple[Floats, Floats]:
+    """Output matrix and bias [rad/s] of a card's parameters; what it lacks is nominal.
+
+    Source 002 numbers its matrix K_ij from input i to output j; the card's ``misalignment_xy`` is
+    the output x for a rate about y, so that its matrix is the source's transposed.
+
+    Parameters
+    ----------
+    values : mapping of str to float or None
+        ``scale_factor_x`` [ppm], ``misalignment_xy`` [arcsec], ``bias_x`` [deg/h].
+    """
+    matrix, bias = np.eye(3), np.zeros(3)
+    for i, a in enumerate("xyz"):
+        scale = 1.0 + (values.get(f"scale_factor_{a}") or 0.0) * 1e-6
+        for j, b in enumerate("xyz"):
+            own = 1.0 if i == j else (values.get(f"misalignment_{a}{b}") or 0.0) * ARCSEC
+            matrix[i, j] = scale * own
+        bias[i] = (values.get(f"bias_{a}") or 0.0) * DEG_H
+    return matrix, bias

@@ -1,0 +1,137 @@
+"""The stops of a rate sensor's log as the engine takes them: a rest, or whole turns of a table."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from surveyapp.core.sensors.rate.multi_position_log import (
+    LEAST_STOPS,
+    MultiPositionOptions,
+    force_model,
+    held_stops,
+    rest_rates,
+)
+from surveyapp.core.sensors.rate.position_log import (
+    GYROS,
+    means_of,
+    place_problems,
+    placed_stretches,
+    sense_of,
+)
+from surveyapp.core.sensors.rate.table_log import label, motion_of
+from surveyapp.diagnosis.subjects.rate import RateStop
+from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2, SensorLog
+from surveyapp.errors import Problem, SurveyError
+from surveyapp_models.arrays import Floats
+from surveyapp_models.constants import EARTH_RATE
+from surveyapp_models.rate.turntable import POSITIONS
+
+FIELDS = ("mag_x_uT", "mag_y_uT", "mag_z_uT")
+TESLA = 1e-6
+
+
+def stops_of(log: SensorLog, *, latitude: float | None) -> tuple[list[RateStop], str]:
+    """Stops of a log, and what is not known of them.
+
+    Parameters
+    ----------
+    log : SensorLog
+    latitude : float or None
+        [rad]
+
+    Raises
+    ------
+    SurveyError
+    """
+    told = ""
+    if latitude is None:
+        told = (
+            "the latitude is not known: the vertical earth rate stays in the stops and looks like "
+            "a sensitivity to gravity"
+        )
+    if "position" in log.texts:
+        return _table_stops(log, latitude), told
+    return _held_stops(log, latitude), told
+
+
+def _held_stops(log: SensorLog, latitude: float | None) -> list[RateStop]:
+    stops = held_stops(log)
+    if len(stops) < LEAST_STOPS:
+        raise SurveyError(
+            Problem(
+                "too few stops at rest to diagnose",
+                log.path,
+                f"{len(stops)} stops as quiet as the record can be",
+                f"{LEAST_STOPS} or more",
+            )
+        )
+    forces = np.array([s.force for s in stops])
+    model = force_model(forces, MultiPositionOptions(latitude))
+    true = model.corrected(forces)
+    ups = true / np.linalg.norm(true, axis=1)[:, None]
+    rates = rest_rates(stops, ups, latitude)
+    return [
+        RateStop(
+            output=rates[k],
+            elapsed_s=stop.time_s,
+            force=true[k],
+            temperature_c=_mean(log, "temperature_c", stop.start, stop.stop),
+            field=_field(log, stop.start, stop.stop),
+            label=f"stop {k + 1}",
+        )
+        for k, stop in enumerate(stops)
+    ]
+
+
+def _table_stops(log: SensorLog, latitude: float | None) -> list[RateStop]:
+    problems = place_problems(log)
+    motion = motion_of(log)
+    if isinstance(motion, Problem):
+        raise SurveyError([*problems, motion])
+    rounds = [label(log, "round", k, 1) for k in range(log.size)]
+    placed, more = placed_stretches(log, motion, rounds, ("position", "round"))
+    problems += more
+    if problems:
+        raise SurveyError(problems)
+    _, warnings, wrong = sense_of(means_of(log, placed), where=log.path)
+    if wrong:
+        raise SurveyError(wrong)
+    sense = -1.0 if warnings else 1.0
+    vertical = 0.0 if latitude is None else EARTH_RATE * math.sin(latitude)
+    columns = [log.columns[c] for c in GYROS]
+    found = []
+    for place in placed:
+        axis = "xyz".index(place.position[0])
+        up = 1.0 if place.position[1] == "+" else -1.0
+        for item in place.turned:
+            along = np.zeros(3)
+            along[axis] = up
+            first, last = item.stretch.start, item.stretch.stop
+            found.append(
+                RateStop(
+                    output=np.array([item.mean(c).mean for c in columns]),
+                    elapsed_s=float(np.mean(log.columns["time_s"][first:last])),
+                    force=along * STANDARD_GRAVITY_M_S2,
+                    known=along * (vertical - sense * item.rate),
+                    place=POSITIONS.index(place.position) + 1 + 6 * (place.group - 1),
+                    temperature_c=_mean(log, "temperature_c", first, last),
+                    field=_field(log, first, last),
+                    label=f"{place.position} {'clockwise' if item.rate > 0 else 'back'}",
+                )
+            )
+    return sorted(found, key=lambda stop: stop.elapsed_s)
+
+
+def _mean(log: SensorLog, name: str, first: int, last: int) -> float | None:
+    if name not in log.columns:
+        return None
+    value = float(np.mean(log.columns[name][first:last]))
+    return value if math.isfinite(value) else None
+
+
+def _field(log: SensorLog, first: int, last: int) -> Floats | None:
+    if not log.has(*FIELDS):
+        return None
+    return np.array([float(np.mean(log.columns[c][first:last])) for c in FIELDS]) * TESLA

@@ -1,0 +1,85 @@
+"""``motion``: what is read of a log, and the options checked."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from surveyapp.core.sensors.rate.motion_log import (
+    NEEDED,
+    OPTIONAL,
+    MotionOptions,
+    judge_motion,
+)
+from surveyapp.domain.motion import Motion
+from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.sensor_logs.blocks import Progress
+from surveyapp.io.sensor_logs.reading import LogFile, Need
+
+
+def find_motion(
+    file: LogFile, options: Mapping[str, object], *, progress: Progress | None = None
+) -> Motion:
+    """Read a record and judge its motion.
+
+    Raises
+    ------
+    SurveyError
+    """
+    problems: list[Problem] = []
+    asked = motion_options(options, problems)
+    try:
+        log = file.read(Need(columns=NEEDED, varying=NEEDED, optional=OPTIONAL), progress=progress)
+    except SurveyError as error:
+        raise SurveyError([*problems, *error.problems]) from None
+    if problems:
+        raise SurveyError(problems)
+    return judge_motion(log, asked)
+
+
+def motion_options(options: Mapping[str, object], problems: list[Problem]) -> MotionOptions:
+    """Options of the command line; what is wrong goes to ``problems``."""
+    alarm = _number(options, "false_alarm", 0.01)
+    if not 0.0 < alarm < 0.5:
+        expected = "between 0 and 0.5"
+        problems.append(Problem("this is no probability", "--false-alarm", f"{alarm:g}", expected))
+    factor = _number(options, "still_gate_factor", 1.0)
+    if not factor > 0.0 or not math.isfinite(factor):
+        where = "--still-gate-factor"
+        problems.append(Problem("this is no factor", where, f"{factor:g}", "above 0"))
+    cycle = str(options.get("snap_power_cycle") or "current")
+    if cycle not in ("previous", "current"):
+        expected = "previous or current"
+        problems.append(Problem("there is no such cycle", "--snap-power-cycle", cycle, expected))
+    begin = _numbers(options.get("begin"), "--from", 3, problems)
+    end = _numbers(options.get("end"), "--to", 2, problems)
+    return MotionOptions(
+        false_alarm=alarm,
+        still_gate_factor=factor,
+        path=bool(options.get("path")),
+        begin=None if begin is None else (begin[0], begin[1], math.radians(begin[2])),
+        end=None if end is None else (end[0], end[1]),
+        snap=bool(options.get("snap")),
+        power_cycle="previous" if cycle == "previous" else "current",
+    )
+
+
+def _number(options: Mapping[str, object], name: str, default: float) -> float:
+    value = options.get(name)
+    return float(value) if isinstance(value, int | float) else default
+
+
+def _numbers(
+    value: object, where: str, count: int, problems: list[Problem]
+) -> tuple[float, ...] | None:
+    if value is None:
+        return None
+    try:
+        found = tuple(float(part) for part in str(value).split(","))
+    except ValueError:
+        found = ()
+    if len(found) != count or not all(math.isfinite(v) for v in found):
+        expected = "E,N,AZIMUTH in metres and degrees" if count == 3 else "E,N in metres"
+        problems.append(Problem("this is no place", where, str(value), expected))
+        return None
+    return found

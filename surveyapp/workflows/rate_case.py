@@ -1,0 +1,42 @@
+"""The case of a rate sensor's log: its stops, at rest or on a table."""
+
+from __future__ import annotations
+
+import math
+
+from surveyapp.core.sensors.rate.position_log import ACCELEROMETERS, GYROS
+from surveyapp.diagnosis.rate_stops import stops_of
+from surveyapp.diagnosis.subjects.rate import rate_case
+from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.sensor_entry import SensorLogEntry
+from surveyapp.io.sensor_logs.reading import LogFile, Need
+from surveyapp.workflows.diagnosing_sensor import SensorCase
+from surveyapp_models.effects.effect import Effect
+
+OPTIONAL = (
+    "table_rate_deg_s",
+    "table_angle_deg",
+    "round",
+    "temperature_c",
+    "mag_x_uT",
+    "mag_y_uT",
+    "mag_z_uT",
+)
+
+
+def case(file: LogFile, entry: SensorLogEntry, own: tuple[Effect, ...]) -> SensorCase:
+    """Read the log and make its case."""
+    table = file.has("position")
+    columns = (*GYROS, "position") if table else (*GYROS, *ACCELEROMETERS)
+    optional = (*OPTIONAL, *ACCELEROMETERS)
+    log = file.read(Need(columns=columns, varying=GYROS, optional=optional, biased=True))
+    latitude = None if entry.latitude_deg is None else math.radians(entry.latitude_deg)
+    stops, told = stops_of(log, latitude=latitude)
+    warnings = list(log.warnings)
+    if told:
+        warnings.append(ResultWarning("latitude_unknown", told))
+    return SensorCase(
+        rate_case(stops, identity=entry.id, extra=own),
+        tuple(warnings),
+        {"stops": len(stops)},
+    )

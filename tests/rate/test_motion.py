@@ -1,0 +1,190 @@
+"""State of motion, the gate and its own test, the path and snapping."""
+
+from __future__ import annotations
+
+import math
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from surveyapp.core.sensors.rate.motion_log import MotionOptions, judge_motion
+from surveyapp.core.sensors.rate.odometer_path import Driven, reckon, snap
+from surveyapp.core.simulate.rate.log import SimulatedLog
+from surveyapp.core.simulate.rate.recipes import simulate_rate
+from surveyapp.core.simulate.rate.vehicle import VehicleRun, usual_drive, vehicle_log
+from surveyapp.domain.motion import Motion
+from surveyapp.domain.sensor_log import SensorLog
+from surveyapp_models.arrays import Floats
+from surveyapp_models.rate.triad import Triad
+from tests.rate.logs import as_read
+
+SHARED = Path(os.environ.get("SURVEYAPP_DATA", Path(__file__).parents[2] / "../shared/data"))
+
+
+def drive(seed: int, *, noise: float = 1.0) -> SimulatedLog:
+    run = VehicleRun(
+        usual_drive(),
+        heading=math.radians(30.0),
+        gyro=Triad(bias=np.array([0.002, -0.001, 0.0015]), noise=0.001 * noise),
+        accelerometer=Triad(noise=0.02 * noise),
+        shake=0.15 * noise,
+    )
+    return vehicle_log(run, np.random.default_rng(seed))
+
+
+def agreement(log: SimulatedLog, found: Motion, state: str) -> float:
+    """Share of the true time of a state that was given it."""
+    time = log.columns["time_s"]
+    given = np.array([""] * time.size, dtype=object)
+    for segment in found.segments:
+        given[(time >= segment.start_s) & (time < segment.end_s)] = segment.state
+    truth = log.truth["segments"]
+    assert isinstance(truth, list)
+    rows = np.zeros(time.size, dtype=bool)
+    for segment in truth:
+        if segment["state"] == state:
+            rows |= (time >= segment["start_s"] + 0.6) & (time < segment["end_s"] - 0.6)
+    return float(np.mean(given[rows] == state))
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_the_five_states_of_a_drive(seed: int) -> None:
+    log = drive(seed)
+    found = judge_motion(as_read(log), MotionOptions())
+    assert agreement(log, found, "stationary") == 1.0
+    assert agreement(log, found, "turning") > 0.95
+    assert agreement(log, found, "accelerating") > 0.9
+    assert agreement(log, found, "braking") > 0.9
+    assert agreement(log, found, "steady") > 0.7
+
+
+def test_white_noise_is_no_motion() -> None:
+    rng = np.random.default_rng(1)
+    columns: dict[str, Floats] = {"time_s": np.asarray(np.arange(20000) * 0.01)}
+    for i, a in enumerate("xyz"):
+        columns[f"acc_{a}_m_s2"] = (9.8 if i == 2 else 0.0) + rng.normal(0.0, 0.05, 20000)
+        columns[f"gyr_{a}_rad_s"] = rng.normal(0.0, 0.002, 20000)
+    found = judge_motion(as_read(SimulatedLog(columns)), MotionOptions())
+    assert [s.state for s in found.segments] == ["stationary"]
+
+
+def test_an_odometer_path_ends_where_the_vehicle_stands() -> None:
+    log = drive(4)
+    begin = (100.0, 200.0, math.radians(30.0))
+    found = judge_motion(as_read(log), MotionOptions(path=True, begin=begin))
+    assert found.path is not None
+    assert found.path.mode == "odometer"
+    end = log.truth["end_m"]
+    assert isinstance(end, list)
+    off = np.array(found.path.end_m[:2]) - np.array([100.0, 200.0]) - np.array(end)
+    assert float(np.linalg.norm(off)) < 1.5
+    steps = np.diff([p[0] for p in found.path.points])
+    assert np.all(steps[:-1] == pytest.approx(0.5))
+
+
+def straight(*, heading: Floats, cycle: Floats | None = None) -> Driven:
+    n = heading.size
+    distance = np.linspace(0.0, 200.0, n)
+    still = np.zeros(n, dtype=bool)
+    still[0] = True
+    return Driven(
+        distance, heading, np.full(n, np.nan), np.zeros(n) if cycle is None else cycle, still
+    )
+
+
+def test_a_linear_drift_is_laid_back_and_a_constant_offset_after_a_power_cycle_too() -> None:
+    """Sensors.md 2d: 2 degrees of drift end 3.49 m off, 1.5 degrees of offset 5.24 m."""
+    n = 4001
+    drift = straight(heading=np.linspace(0.0, math.radians(2.0), n))
+    free = reckon(drift, start=(0.0, 0.0), heading_walk=0.0, heading_sigma=0.0)
+    assert abs(free.place[-1, 0]) == pytest.approx(3.49, abs=0.01)
+    mended, told, _ = snap(drift, power_cycle="current", end=(0.0, 200.0), start=(0.0, 0.0))
+    snapped = reckon(mended, start=(0.0, 0.0), heading_walk=0.0, heading_sigma=0.0)
+    assert abs(snapped.place[-1, 0]) < 1e-3
+    assert [t.kind for t in told] == ["linear"]
+    assert told[0].heading_deg == pytest.approx(-2.0, abs=0.01)
+    cycle = np.ones(n)
+    cycle[0] = 0.0
+    offset = straight(heading=np.full(n, math.radians(1.5)), cycle=cycle)
+    free = reckon(offset, start=(0.0, 0.0), heading_walk=0.0, heading_sigma=0.0)
+    assert abs(free.place[-1, 0]) == pytest.approx(5.24, abs=0.01)
+    mended, told, _ = snap(offset, power_cycle="current", end=(0.0, 200.0), start=(0.0, 0.0))
+    snapped = reckon(mended, start=(0.0, 0.0), heading_walk=0.0, heading_sigma=0.0)
+    assert abs(snapped.place[-1, 0]) < 0.01
+    assert [t.kind for t in told] == ["constant"]
+
+
+def test_the_covariance_of_a_straight_path_is_that_of_its_simulation() -> None:
+    rng = np.random.default_rng(2)
+    walk = math.radians(0.1)
+    ends = []
+    for _ in range(300):
+        kicks = np.cumsum(rng.normal(0.0, walk * math.sqrt(0.05), 4001))
+        free = reckon(
+            straight(heading=kicks), start=(0.0, 0.0), heading_walk=0.0, heading_sigma=0.0
+        )
+        ends.append(free.place[-1])
+    told = reckon(
+        straight(heading=np.zeros(4001)), start=(0.0, 0.0), heading_walk=walk, heading_sigma=0.0
+    )
+    stated = math.sqrt(float(told.covariance[-1, 0, 0]))
+    assert float(np.std([e[0] for e in ends])) == pytest.approx(stated, rel=0.15)
+
+
+def test_a_vehicle_can_be_simulated_with_a_power_cycle() -> None:
+    files, truth = simulate_rate("vehicle", None, effects=(), rng=np.random.default_rng(1))
+    assert "sensors/vehicle.csv" in files
+    assert truth["simulated"] is True
+
+
+@pytest.mark.shared_data
+@pytest.mark.skipif(not SHARED.exists(), reason="the measured records are not there")
+def test_the_measured_square_closes_and_a_wrong_gate_is_told_although_it_closes_too() -> None:
+    from scipy.io import loadmat
+
+    u = loadmat(SHARED / "openshoe_square2" / "square2.mat")["u"]
+    columns: dict[str, Floats] = {"time_s": np.asarray(np.arange(u.shape[1]) / 100.0)}
+    columns |= {f"acc_{a}_m_s2": u[i] for i, a in enumerate("xyz")}
+    columns |= {f"gyr_{a}_rad_s": u[3 + i] for i, a in enumerate("xyz")}
+    log = as_read(SimulatedLog(columns))
+    right = judge_motion(log, MotionOptions(path=True))
+    assert right.path is not None
+    assert right.zero_velocity is not None
+    assert right.path.closure_m is not None
+    assert right.path.closure_m < 0.05  # rate.md .031 m
+    assert len(right.path.sides_m) == 8
+    assert all(abs(side - 0.30) <= 0.02 for side in right.path.sides_m)
+    assert right.zero_velocity["verdict"] == "consistent"
+    wrong = judge_motion(log, MotionOptions(path=True, still_gate_factor=500.0))
+    assert wrong.zero_velocity is not None
+    assert wrong.zero_velocity["verdict"] == "inconsistent"
+    assert not wrong.met
+
+
+def measured(path: Path, *, skip: int, columns: slice, scale: tuple[float, float]) -> SensorLog:
+    table = np.genfromtxt(path, delimiter=",", skip_header=skip)[:, columns]
+    swap = 3 if "walk" in path.name else 0
+    forces = table[:, swap : swap + 3] * scale[0]
+    rates = np.deg2rad(table[:, 3 - swap : 6 - swap] * scale[1])
+    found: dict[str, Floats] = {"time_s": np.asarray(np.arange(table.shape[0]) / 100.0)}
+    found |= {f"acc_{a}_m_s2": forces[:, i] for i, a in enumerate("xyz")}
+    found |= {f"gyr_{a}_rad_s": rates[:, i] for i, a in enumerate("xyz")}
+    return as_read(SimulatedLog(found))
+
+
+@pytest.mark.shared_data
+@pytest.mark.skipif(not SHARED.exists(), reason="the measured records are not there")
+def test_two_detectors_agree_on_a_measured_walk_and_a_static_record_has_no_motion() -> None:
+    walk = measured(
+        SHARED / "xio_ngimu" / "long_walk_100Hz.csv", skip=1, columns=slice(1, 7),
+        scale=(9.80665, 1.0),
+    )  # fmt: skip
+    kappa = judge_motion(walk, MotionOptions()).detectors["kappa"]
+    assert kappa >= 0.75
+    static = measured(
+        SHARED / "mpu6050_static" / "example_data_static_449s.csv", skip=5, columns=slice(0, 6),
+        scale=(9.80665 / 16384.0, 1.0 / 131.0),
+    )  # fmt: skip
+    assert {s.state for s in judge_motion(static, MotionOptions()).segments} == {"stationary"}

@@ -1,0 +1,113 @@
+"""North carried through a rotation, its decision table, and the planner of stops."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from surveyapp.api import plan_north_stops
+from surveyapp.core.sensors.rate.rotation import (
+    RotationOptions,
+    card_matrix,
+    find_heading,
+    level_case,
+)
+from surveyapp.core.sensors.rate.stop_plan import pointing
+from surveyapp.core.simulate.rate.log import SimulatedLog
+from surveyapp.errors import SurveyError
+from surveyapp_models.arrays import Floats
+from surveyapp_models.rate import quaternions
+from surveyapp_models.rate.attitude import attitude_matrix, attitude_quaternion, sensed
+from tests.rate.logs import as_read
+
+
+def turned_log(*, turn_deg: float) -> SimulatedLog:
+    """A tilted unit of heading 77 degrees that is turned clockwise about the vertical."""
+    heading, pitch, roll = (math.radians(v) for v in (77.0, 12.0, -9.0))
+    dt = 0.1
+    counts = {"warm-up": 200, "filter": 200, "level": 200, "run": 600}
+    own = np.zeros((sum(counts.values()), 3))
+    down = attitude_matrix(heading=heading, pitch=pitch, roll=roll).T @ [0.0, 0.0, -1.0]
+    own[650:1050] = down * math.radians(turn_deg) / 40.0
+    start = attitude_quaternion(heading=heading, pitch=pitch, roll=roll)
+    attitude = quaternions.integrate(own, interval_s=dt, start=start)[:-1]
+    earth, forces = sensed(attitude, latitude=math.radians(35.0))
+    bias = np.array([2e-5, -1e-5, 3e-5])
+    columns: dict[str, Floats] = {"time_s": np.asarray(np.arange(own.shape[0]) * dt)}
+    columns |= {f"gyr_{a}_rad_s": own[:, i] + earth[:, i] + bias[i] for i, a in enumerate("xyz")}
+    columns |= {f"acc_{a}_m_s2": forces[:, i] for i, a in enumerate("xyz")}
+    words = [name for name, count in counts.items() for _ in range(count)]
+    return SimulatedLog(columns, {"phase": words})
+
+
+def test_the_heading_is_carried_and_only_a_magnetic_one_takes_a_declination() -> None:
+    """Sensors.md 2c: a compass heading of 125.600 and a declination of -2.6 give 123.000."""
+    log = as_read(turned_log(turn_deg=48.6))
+    options = RotationOptions(
+        heading=math.radians(77.0), reference="MAGNETIC", declination=math.radians(-2.6)
+    )
+    found = find_heading(log, options)
+    assert found.direction.deg == pytest.approx(123.0, abs=0.05)
+    assert found.direction.reference == "ASTRONOMIC"
+    levelling = found.extra["levelling"]
+    assert levelling["case"] == "A4"
+    assert [turn["axis"] for turn in levelling["rotations"]] == ["y", "x"]
+    assert levelling["rotations"][0]["deg"] == pytest.approx(9.0, abs=0.01)
+    assert [step["step"] for step in found.extra["steps"]] == list(range(101, 114))
+    kept = find_heading(log, RotationOptions(heading=math.radians(77.0), reference="GRID"))
+    assert kept.direction.reference == "GRID"
+    assert kept.direction.deg == pytest.approx(125.6, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("pitch", "roll", "case"),
+    [(0.0, 0.0, "A1"), (0.0, 0.1, "A2"), (0.1, 0.0, "A3"), (0.1, 0.1, "A4"), (2e-3, 0.1, "A2")],
+)
+def test_the_decision_table_and_zero_below_three_sigmas(
+    pitch: float, roll: float, case: str
+) -> None:
+    assert level_case(pitch, roll, 1e-3).case == case
+
+
+def test_the_matrix_of_a_card_is_the_sources_transposed() -> None:
+    """w = K^-T (reading - bias): K_xy of the source is what y shows of a rate about x."""
+    matrix, bias = card_matrix({"misalignment_yx": 3600.0, "bias_z": 1.0, "scale_factor_x": 1e4})
+    reading = matrix @ np.array([1.0, 2.0, 3.0]) + bias
+    assert reading[1] == pytest.approx(2.0 + math.radians(1.0))
+    assert reading[0] == pytest.approx(1.01)
+    back = np.linalg.solve(matrix, reading - bias)
+    np.testing.assert_allclose(back, [1.0, 2.0, 3.0], atol=1e-12)
+
+
+def test_a_record_without_its_run_is_refused() -> None:
+    log = turned_log(turn_deg=10.0)
+    words = ["level" if w == "run" else w for w in log.texts["phase"]]
+    with pytest.raises(SurveyError, match="a phase is missing"):
+        find_heading(
+            as_read(SimulatedLog(log.columns, {"phase": words})),
+            RotationOptions(heading=0.0, reference="GRID"),
+        )
+
+
+def test_the_planner_has_the_figures_of_the_contract() -> None:
+    """rate.md: latitude 35, .15 deg/sqrt(h), 10/100/300 s: 13.2/4.2/2.4 degrees."""
+    plan = plan_north_stops(latitude_deg=35.0, want_deg=5.0)
+    heading = {row.stop_s: row.heading_sd_deg for row in plan.rows}
+    assert heading[10.0] == pytest.approx(13.2, abs=0.05)
+    assert heading[100.0] == pytest.approx(4.2, abs=0.05)
+    assert heading[300.0] == pytest.approx(2.4, abs=0.05)
+    assert {row.stop_s for row in plan.rows if row.enough} == {100.0, 170.0, 200.0, 300.0}
+    with pytest.raises(SurveyError):
+        plan_north_stops(latitude_deg=35.0, grade="brass")
+
+
+@pytest.mark.parametrize(
+    ("bias", "latitude", "theta"),
+    [(0.2, 0, 0.76), (0.2, 45, 1.08), (20.0, 0, 53.1), (0.263, 0, 1.0)],
+)
+def test_pointing_is_an_arctangent(bias: float, latitude: int, theta: float) -> None:
+    """Sensors.md 2d: arcsin would give 90 degrees at the whole earth rate, the text says 45."""
+    found = math.degrees(pointing(bias, latitude=math.radians(latitude)))
+    assert found == pytest.approx(theta, abs=0.06)
