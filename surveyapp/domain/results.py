@@ -190,6 +190,7 @@ class LineResult:
     budget: tuple[BudgetLine, ...]
     existing_azimuth: float | None = None
     distance_m: float | None = None
+    levelling: float | None = None
 
     @property
     def subject(self) -> Subject:
@@ -242,6 +243,7 @@ class LineResult:
             "deflection_arcsec": to_arcsec(self.deflection),
             "convergence_arcsec": to_arcsec(self.convergence),
             "arc_to_chord_arcsec": to_arcsec(self.arc_to_chord),
+            "levelling_correction_arcsec": to_arcsec(self.levelling),
             "grid_azimuth": None if self.grid_azimuth is None else self.grid_azimuth.to_dict(),
             "direction_from_south": to_degrees(self.direction_from_south),
             "existing_azimuth_deg": to_degrees(self.existing_azimuth),

@@ -68,6 +68,7 @@ class TargetResult:
     after: float | None = None
     pointings: int = 0
     eccentric_correction: float = 0.0
+    levelling_correction: float | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""
@@ -79,6 +80,7 @@ class TargetResult:
             "drift_arcsec": to_arcsec(self.drift),
             "pointings": self.pointings,
             "eccentric_correction_arcsec": to_arcsec(self.eccentric_correction),
+            "levelling_correction_arcsec": to_arcsec(self.levelling_correction),
         }
 
 
@@ -145,6 +147,9 @@ class SessionResult:
             "damping_per_half_swing": finite(self.damping_per_half_swing),
             "period_s": finite(self.period_s),
             "tape_zero_correction_arcsec": to_arcsec(self.tape_zero_correction),
+            "levelling_correction_arcsec": to_arcsec(
+                None if main is None else main.levelling_correction
+            ),
             "tape_zero": None if self.tape_zero is None else self.tape_zero.to_dict(),
             "schuler_means_deg": [to_degrees(mean) for mean in self.schuler_means],
             "quantities": [

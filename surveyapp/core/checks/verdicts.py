@@ -14,6 +14,7 @@ from surveyapp.core.checks.always_on import always_on_checks
 from surveyapp.core.checks.evidence import Evidence
 from surveyapp.core.checks.filing_checks import filing_checks
 from surveyapp.core.checks.instrument_checks import instrument_checks
+from surveyapp.core.checks.levelling_checks import levelling_checks
 from surveyapp.core.checks.limit_checks import limit_checks
 from surveyapp.core.checks.session_checks import statistical_checks
 from surveyapp.core.checks.traverse_checks import traverse_checks
@@ -49,6 +50,11 @@ CHECKS: Final[tuple[CheckGroup, ...]] = (
         "instrument",
         "periods, supply and tape-zero tilt against the card",
         lambda e: instrument_checks(e.orientation),
+    ),
+    CheckGroup(
+        "levelling",
+        "the tilt of the standing axis against the card",
+        lambda e: levelling_checks(e.orientation),
     ),
     CheckGroup(
         "always on",

@@ -169,6 +169,7 @@ class Round:
     chosen: Chosen
     rounds: int
     own_centring: str | None = None
+    levelling: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -234,6 +235,7 @@ def orient_line(
         deflection=deflection.value,
         convergence=geometry.convergence,
         arc_to_chord=geometry.arc_to_chord,
+        levelling=_levelling(rounds, weights),
         grid_azimuth=None if grid is None else angle_result(grid),
         direction_from_south=(
             wrap_two_pi(grid.value + math.pi) if grid is not None and geometry.from_south else None
@@ -243,6 +245,13 @@ def orient_line(
         distance_m=geometry.distance_m,
     )
     return OrientedLine(result, gyro, true, grid, consistency([aligned(agreement_of)]))
+
+
+def _levelling(rounds: Sequence[Round], weights: Sequence[float]) -> float | None:
+    """What level readings have moved the line by [rad]; None where none of its rounds has any."""
+    if all(item.levelling is None for item in rounds):
+        return None
+    return math.fsum(w * (r.levelling or 0.0) for w, r in zip(weights, rounds, strict=True))
 
 
 def _constant(rounds: Sequence[Round], weights: Sequence[float]) -> Uncertain | None:

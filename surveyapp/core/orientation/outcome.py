@@ -152,6 +152,7 @@ def target_result(item: TargetReduction) -> TargetResult:
         after=None if sights is None else sights.after,
         pointings=0 if sights is None else sights.pointings,
         eccentric_correction=item.eccentric,
+        levelling_correction=item.levelling,
     )
 
 

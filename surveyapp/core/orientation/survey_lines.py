@@ -77,12 +77,15 @@ class SurveyedLines:
             _, target, instrument = key
             try:
                 rounds = [
-                    _round(
-                        item,
-                        azimuth,
-                        known[instrument],
-                        predicted.get(key),
-                        stations=self.stations,
+                    replace(
+                        _round(
+                            item,
+                            azimuth,
+                            known[instrument],
+                            predicted.get(key),
+                            stations=self.stations,
+                        ),
+                        levelling=item.levelling_of(target),
                     )
                     for item, azimuth in members
                 ]

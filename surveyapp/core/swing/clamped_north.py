@@ -18,6 +18,7 @@ from surveyapp.core.swing.clamped import Observed, clamp_reading, observe, sessi
 from surveyapp.core.swing.clamped_middle import Middle, middle_of
 from surveyapp.core.swing.goodness import FitTest, Judge, goodness_of_fit
 from surveyapp.core.swing.gyrofit import fit_damped_swing
+from surveyapp.core.swing.levelling import tilt_change_across_north
 from surveyapp.core.swing.reduction import Reduction, point_results, tape_zero_parts
 from surveyapp.core.swing.sights import TripodTwist, moments
 from surveyapp.core.swing.swingfit import ClampedFit
@@ -26,6 +27,7 @@ from surveyapp.core.swing.tape_zero import (
     TapeZeroCoefficient,
     reduce_tape_zero,
     with_levels,
+    with_tilt,
 )
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import InstrumentCard
@@ -81,6 +83,7 @@ def reduce_nontracking(
     zero = reduce_tape_zero(session.book, [*observed.readings, *observed.passages])
     if zero is not None:
         zero = with_levels(zero, session.book, card)
+        zero = with_tilt(zero, tilt_change_across_north(session, clamp[0]), card)
     observed = _at_middle(observed, zero, twist, constants)
     middle = middle_of(session, observed, card, estimator=estimator, latitude=latitude)
     coefficient = TapeZeroCoefficient(

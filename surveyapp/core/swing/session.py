@@ -12,6 +12,7 @@ from surveyapp.core.swing.automatic import azimuth_targets, reduce_automatic
 from surveyapp.core.swing.clamped_north import reduce_nontracking
 from surveyapp.core.swing.classical_transit import is_classical, reduce_classical
 from surveyapp.core.swing.goodness import Judge
+from surveyapp.core.swing.levelling import Tilt, sight_correction, steepness, tilt_of
 from surveyapp.core.swing.reduction import Reduction
 from surveyapp.core.swing.run_model import RunModel
 from surveyapp.core.swing.sights import (
@@ -19,6 +20,7 @@ from surveyapp.core.swing.sights import (
     TripodTwist,
     eccentric_correction,
     reduce_sights,
+    zenith_angle,
 )
 from surveyapp.core.swing.tracking import reduce_tracking
 from surveyapp.core.uncertain import Source, Uncertain
@@ -65,6 +67,9 @@ class TargetReduction:
         That correction [rad].
     gyro_azimuth : Uncertain or None
         A_g = B - N [rad]; None without gyro north.
+    levelling : float or None
+        What the tilt of the standing axis adds to the line reading (it is in it) [rad]; None
+        without level readings of both axes.
     """
 
     target: str
@@ -72,6 +77,7 @@ class TargetReduction:
     line_reading: Uncertain | None
     eccentric: float
     gyro_azimuth: Uncertain | None
+    levelling: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +88,10 @@ class ReducedSession:
     reduction: Reduction
     targets: tuple[TargetReduction, ...]
     warnings: tuple[ResultWarning, ...]
+
+    def levelling_of(self, target: str) -> float | None:
+        """What level readings have added to the line reading of a target [rad], None without."""
+        return next((t.levelling for t in self.targets if t.target == target), None)
 
 
 def estimator_for(session: OrientationSession, estimator: str | None) -> str | None:
@@ -268,18 +278,43 @@ def reduce_targets(
                     own = own.with_part(Source("eccentricity", session.id), spread)
             results.append(TargetReduction(target, None, None, correction, own))
         return tuple(results)
+    tilt = tilt_of(session.book, tape_zero=False)
     for target, item in sights.items():
         correction, spread = eccentric_of(session, target, item.line_reading, stations)
+        level = None
+        if tilt is not None:
+            level = _levelling(session, (target, item), sights, (tilt, stations))
         source = Source("sights", session.id, sigma.dof, target, pool=session.instrument)
         reading = Uncertain(
-            wrap_two_pi(item.line_reading + correction),
+            wrap_two_pi(item.line_reading + correction + (level or 0.0)),
             {source: math.sqrt(item.cofactor) * sigma.value},
         )
         if spread > 0.0:
             reading = reading.with_part(Source("eccentricity", session.id), spread)
         azimuth = None if reduction.north is None else reading - reduction.north
-        results.append(TargetReduction(target, item, reading, correction, azimuth))
+        results.append(TargetReduction(target, item, reading, correction, azimuth, level))
     return tuple(results)
+
+
+def _levelling(
+    session: OrientationSession,
+    sighted: tuple[str, SightSet],
+    sights: Mapping[str, SightSet],
+    at: tuple[Tilt, Mapping[str, Station]],
+) -> float:
+    """Correction of a line reading for the tilt of the standing axis [rad].
+
+    Directions count from the session's target, else from the first one sighted.
+    """
+    target, item = sighted
+    tilt, stations = at
+    own = sights.get(session.target or "", next(iter(sights.values())))
+    zenith = zenith_angle(session.book, target, default_target=session.target)
+    return sight_correction(
+        tilt,
+        direction=item.line_reading - own.line_reading,
+        cotangent=steepness(session, target, stations, zenith),
+    )
 
 
 def _delivered_eccentric(

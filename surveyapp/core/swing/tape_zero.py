@@ -204,6 +204,24 @@ def with_levels(zero: TapeZero, book: FieldBook, card: InstrumentCard) -> TapeZe
     return replace(zero, value_div=zero.value_div + sign * change, interpolation="tilt")
 
 
+def with_tilt(zero: TapeZero, change: float | None, card: InstrumentCard) -> TapeZero:
+    """The tape zero as the tilt of the run has it.
+
+    Parameters
+    ----------
+    zero : TapeZero
+        As observed; one that was made from the levels of both sides stays as it is.
+    change : float or None
+        Tilt across gyro north in the run minus that in the tape zero [rad].
+    card : InstrumentCard
+        Its ``div_per_tilt`` says what a tilt does.
+    """
+    factor = card.tape_zero.div_per_tilt
+    if change is None or not factor or zero.interpolation == "tilt":
+        return zero
+    return replace(zero, value_div=zero.value_div + factor * change)
+
+
 @dataclass(frozen=True, slots=True)
 class TapeZeroCoefficient:
     """What one division of tape zero adds to gyro north.

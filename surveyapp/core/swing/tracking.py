@@ -25,6 +25,7 @@ from surveyapp.core.swing.gyrofit import (
     side_signs,
     unwrap,
 )
+from surveyapp.core.swing.levelling import tilt_change_across_north
 from surveyapp.core.swing.preorientation import pre_orientation
 from surveyapp.core.swing.reduction import (
     ReadingSigma,
@@ -43,6 +44,7 @@ from surveyapp.core.swing.tape_zero import (
     reduce_tape_zero,
     tape_zero_coefficient,
     with_levels,
+    with_tilt,
 )
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import InstrumentCard
@@ -312,6 +314,7 @@ def tape_zero_of(
             text += f'{worst:.0f}"'
         return None, coefficient, None, [ResultWarning("no_tape_zero", text)]
     zero = with_levels(zero, session.book, card)
+    zero = with_tilt(zero, tilt_change_across_north(session, _mean_direction(swing)), card)
     warnings = []
     if zero.interpolation == "single":
         text = f"session {session.id}: tape zero observed on one side of the run only"
@@ -333,6 +336,13 @@ def tape_zero_of(
         limit_div=card.tape_zero.limit_div,
     )
     return zero, coefficient, correction, warnings
+
+
+def _mean_direction(swing: Sequence[Reading]) -> float:
+    """Middle of the turning points, near enough for what a tilt across it is [rad]."""
+    values = [row.value for row in swing if row.value is not None]
+    sine, cosine = (math.fsum(f(v) for v in values) for f in (math.sin, math.cos))
+    return math.atan2(sine, cosine)
 
 
 def _correction_value(zero: TapeZero | None, correction: Uncertain | None) -> float | None:

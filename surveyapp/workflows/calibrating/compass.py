@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import datetime as dt
 import math
 from dataclasses import replace
 from typing import Final
 
 from surveyapp.core.sensors.compass_calibration import calibrate_ellipsoid
+from surveyapp.core.sensors.declination import model_declination
 from surveyapp.core.sensors.swing import calibrate_swing
 from surveyapp.domain.calibration import Calibration
 from surveyapp.errors import Problem, SurveyError
@@ -44,12 +46,14 @@ def calibrate(request: CalibrationRequest) -> Calibration:
 
 
 def declination_of(text: str) -> tuple[float, float | None]:
-    """``D`` or ``D,SIGMA`` in degrees.
+    """``D`` or ``D,SIGMA`` in degrees, or ``wmm:LATITUDE,LONGITUDE,HEIGHT_M,DAY`` of the model.
 
     Raises
     ------
     SurveyError
     """
+    if text.startswith("wmm:"):
+        return _of_model(text)
     try:
         numbers = [float(part) for part in text.split(",")]
     except ValueError:
@@ -59,3 +63,19 @@ def declination_of(text: str) -> tuple[float, float | None]:
         expected = "D or D,SIGMA in degrees, east positive"
         raise SurveyError(Problem("this is no declination", "--declination", text, expected))
     return numbers[0], numbers[1] if len(numbers) == 2 else None
+
+
+def _of_model(text: str) -> tuple[float, float]:
+    """Declination and sigma of the World Magnetic Model [deg]."""
+    parts = text.removeprefix("wmm:").split(",")
+    try:
+        latitude, longitude, height = (float(part) for part in parts[:3])
+        (day,) = (dt.date.fromisoformat(part.strip()) for part in parts[3:])
+    except ValueError:
+        expected = "wmm:LATITUDE,LONGITUDE,HEIGHT_M,DAY as wmm:47.0,9.0,500,2026-03-01"
+        raise SurveyError(
+            Problem("this is no place and day of a model", "declination", text, expected)
+        ) from None
+    return model_declination(
+        latitude_deg=latitude, longitude_deg=longitude, height_m=height, day=day
+    )
