@@ -31,6 +31,8 @@ from surveyapp_models.arrays import Floats
 
 MARGIN = 4.0
 """BIC by which every rival must be worse (diagnosis.md step 4)."""
+BETTER = 3.0
+"""BIC by which a set that spans the simpler one must be better to be heard beside it."""
 FULL_SIZE = 12
 """Observations from which the margin is the specification's own."""
 ANCHORS = 8
@@ -287,7 +289,7 @@ def within_margin(level: Level) -> tuple[Fit, ...]:
         for f in level.every
         if f.key != best.key and f.score < limit + (0.0 if f.is_generic else patience)
     ]
-    rivals = [fit for fit in near if not spans(fit, best)]
+    rivals = [f for f in near if f.score <= best.score - BETTER or not spans(f, best)]
     # What a smaller set within the margin explains needs no more.
     rivals = [f for f in rivals if not any(g.key < f.key for g in rivals)]
     chosen = (best,) if best.score < limit or not rivals else ()

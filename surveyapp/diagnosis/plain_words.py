@@ -114,14 +114,19 @@ def _adopted(result: Diagnosis, item: Adoption, known: dict[str, Effect], labels
     parts = [
         f"{c.name} {c.value:.3g} {c.unit} (sigma {c.sigma or 0.0:.1g})" for c in item.coefficients
     ]
-    where = ", ".join(
-        f"{n.replace('_', ' ')} {labels.get(n, {}).get(v, format(v, 'g'))}" for n, v, _ in item.grid
-    )
+    where = ", ".join(_place(n, v, labels) for n, v, _ in item.grid)
     place = f" at {where}" if where else ""
     margin = ""
     if item.margin_bic is not None:
         margin = f"; the next explanation is {item.margin_bic:.0f} BIC worse"
     return f"{item.title}: it looks as if {symptom}{place}: {', '.join(parts)}{margin}."
+
+
+def _place(name: str, value: float, labels: Labels) -> str:
+    """A scanned parameter in words: a line and a sight by their names, not by a number."""
+    base, _, number = name.rpartition("_")
+    own = labels.get(name) or (labels.get(base) if number.isdigit() else None) or {}
+    return own.get(value, f"{name.replace('_', ' ')} {value:g}")
 
 
 def _ambiguous(result: Diagnosis, known: dict[str, Effect]) -> list[str]:

@@ -214,3 +214,24 @@ def test_every_showing_takes_its_verdicts_from_one_list(folder: Path) -> None:
     assert main(["orient", str(folder)]) == main(["check", str(folder)]) == 1
     of_session = api.orient(folder, session="r1").checks
     assert {c.rule for c in of_session} == {rule for rule, *_ in expected}
+
+
+@pytest.mark.shared_data
+def test_the_traverse_that_misses_its_closure_is_not_met_everywhere(tmp_path: Path) -> None:
+    from surveyapp.observation.session import orient_observed
+    from surveyapp.tui.views.checks import summary
+
+    case = Path(__file__).resolve().parents[2].parent / "shared" / "cases" / "trav-blunder"
+    if not case.is_dir():
+        pytest.skip("the shared cases are not here")
+    folder = tmp_path / "p"
+    shutil.copytree(case, folder)
+    found = api.compute(folder)
+    (broken,) = [c for c in found.result.checks if c.passed is False and c.confirmed]
+    assert (broken.rule, broken.subject.kind) == ("traverse.connecting_closure", "traverse")
+    assert broken.value == pytest.approx(72.16, abs=0.01)
+    assert broken.limit == pytest.approx(33.54, abs=0.01)
+    assert "1 of" in summary(orient_observed(found.project))
+    text = api.report_text(found)
+    assert "NOT MET: 1 confirmed check" in text
+    assert [main([command, str(folder)]) for command in ("orient", "check")] == [1, 1]

@@ -84,3 +84,22 @@ def test_two_set_ups_share_nothing(tmp_path: Path) -> None:
     second = book(1, setup="2/").split("\n", 1)[1]
     e, _, _ = sigmas(tmp_path / "p", book(1, setup="1/") + second)
     assert e == pytest.approx(math.sqrt((1e-6 + 5e-6) / 2), rel=1e-3)
+
+
+def test_a_name_is_the_same_composed_and_decomposed(tmp_path: Path) -> None:
+    folder = project(tmp_path / "p", STATIONS.replace('name = "C"', 'name = "O\u03081"'))
+    (folder / "observations").mkdir()
+    text = book(1).replace(",C,", ",\u00d61,")
+    (folder / "observations" / "main.csv").write_text(text, encoding="utf-8")
+    assert api.adjust(folder).point("O\u03081").sigma_e is not None
+
+
+def test_heights_that_disagree_within_a_sight_are_told(tmp_path: Path) -> None:
+    folder = project(tmp_path / "p", STATIONS)
+    (folder / "observations").mkdir()
+    path = folder / "observations" / "main.csv"
+    path.write_text(book(1), encoding="utf-8")
+    assert "heights_disagree" not in {item.code for item in api.adjust(folder).warnings}
+    path.write_text(book(1).replace("deg,1/1,1.5,1.4\n", "deg,1/1,,\n"), encoding="utf-8")
+    told = next(x for x in api.adjust(folder).warnings if x.code == "heights_disagree")
+    assert "A-C" in told.text

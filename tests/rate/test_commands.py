@@ -180,3 +180,19 @@ def test_spectrum_of_a_record_in_counts_and_its_magnetic_budget(tmp_path: Path) 
     assert clean["lines"] == []
     wrong = surveyapp("spectrum", str(path), "--column", "DQ", "--json")
     assert wrong.code == 2
+
+
+def test_a_single_node_keeps_its_values_and_its_json_has_no_nan(
+    projects: Path, tmp_path: Path
+) -> None:
+    log = (projects / "chamber" / "sensors" / "temperature.csv").read_text().splitlines()
+    column = log[0].split(",").index("reference_temperature_c")
+    rows = [row for row in log[1:] if float(row.split(",")[column]) == 20.0]
+    path = tmp_path / "one.csv"
+    path.write_text("\n".join([log[0], *rows]) + "\n")
+    done = surveyapp(
+        "calibrate", "rate", path, "--programme", "temperature", "--latitude", "45.77", "--json"
+    )
+    assert done.code == 1
+    bias = next(p for p in done.json["parameters"] if p["name"] == "bias_x")
+    assert bias["value"] == pytest.approx(5.0, abs=0.5)

@@ -265,6 +265,17 @@ def _header_warnings(header: Traverse) -> list[ResultWarning]:
                 "and is not applied here: enter corrected distances"
             )
             warnings.append(ResultWarning(f"{what}_not_applied", text))
+    seen: dict[tuple[str, str, str], tuple[float, float]] = {}
+    unlike = {}
+    for row in header.rows:
+        if row.kind in (K.ZENITH, K.SLOPE_DISTANCE):
+            heights = seen.setdefault((row.at, row.to, row.set), (row.hi, row.ht))
+            if heights != (row.hi, row.ht):
+                unlike[f"{row.at}-{row.to}"] = row.line
+    if unlike:
+        places = ", ".join(f"{sight} (line {line})" for sight, line in list(unlike.items())[:6])
+        text = f"zenith angle and distance of a sight have other heights hi, ht: {places}"
+        warnings.append(ResultWarning("heights_disagree", text))
     return warnings
 
 

@@ -33,6 +33,9 @@ from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Columns, Effect
 
 K = ObservationKind
+LEAST_REDUNDANCY = 0.02
+"""Below it a slip must exceed 29 of its own sigmas to be found (4.13 over the root of it), and any
+small misclosure would be called a large one."""
 MOST_OBSERVATIONS = 2000
 """The conditions are held in a dense matrix; larger networks are diagnosed in parts."""
 RANK = 1e-9
@@ -102,6 +105,7 @@ def traverse(
     base = np.zeros((size, 1))
     base[0, 0] = 1.0
     columns = {**observation_columns(network, model, values), TRANSFORM: transform @ whitener}
+    columns["own_sigma"] = _controlled(columns)
     return Case(
         subject="traverse",
         title="traverse",
@@ -122,6 +126,17 @@ def traverse(
         grid_labels=_labels(model),
         warnings=_warnings(atmosphere_applied, columns, weakest),
     )
+
+
+def _controlled(columns: Mapping[str, Floats]) -> Floats:
+    """Stated sigmas of the observations that the others control, else 0: no slip shows in them.
+
+    The squared norm of what an error of one sigma does to the conditions is its redundancy number
+    (Baarda 1968).
+    """
+    sigma = columns["own_sigma"]
+    redundancy = np.sum((columns[TRANSFORM][1:] * sigma) ** 2, axis=0)
+    return np.where(redundancy >= LEAST_REDUNDANCY, sigma, 0.0)
 
 
 def _in_conditions(effect: Effect) -> Effect:

@@ -6,6 +6,7 @@ standard deviation is asked when a network is made of it: a prediction has its o
 
 from __future__ import annotations
 
+import unicodedata
 from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import replace
@@ -74,6 +75,7 @@ def _read_traverse(
         files.findings.absorb(error)
         return traverse
     rows, problems = parse_traverse(text, angle_unit=unit, where=traverse.book)
+    rows = _respelled(rows, stations)
     problems += _unknown_points(rows, traverse, stations)
     traverse = replace(traverse, rows=tuple(rows))
     files.findings.problems += problems
@@ -119,6 +121,20 @@ def _header(table: Table, number: int) -> Traverse:
     table.get("note")
     table.warn_unknown("effect")
     return traverse
+
+
+def _respelled(rows: Sequence[TraverseRow], stations: Sequence[str]) -> list[TraverseRow]:
+    """Names as the stations spell them: composed and decomposed letters are the same (NFC)."""
+    if all((row.at + row.back + row.to).isascii() for row in rows):
+        return list(rows)
+    declared = {unicodedata.normalize("NFC", name): name for name in stations}
+
+    def spelled(name: str) -> str:
+        return name if name in stations else declared.get(unicodedata.normalize("NFC", name), name)
+
+    return [
+        replace(row, at=spelled(row.at), back=spelled(row.back), to=spelled(row.to)) for row in rows
+    ]
 
 
 def _unknown_points(

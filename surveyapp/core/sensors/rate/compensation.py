@@ -182,7 +182,7 @@ def chosen_model(comparison: tuple[Compensation, ...]) -> ModelName:
     """The model with the smallest error at left-out nodes; piecewise linear where none is known."""
     known = [c for c in comparison if c.held_out_rms is not None]
     if not known:
-        return "piecewise_linear"
+        return "piecewise_linear"  # of a single node its value
     return min(known, key=lambda c: c.held_out_rms or 0.0).model
 
 

@@ -239,8 +239,9 @@ def _predicted(nodes: Sequence[Node], model: ModelName, at: float) -> list[Senso
         function = fitted(model, temperatures, values)
         weights = weights_at(model, temperatures, at)
         if function is None:
-            function = fitted("piecewise_linear", temperatures, values)
-            weights = weights_at("piecewise_linear", temperatures, at)
+            simple: ModelName = "piecewise_linear" if values.size > 1 else "none"
+            function = fitted(simple, temperatures, values)
+            weights = weights_at(simple, temperatures, at)
         value = float(function(np.array([at]))[0]) if function is not None else math.nan
         spread = float(np.sqrt(np.mean(sigmas**2)))
         noise = float(np.sqrt(np.sum((weights * sigmas) ** 2))) if weights is not None else spread
