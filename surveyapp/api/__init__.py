@@ -32,7 +32,6 @@ from surveyapp.api.office import (
     reopen,
     report,
     report_text,
-    undrawn_text,
 )
 from surveyapp.api.orientation import (
     Source,
@@ -222,7 +221,6 @@ __all__ = [
     "batch_rows",
     "report",
     "report_text",
-    "undrawn_text",
     "write_sheets",
     "blank_form",
     "close",

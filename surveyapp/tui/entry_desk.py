@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from surveyapp.core.observing.doubts import Question
 from surveyapp.core.observing.progress import Progress
-from surveyapp.core.observing.steps import BEFORE, Expected, Step, kinds_of, steps_of
+from surveyapp.core.observing.steps import BEFORE, STEP_NOTE, Expected, Step, kinds_of, steps_of
 from surveyapp.core.observing.typed_rows import EntryError
 from surveyapp.domain.readings import QUANTITY, QUIET_KINDS, Dimension, Face, Reading, ReadingKind
 from surveyapp.errors import SurveyError
@@ -26,7 +25,7 @@ from surveyapp.observation.entry import (
 from surveyapp.observation.session import NewRow, SessionDesk
 from surveyapp.tui import texts
 from surveyapp.tui.from_instrument import Taken, marked
-from surveyapp.tui.views.form import number_text, small_text
+from surveyapp.tui.views.question import question_text
 from surveyapp_models.angles import AngleUnit, format_angle
 
 
@@ -283,6 +282,8 @@ class Desk:
 
     def passage(self) -> str:
         """A timed passage of the scale's zero: stamped now, written at once."""
+        if not self.timed:
+            raise NotWrittenError(texts.PASSAGE_TYPED_UP)
         seq = self.write(NewRow(ReadingKind.TRANSIT, value="0", unit="div"))
         kind = texts.KIND_NAMES[ReadingKind.TRANSIT]
         return texts.RECORDED.format(seq=seq, kind=kind, value="0")
@@ -291,6 +292,16 @@ class Desk:
         """Note a turning point that was not read."""
         seq = self.write(NewRow(ReadingKind.MISSED), timed=self.timed)
         return texts.MISSED_NOTED.format(seq=seq)
+
+    def remark(self, text: str) -> str:
+        """Note a remark; a text in the line stays what it is."""
+        if text.startswith(STEP_NOTE):  # it must not be taken for a step of the observation
+            text = texts.REMARK_OF_STEP.format(text=text)
+        try:
+            seq = self.observation.record(NewRow(ReadingKind.NOTE, note=text))
+        except SurveyError as error:
+            raise NotWrittenError(problem_text(error)) from None
+        return texts.REMARK_NOTED.format(seq=seq, text=text)
 
     def strike(self, seq: int, reason: str) -> str:
         """Strike a row with a reason."""
@@ -364,30 +375,6 @@ class Desk:
         """Struck rows whose strike may be taken back, the latest first."""
         struck = set(self.observation.book.struck)
         return tuple(r for r in reversed(self.observation.book.rows) if r.seq in struck)
-
-
-def question_text(item: Question) -> str:
-    """A doubt in words."""
-    if item.unit:
-        return texts.QUESTIONS[item.doubt].format(
-            difference=_with_unit(item.difference, item.unit),
-            low="" if item.low is None else _with_unit(item.low, item.unit),
-            limit=_with_unit(item.limit, item.unit),
-        )
-    if item.scale:
-        return texts.QUESTIONS[item.doubt].format(
-            difference=texts.DIVISIONS.format(value=number_text(item.difference, 2, sign=True)),
-            limit=texts.DIVISIONS.format(value=number_text(item.limit, 2)),
-        )
-    return texts.QUESTIONS[item.doubt].format(
-        difference=small_text(item.difference), limit=small_text(item.limit).lstrip("+")
-    )
-
-
-def _with_unit(value: float, unit: str) -> str:
-    names = {"C": "°C", "deg": "°", "arcsec": '"'}
-    gap = "" if unit in ("deg", "arcsec") else " "
-    return f"{value:.10g}{gap}{names.get(unit, unit)}" if unit != "s" else f"{value:.0f} s"
 
 
 def problem_text(error: SurveyError) -> str:

@@ -17,10 +17,12 @@ KEYS = {
     "f9": ("instrument", texts.KEY_INSTRUMENT, texts.LONG_INSTRUMENT),
     "shift+f9": ("follow", texts.KEY_FOLLOW, texts.LONG_FOLLOW),
     "escape": ("leave", texts.KEY_LEAVE, texts.LONG_LEAVE),
+    "ctrl+n": ("remark", texts.KEY_REMARK, texts.LONG_REMARK),
+    "ctrl+o": ("typing_up", texts.KEY_TYPING_UP, texts.LONG_TYPING_UP),
     "ctrl+t": ("passage", texts.LONG_PASSAGE, texts.LONG_PASSAGE),
 }
 """Action, name in the footer, name in the palette."""
 ORDERED = {key: action for key, (action, *_) in KEYS.items()} | {"empty_space": "passage"}
 """Keys that the entry line works off in their order; the bindings show them and serve the rest."""
-HIDDEN = ("undo", "passage", "instrument", "follow")
+HIDDEN = ("undo", "remark", "typing_up", "passage", "instrument", "follow")
 """Actions for which 80 columns have no room; the palette and F1 name them."""

@@ -9,6 +9,7 @@ from pathlib import Path
 from pypdf import PdfReader
 
 from surveyapp import api
+from surveyapp.api.office import undrawn_text
 from surveyapp.report.blocks import Document, Paragraph
 from surveyapp.report.pdf import write_pdf
 from tests.tui.helpers_tui import make_calibrations
@@ -50,7 +51,7 @@ def test_the_report_tells_what_it_cannot_print(tmp_path: Path) -> None:
     folder = make_calibrations(tmp_path / "p")
     path = folder / "project.toml"
     path.write_text(path.read_text("utf-8").replace("3090", STATIONS[0]), encoding="utf-8")
-    assert STATIONS[0] in api.undrawn_text(api.open_project(folder))
+    assert STATIONS[0] in undrawn_text(api.open_project(folder))
     made = api.report(folder, tmp_path / "record.pdf").to_dict()
     assert [item["code"] for item in made["warnings"]] == ["glyphs_missing"]
     told = {item["text"]: item["characters"] for item in made["missing_glyphs"]}

@@ -292,7 +292,7 @@ def _warnings(
     if verdict == "refused":
         text = (
             "the record does not determine the heading: turn the compass through more attitudes, "
-            "upside down as well"
+            "upside down as well; where it was, something disturbed it: diagnose the log"
         )
         found.append(ResultWarning("geometry", text))
     elif verdict == "restricted":

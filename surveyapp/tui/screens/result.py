@@ -15,6 +15,7 @@ from textual.screen import Screen
 from textual.widgets import Footer, Static
 
 from surveyapp import api
+from surveyapp.api.office import undrawn_text
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import SurveyError
@@ -157,7 +158,7 @@ class ResultScreen(Screen[None]):
 
     def action_sign(self) -> None:
         """Close the session; what the record cannot print is told before."""
-        told = "" if self.project is None else api.undrawn_text(self.project)
+        told = "" if self.project is None else undrawn_text(self.project)
         self.app.push_screen(SignatureScreen(self.draft, told), self._signed)
 
     def _signed(self, name: str | None) -> None:

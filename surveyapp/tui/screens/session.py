@@ -25,6 +25,7 @@ from surveyapp.tui.drafts import Draft
 from surveyapp.tui.entry_desk import Desk, NotWrittenError, Pending, problem_text
 from surveyapp.tui.messages import ResultWanted, SessionLeft
 from surveyapp.tui.screens.help import HelpScreen
+from surveyapp.tui.screens.remark import RemarkScreen
 from surveyapp.tui.screens.strike import StrikeScreen
 from surveyapp.tui.session_keys import HIDDEN, KEYS, ORDERED
 from surveyapp.tui.texts import help_texts
@@ -66,6 +67,7 @@ class SessionScreen(Screen[None]):
         self.desk = Desk(observation)
         self.draft = draft
         self.reason: Draft = {}
+        self.remark: Draft = {}
         self.warned = False
         self.shown = observation.book
 
@@ -222,6 +224,22 @@ class SessionScreen(Screen[None]):
                 self.attempt(lambda: act(*choice))
 
         self.app.push_screen(StrikeScreen(rows, struck_rows, self.reason), struck)
+
+    def action_remark(self) -> None:
+        """Note a remark; what stands in the line stays there."""
+
+        def noted(text: str | None) -> None:
+            if text is not None:
+                self.attempt(lambda: self.desk.remark(text))
+
+        self.app.push_screen(RemarkScreen(self.remark), noted)
+
+    def action_typing_up(self) -> None:
+        """Type up a book afterwards: readings without moments; and back."""
+        self.desk.timed = not self.desk.timed
+        told = texts.TYPING_UP_OFF if self.desk.timed else texts.TYPING_UP_ON
+        self.query_one(EntryLine).tell(told)
+        self.show_prompt()
 
     def action_step(self, places: int) -> None:
         """Go on, or back, by one step."""

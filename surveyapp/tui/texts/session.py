@@ -211,6 +211,19 @@ KEY_UNDO: Final = "Undo"
 KEY_NEXT: Final = "Next"
 KEY_PREVIOUS: Final = "Back"
 KEY_LEAVE: Final = "Leave"
+KEY_REMARK: Final = "Remark"
+KEY_TYPING_UP: Final = "Typing up"
+REMARK_TITLE: Final = "A remark for the book"
+REMARK_MEANING: Final = (
+    "It stands in the field book and in the record, with its time.\n"
+    "Say what it is, as in: observer M. Weber   booker A. Li   weather draught, 14 C"
+)
+REMARK_KEYS: Final = "Enter writes it   Escape does not"
+REMARK_OF_STEP: Final = "remark: {text}"
+PASSAGE_TYPED_UP: Final = "not written: a passage that is typed up needs its moment: 0@08:15:30"
+REMARK_NOTED: Final = "on disk: row {seq}, note {text}"
+TYPING_UP_ON: Final = "typing up a book: readings have no moment but one behind @ (Ctrl+O ends it)"
+TYPING_UP_OFF: Final = "readings have the moment of typing again"
 KEY_CLOSE: Final = "Close"
 
 # practice
