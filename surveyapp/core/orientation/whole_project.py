@@ -130,10 +130,7 @@ def orient_project(
     """
     grid = grid_of(project)
     positions = {station.name: position_of(station, grid) for station in project.stations}
-    stations = {
-        station.name: _with_position(station, positions[station.name])
-        for station in project.stations
-    }
+    stations = {s.name: _with_position(s, positions[s.name]) for s in project.stations}
     warnings = [*project.warnings, *check_adopted(project)]
     tested = sum(session.method != "automatic" for session in project.sessions)
     judge = Judge(sessions=tested)
