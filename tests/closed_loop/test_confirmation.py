@@ -158,13 +158,20 @@ def test_every_effect_of_the_catalogue_is_tried() -> None:
     assert set(CAMPAIGN_SIZES) == {e.id for e in CATALOGUE if e.subject == "campaign"}
 
 
-def test_a_second_set_without_the_effect_refuses_the_name() -> None:
-    first, second = run(1, "midpoint_step"), run(2, None)
+def test_a_second_set_without_the_effect_refuses_an_effect_of_the_instrument() -> None:
+    first, second = run(1, "temperature"), run(2, None)
     alone = diagnose(first, draws=500)
-    assert [a.effect for a in alone.adopted] == ["midpoint_step"]
+    assert [a.effect for a in alone.adopted] == ["temperature"]
     refused = diagnose(first, confirm=second, draws=500)
     assert refused.adopted == ()
     assert any("second set" in w.text for w in refused.warnings)
+
+
+def test_an_event_is_not_refused_by_a_clean_second_run_but_told_as_unconfirmed() -> None:
+    first, second = run(1, "midpoint_step"), run(2, None)
+    result = diagnose(first, confirm=second, draws=500)
+    assert [a.effect for a in result.adopted] == ["midpoint_step"]
+    assert "event_unconfirmed" in {w.code for w in result.warnings}
 
 
 def test_a_second_set_with_the_effect_confirms_the_name() -> None:
