@@ -272,13 +272,18 @@ def _forward_back(orientation: Orientation) -> list[Check]:
         for line, other in combinations(side, 2)
     ]
     level = level_of_one(len(pairs))
-    return [_of_one_side(line, other, level, alone=alone) for line, other, alone in pairs]
+    checks = []
+    for line, other, alone in pairs:
+        assert line.grid is not None
+        assert other.grid is not None
+        first, second = orientation.deflections.jointly([line.grid, other.grid])
+        checks.append(_of_one_side(line, other, first - second, level=level, alone=alone))
+    return checks
 
 
-def _of_one_side(line: OrientedLine, other: OrientedLine, level: float, *, alone: bool) -> Check:
-    assert line.grid is not None
-    assert other.grid is not None
-    difference = line.grid - other.grid
+def _of_one_side(
+    line: OrientedLine, other: OrientedLine, difference: Uncertain, *, level: float, alone: bool
+) -> Check:
     own, its = line.result.instrument, other.result.instrument
     rule, names = "line.instruments", f"{own} and {its}"
     text = f"two instruments on one line ({names})"

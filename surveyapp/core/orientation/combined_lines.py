@@ -16,6 +16,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from surveyapp.core.orientation.deflection_field import DeflectionField
 from surveyapp.core.orientation.lines import OrientedLine, angle_result
 from surveyapp.core.statistics.distributions import f_tail
 from surveyapp.core.statistics.levels import CONSISTENT
@@ -28,15 +29,19 @@ SINGULAR = 1e-12
 """Share of the largest own variance below which a difference of lines has no error of its own."""
 
 
-def combined_lines(lines: Sequence[OrientedLine]) -> tuple[CombinedResult, ...]:
+def combined_lines(
+    lines: Sequence[OrientedLine], deflections: DeflectionField
+) -> tuple[CombinedResult, ...]:
     """Combine every side that has two lines or more with a grid azimuth and a sigma.
 
     Parameters
     ----------
     lines : sequence of OrientedLine
         Of any sides; A-B and B-A are one side.
+    deflections : DeflectionField
+        Of the project: what two stations share of them.
     """
-    found = (_combined(side) for side in sides_of(lines).values() if len(side) > 1)
+    found = (_combined(side, deflections) for side in sides_of(lines).values() if len(side) > 1)
     return tuple(item for item in found if item is not None)
 
 
@@ -50,12 +55,13 @@ def sides_of(lines: Sequence[OrientedLine]) -> dict[frozenset[str], list[Oriente
     return sides
 
 
-def _combined(side: Sequence[OrientedLine]) -> CombinedResult | None:
+def _combined(side: Sequence[OrientedLine], deflections: DeflectionField) -> CombinedResult | None:
     first = side[0].result
     usable = [line for line in side if line.grid is not None and _told(line.grid)]
     if len(usable) < 2:
         return None
-    items = aligned([_one_way(line, first.station) for line in usable])
+    one_way = [_one_way(line, first.station) for line in usable]
+    items = aligned(deflections.jointly(one_way))
     covariance = _covariance(items)
     inverse = _inverse(covariance)
     if inverse is None:

@@ -61,7 +61,7 @@ def outcome(
         lines=tuple(line.result for line in orientation.shown_lines),
         checks=tuple(checks),
         warnings=tuple(warnings),
-        combined=combined_lines(orientation.shown_lines),
+        combined=combined_lines(orientation.shown_lines, orientation.deflections),
     )
 
 
