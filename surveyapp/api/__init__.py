@@ -108,7 +108,13 @@ if TYPE_CHECKING:
     from surveyapp.domain.penetration_result import Prediction
     from surveyapp.domain.project import ResultWarning
     from surveyapp.domain.records import Listing
-    from surveyapp.domain.results import AngleResult, ConstantResult, LineResult, SessionResult
+    from surveyapp.domain.results import (
+        AngleResult,
+        CombinedResult,
+        ConstantResult,
+        LineResult,
+        SessionResult,
+    )
     from surveyapp.domain.shaft_result import ShaftResult
     from surveyapp.io.simulated import SimulatedFiles
     from surveyapp.report.written import ReportResult, SheetsResult
@@ -121,6 +127,7 @@ if TYPE_CHECKING:
 
 _TYPES: Final = {
     "SensorDiagnosis": "surveyapp.diagnosis.sensors.diagnosis",
+    "CombinedResult": "surveyapp.domain.results",
     "CompensationResult": "surveyapp.workflows.compensating",
     "FilterResult": "surveyapp.domain.noise",
     "AllanResult": "surveyapp.domain.noise",
@@ -252,6 +259,7 @@ __all__ = [
     "BatchResult",
     "BatchRow",
     "ClosingResult",
+    "CombinedResult",
     "ComparisonResult",
     "CompassResult",
     "Computed",

@@ -181,7 +181,8 @@ def with_line(found: Computed, line: str | tuple[str, str]) -> OrientationResult
                 hint="Add a calibration session, or constant = { arcsec, sigma_arcsec }.",
             )
         )
-    return replace(result, lines=own)
+    sides = tuple(x for x in result.combined if {x.station, x.target} == {station, target})
+    return replace(result, lines=own, combined=sides)
 
 
 def plan(

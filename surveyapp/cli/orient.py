@@ -10,6 +10,7 @@ from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.results import (
     AngleResult,
     Check,
+    CombinedResult,
     LineResult,
     OrientationResult,
     finite,
@@ -57,6 +58,7 @@ def orientation_text(result: OrientationResult, unit: AngleUnit) -> str:
     parts = [heading(f"{result.project}: orientation")]
     parts += [_sessions(result, unit), _gyro_azimuths(result, unit), _constants(result)]
     parts += [_line(line, unit) for line in result.lines]
+    parts += [_combined(result.combined, unit)]
     parts += [checks_text(result.checks, told=result.warnings), warnings_text(result.warnings)]
     return "\n\n".join(part for part in parts if part)
 
@@ -174,6 +176,21 @@ def _line(line: LineResult, unit: AngleUnit) -> str:
         if zero:
             text += "\n" + paragraph(f"zero: {', '.join(zero)}", indent=4)
     return text
+
+
+def _combined(sides: Sequence[CombinedResult], unit: AngleUnit) -> str:
+    """Sides with several lines: their mean by variances, or that they disagree."""
+    rows = []
+    for side in sides:
+        value, sigma = _angle(side.grid_azimuth, unit)
+        mean = side.grid_azimuth
+        interval = "-" if mean is None else number(to_arcsec(finite(mean.interval95)))
+        test = f"{side.chi_square:.2f} ({side.dof})"
+        rows.append([f"{side.station}-{side.target}", value, sigma, interval, test])
+        rows[-1].append("agree" if side.agree else "DISAGREE")
+        rows += [[f"  {of.name}", "", "", "", "weight", number(of.weight, 3)] for of in side.lines]
+    head = ["side", "grid azimuth", '±"', '95 % ±"', "chi-square (dof)", ""]
+    return "Lines of one side, combined by their variances\n" + table(head, rows) if rows else ""
 
 
 def small_angle(value: float) -> str:

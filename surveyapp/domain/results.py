@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from surveyapp.domain.angle_result import AngleResult, Reference, finite, to_arcsec, to_degrees
+from surveyapp.domain.combined_result import CombinedPart, CombinedResult
 from surveyapp.domain.constant_result import ConstantResult, Determination, LineConstant
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.records import Cell, Recorded, rows_of
@@ -41,11 +42,13 @@ __all__ = [
     "Verdicts",
     "BudgetLine",
     "LineResult",
+    "CombinedPart",
+    "CombinedResult",
     "OrientationResult",
 ]
 
 
-ResultTable = Literal["lines", "sessions", "constants", "checks", "warnings"]
+ResultTable = Literal["lines", "sessions", "constants", "combined", "checks", "warnings"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,6 +267,7 @@ class OrientationResult:
     lines: tuple[LineResult, ...]
     checks: tuple[Check, ...]
     warnings: tuple[ResultWarning, ...] = field(default=())
+    combined: tuple[CombinedResult, ...] = field(default=())
 
     @property
     def passed(self) -> bool:
@@ -271,11 +275,12 @@ class OrientationResult:
         return not any(check.confirmed and check.passed is False for check in self.checks)
 
     def rows(self, table: ResultTable = "lines") -> list[dict[str, Cell]]:
-        """One flat record a line, session, constant, check or warning."""
+        """One flat record a line, session, constant, side, check or warning."""
         tables: dict[ResultTable, Sequence[Recorded]] = {
             "lines": self.lines,
             "sessions": self.sessions,
             "constants": self.constants,
+            "combined": self.combined,
             "checks": self.checks,
             "warnings": self.warnings,
         }
@@ -291,6 +296,7 @@ class OrientationResult:
             "sessions": [session.to_dict() for session in self.sessions],
             "constants": [constant.to_dict() for constant in self.constants],
             "lines": [line.to_dict() for line in self.lines],
+            "combined": [side.to_dict() for side in self.combined],
             "checks": [check.to_dict() for check in self.checks],
             "warnings": [warning.to_dict() for warning in self.warnings],
         }

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from itertools import product
+from itertools import combinations
 
+from surveyapp.core.orientation.combined_lines import sides_of
 from surveyapp.core.orientation.instrument_constant import InstrumentConstant, agreement_text
 from surveyapp.core.orientation.lines import OrientedLine
 from surveyapp.core.orientation.whole_project import Orientation
@@ -262,31 +263,33 @@ def _line_checks(line: OrientedLine, level: float) -> list[Check]:
 def _forward_back(orientation: Orientation) -> list[Check]:
     """A-B against B-A: the grid azimuths differ by half a circle but for arc-to-chord in both.
 
-    Every line one way is compared with every line the other way, whatever instruments oriented
-    them: an error that both ends of a side share with one instrument shows against another.
+    Every line of a side is compared with every other, whatever instruments oriented them: an
+    error that both ends of a side share with one instrument shows against another.
     """
-    ways: dict[tuple[str, str], list[OrientedLine]] = {}
-    for line in orientation.lines:
-        ways.setdefault((line.result.station, line.result.target), []).append(line)
+    pairs = [
+        (line, other, len(side) == 2)
+        for side in sides_of(orientation.lines).values()
+        for line, other in combinations(side, 2)
+    ]
+    level = level_of_one(len(pairs))
     checks = []
-    level = level_of_one(len(orientation.lines))
-    for (station, target), lines in ways.items():
-        if station > target:
-            continue
-        pairs = list(product(lines, ways.get((target, station), ())))
-        for line, back in pairs:
-            if line.grid is not None and back.grid is not None:
-                there, here = orientation.deflections.jointly([line.grid, back.grid])
-                difference = (there - here).shifted(math.pi)
-                checks.append(_there_and_back(line, back, difference, level, alone=len(pairs) == 1))
+    for line, other, alone in pairs:
+        assert line.grid is not None
+        assert other.grid is not None
+        first, second = orientation.deflections.jointly([line.grid, other.grid])
+        checks.append(_of_one_side(line, other, first - second, level=level, alone=alone))
     return checks
 
 
-def _there_and_back(
-    line: OrientedLine, back: OrientedLine, difference: Uncertain, level: float, *, alone: bool
+def _of_one_side(
+    line: OrientedLine, other: OrientedLine, difference: Uncertain, *, level: float, alone: bool
 ) -> Check:
-    own, other = line.result.instrument, back.result.instrument
-    names = own if own == other else f"{own} there, {other} back"
-    text = f"forward against back, the two ends of one line ({names})"
-    check = _compare("line.forward_back", difference, line.result.subject, level, text=text)
+    own, its = line.result.instrument, other.result.instrument
+    rule, names = "line.instruments", f"{own} and {its}"
+    text = f"two instruments on one line ({names})"
+    if line.result.station != other.result.station:
+        difference = difference.shifted(math.pi)
+        rule, names = "line.forward_back", own if own == its else f"{own} there, {its} back"
+        text = f"forward against back, the two ends of one line ({names})"
+    check = _compare(rule, difference, line.result.subject, level, text=text)
     return check if alone else replace(check, where=f"{check.where} ({names})")

@@ -18,6 +18,7 @@ from surveyapp.domain.project import (
     ResultWarning,
     grid_bearing,
 )
+from surveyapp.domain.subject import Subject
 from surveyapp_models.angles import RHO_ARCSEC, wrap_pi
 
 LARGEST_SHIFT_M = 0.1
@@ -39,6 +40,7 @@ def calibrations_of(
     order = SessionOrder.of(project, instrument)
     found: list[Calibration] = []
     warnings: list[ResultWarning] = []
+    assumed: dict[frozenset[str], ResultWarning] = {}
     for item in reduced:
         session = item.session
         if session.instrument != instrument or session.purpose != "calibration":
@@ -56,7 +58,8 @@ def calibrations_of(
             if true is None:
                 warnings.append(_unusable(session, target.target, "no crs gives its convergence"))
                 continue
-            warnings += _assumed(session, target.target, known)
+            for told in _assumed(session, target.target, known):
+                assumed.setdefault(frozenset((session.station, target.target)), told)
             if own is not None and bearing is not None:
                 warnings += _contradiction(session, line, wrap_pi(own - bearing))
             gyro = scatter.applied(target.gyro_azimuth, session.id)
@@ -77,7 +80,7 @@ def calibrations_of(
                     distance_m=line.distance_m,
                 )
             )
-    return found, warnings
+    return found, [*warnings, *assumed.values()]
 
 
 def _unusable(session: OrientationSession, target: str, why: str) -> ResultWarning:
@@ -104,11 +107,12 @@ def _assumed(session: OrientationSession, target: str, known: KnownError) -> lis
     if known.origin != "default":
         return []
     text = (
-        f"session {session.id}: nobody states how well the azimuth of {session.station}-{target} "
-        f'is known: +-{known.error.sigma * RHO_ARCSEC:.1f}" is assumed; state '
+        f"line {session.station}-{target}: nobody states how well its azimuth is known:"
+        f' +-{known.error.sigma * RHO_ARCSEC:.1f}" is assumed; state '
         "azimuth_known_sigma_arcsec, sigma_m of its stations, or station_sigma_m of the project"
     )
-    return [ResultWarning("known_azimuth_sigma_assumed", text)]
+    subject = Subject.side(session.station, target)
+    return [ResultWarning("known_azimuth_sigma_assumed", text, subject)]
 
 
 def own_centring(session: OrientationSession) -> str | None:

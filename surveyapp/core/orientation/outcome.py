@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from surveyapp.core.orientation.combined_lines import combined_lines
 from surveyapp.core.orientation.instrument_constant import InstrumentConstant
 from surveyapp.core.orientation.lines import angle_result
 from surveyapp.core.orientation.sequence import session_moments
@@ -60,6 +61,7 @@ def outcome(
         lines=tuple(line.result for line in orientation.shown_lines),
         checks=tuple(checks),
         warnings=tuple(warnings),
+        combined=combined_lines(orientation.shown_lines, orientation.deflections),
     )
 
 

@@ -56,11 +56,30 @@ def with_scatter_sigma(
         if changed:
             text = (
                 f"{instrument.id}: {len(changed)} sessions tell no sigma: that of their scatter is "
-                f'taken, {sigma * RHO_ARCSEC:.1f}" for one, with {dof} degrees of freedom'
+                f'taken, {sigma * RHO_ARCSEC:.1f}" for one and, from the scatter alone, '
+                f'{sigma / math.sqrt(len(changed)) * RHO_ARCSEC:.1f}" for the mean of '
+                f"{len(changed)}, with {dof} degrees of freedom"
             )
             subject = Subject.of("instrument", instrument.id)
             warnings.append(ResultWarning("sigma_from_scatter", text, subject))
     return tuple(result), warnings
+
+
+def without_answered(
+    measured: Sequence[ReducedSession], told: Sequence[ReducedSession]
+) -> tuple[ReducedSession, ...]:
+    """Sessions without the warning of an unknown sigma where their scatter has told it."""
+    known = {
+        item.session.id
+        for item in told
+        if any(s.name == NAME for t in item.targets if t.gyro_azimuth for s in t.gyro_azimuth.parts)
+    }
+    return tuple(
+        replace(item, warnings=tuple(w for w in item.warnings if w.code != "sigma_unknown"))
+        if item.session.id in known
+        else item
+        for item in measured
+    )
 
 
 def _silent(value: Uncertain | None) -> bool:

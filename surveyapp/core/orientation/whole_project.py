@@ -49,7 +49,7 @@ from surveyapp.core.orientation.pooled_weights import with_pooled_weights
 from surveyapp.core.orientation.pooled_zeros import with_pooled_tape_zeros
 from surveyapp.core.orientation.predicted_lines import predicted_lines
 from surveyapp.core.orientation.repeated_runs import run_groups, scatter_of
-from surveyapp.core.orientation.scatter_sigma import with_scatter_sigma
+from surveyapp.core.orientation.scatter_sigma import with_scatter_sigma, without_answered
 from surveyapp.core.orientation.survey_lines import SurveyedLines
 from surveyapp.core.statistics.repeated import RunScatter
 from surveyapp.core.swing.goodness import Judge
@@ -146,6 +146,7 @@ def orient_project(
     warnings += latitude_warnings(project, positions)
     groups = {item.id: run_groups(project, reduced, item.id) for item in project.instruments}
     reduced, more = with_scatter_sigma(project, reduced, groups)
+    measured = without_answered(measured, reduced)
     warnings += more
     scatters = {
         item.id: scatter_of(run_groups(project, reduced, item.id)) for item in project.instruments

@@ -2,8 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from surveyapp.domain.project import Project
-from surveyapp.domain.results import AngleResult, LineResult, OrientationResult, to_degrees
+from surveyapp.domain.results import (
+    AngleResult,
+    CombinedResult,
+    LineResult,
+    OrientationResult,
+    to_degrees,
+)
 from surveyapp.report.blocks import Block, Heading, Paragraph, Table
 from surveyapp.report.numbers import (
     NOTHING,
@@ -25,7 +33,30 @@ def blocks(project: Project, result: OrientationResult) -> tuple[Block, ...]:
     found.append(_summary(project, result))
     for line in result.lines:
         found += _line(project, line)
-    return tuple(found)
+    return (*found, *_combined(project, result.combined))
+
+
+def _combined(project: Project, sides: Sequence[CombinedResult]) -> tuple[Block, ...]:
+    """Sides with several lines: their mean by variances, or that they disagree."""
+    rows = []
+    for side in sides:
+        test = f"{plain(side.chi_square, 2)} ({side.dof})"
+        verdict = "agree" if side.agree else "disagree, not combined"
+        lines = "; ".join(f"{of.name} {_share(of.weight)}" for of in side.lines)
+        name = f"{side.station} - {side.target}"
+        value = with_sigma(side.grid_azimuth, project.angle_unit)
+        rows.append((name, *value, test, verdict, lines))
+    if not rows:
+        return ()
+    head = ("side", "grid azimuth", '±"', '95 % ±"', "chi-square (dof)", "lines", "weights %")
+    return (
+        Heading("Lines of one side, combined by their variances", 2),
+        Table(head, tuple(rows), "lrrrrll"),
+    )
+
+
+def _share(weight: float | None) -> str:
+    return "no sigma" if weight is None else plain(100.0 * weight, 1)
 
 
 def _norths(project: Project, result: OrientationResult) -> tuple[Block, ...]:
