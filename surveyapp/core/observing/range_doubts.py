@@ -28,7 +28,7 @@ USUAL_ZENITH: Final = (math.radians(45.0), math.radians(135.0))
 """Steeper sights need a diagonal eyepiece, and the gyro attachment stands in their way."""
 HALF_SWING_SHARE: Final = 0.25
 """A moment of typing may lie this share of a half swing from where it should: tens of seconds."""
-HALF_SWINGS_S: Final = (30.0, 900.0)
+HALF_SWINGS_S: Final = (75.0, 600.0)
 """Half swings of suspended gyros: 60 to 300 s from the equator to 75 degrees (physics.md 1.2)."""
 
 
