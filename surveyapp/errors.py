@@ -79,7 +79,7 @@ def _listed(problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
 
 def nearest_names(name: str, known: Iterable[str]) -> str:
     """Name the nearest known names, then all of them: the hint for an unknown name."""
-    names = sorted(known)
+    names = sorted(set(known))
     if len(names) > _MOST_NAMES:
         close = [n for n in names if n.casefold() == name.casefold()][:2]
         names = [*names[:_MOST_NAMES], f"{len(names) - _MOST_NAMES} more"]

@@ -14,9 +14,10 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from types import ModuleType
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from surveyapp import __version__
+from surveyapp.cli.numbers import finite
 from surveyapp.cli.output import print_json
 from surveyapp.cli.safe_output import safe_output
 from surveyapp.cli.waiting import Waiting
@@ -136,6 +137,23 @@ class Parser(argparse.ArgumentParser):
         option = f"--{problem.where.replace('_', '-')}"
         known = {name for action in self._actions for name in action.option_strings}
         return replace(problem, where=option) if option in known else problem
+
+    def _get_value(self, action: argparse.Action, arg_string: str) -> Any:
+        """The value of an option; a number must be finite."""
+        if action.type not in (int, float):
+            return super()._get_value(action, arg_string)
+        whole = action.type is int
+        value = finite(arg_string)
+        if value is not None and not (whole and value % 1):
+            return int(value) if whole else value
+        raise SurveyError(
+            Problem(
+                what="this is no whole number" if whole else "this is no number",
+                where=action.option_strings[0] if action.option_strings else self.prog,
+                found=arg_string,
+                expected="a whole number" if whole else "a finite number",
+            )
+        )
 
     def _check_value(self, action: argparse.Action, value: object) -> None:
         if action.choices is None or value in action.choices:

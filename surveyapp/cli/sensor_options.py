@@ -7,6 +7,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from surveyapp.cli.numbers import finite
 from surveyapp.cli.output import heading, number, paragraph, print_json, table
 from surveyapp.errors import Problem, SurveyError
 
@@ -52,13 +53,15 @@ def log_options(options: argparse.Namespace) -> LogOptions:
     units = pairs(options.unit, "--unit", problems, last=True)
     scale: dict[str, float] = {}
     for name, text in pairs(options.scale, "--scale", problems, last=True).items():
-        try:
-            scale[name] = float(text)
-        except ValueError:
-            problems.append(Problem("this is no number", f"--scale {name}", text, "a number"))
-    if options.rate_hz is not None and not 0.0 < options.rate_hz < 1e9:
+        value = finite(text)
+        if value is None:
+            expected = "a finite number"
+            problems.append(Problem("this is no number", f"--scale {name}", text, expected))
+        else:
+            scale[name] = value
+    if options.rate_hz is not None and not 1e-9 <= options.rate_hz < 1e9:
         found = f"{options.rate_hz:g}"
-        problems.append(Problem("this is no rate", "--rate-hz", found, "more than 0"))
+        problems.append(Problem("this is no rate", "--rate-hz", found, "1e-9 to 1e9"))
     if options.header_rows is not None and options.header_rows < 0:
         found = str(options.header_rows)
         problems.append(Problem("this is no number of lines", "--header-rows", found, "0 or more"))

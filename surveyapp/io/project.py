@@ -116,24 +116,45 @@ class _Top:
 
 
 def _project_text(files: ProjectFiles) -> str:
-    folder, path = files.path, files.path / PROJECT_FILE
-    hint = "surveyapp new DIR makes a project"
+    check_project_folder(files.path)
+    try:
+        data = read_inside(files.path, PROJECT_FILE, where=PROJECT_FILE)
+    except (OSError, ValueError) as error:
+        raise _no_project(files.path, _unreadable(error)) from None
+    files.contents[PROJECT_FILE] = data
+    return decode(data, where=PROJECT_FILE)
+
+
+def check_project_folder(folder: Path) -> None:
+    """Refuse what is no folder with a project.toml.
+
+    Raises
+    ------
+    SurveyError
+    """
     try:
         if not folder.exists():
             what = "the project folder does not exist"
         elif not folder.is_dir():
             what = "this is a file and no project folder"
-        elif not path.exists():
+        elif not (folder / PROJECT_FILE).exists():
             empty = next(folder.iterdir(), None) is None
             what = "the folder is empty" if empty else f"the folder holds no {PROJECT_FILE}"
         else:
-            data = read_inside(folder, PROJECT_FILE, where=PROJECT_FILE)
-            files.contents[PROJECT_FILE] = data
-            return decode(data, where=PROJECT_FILE)
+            return
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        what = f"the project folder cannot be read ({reason})"
-    raise SurveyError(Problem(what, shown_path(folder), "", f"a folder with {PROJECT_FILE}", hint))
+        what = _unreadable(error)
+    raise _no_project(folder, what)
+
+
+def _unreadable(error: Exception) -> str:
+    reason = getattr(error, "strerror", None) or str(error)
+    return f"the project folder cannot be read ({reason})"
+
+
+def _no_project(folder: Path, what: str) -> SurveyError:
+    hint = "surveyapp new DIR makes a project"
+    return SurveyError(Problem(what, shown_path(folder), "", f"a folder with {PROJECT_FILE}", hint))
 
 
 def _check_format(data: Mapping[str, object]) -> None:

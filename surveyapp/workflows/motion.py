@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import Final
 
 from surveyapp.core.sensors.rate.motion_log import (
     NEEDED,
@@ -15,6 +16,9 @@ from surveyapp.domain.motion import Motion
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
+
+SMALLEST_ALARM: Final = 1e-9
+"""Of a rest; quantiles nearer to 1 are not to be had in a float."""
 
 
 def find_motion(
@@ -40,8 +44,8 @@ def find_motion(
 def motion_options(options: Mapping[str, object], problems: list[Problem]) -> MotionOptions:
     """Options of the command line; what is wrong goes to ``problems``."""
     alarm = _number(options, "false_alarm", 0.01)
-    if not 0.0 < alarm < 0.5:
-        expected = "between 0 and 0.5"
+    if not SMALLEST_ALARM <= alarm < 0.5:
+        expected = f"{SMALLEST_ALARM:g} to 0.5"
         problems.append(Problem("this is no probability", "--false-alarm", f"{alarm:g}", expected))
     factor = _number(options, "still_gate_factor", 1.0)
     if not factor > 0.0 or not math.isfinite(factor):

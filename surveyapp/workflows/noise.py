@@ -76,7 +76,7 @@ def factors_of(log: SensorLog, taus: Sequence[float] | None) -> tuple[int, ...]:
     factors = []
     problems = []
     for tau in taus:
-        m = round(tau * rate) if math.isfinite(tau) else 0
+        m = round(tau * rate) if math.isfinite(tau * rate) else 0
         if m < 1 or 2 * m > log.size - 1:
             expected = f"{1.0 / rate:g} to {(log.size - 1) // 2 / rate:g} s"
             problems.append(Problem("no averaging time", "taus", f"{tau:g}", expected))

@@ -93,6 +93,28 @@ def test_near_stations_have_nearly_the_same_deflection(tmp_path: Path) -> None:
         assert found * 206264.806 == pytest.approx(expected, rel=5e-3)
 
 
+def test_forward_and_back_share_the_deflection_of_near_stations(tmp_path: Path) -> None:
+    # 300 m apart: the difference has 1 - exp(-0.3/5) of the variance of two that are independent
+    toml = station("A", e=0.0, n=N0) + station("B", e=0.0, n=N0 + 200.0)
+    toml += station("C", e=3000.0, n=N0) + station("D", e=3300.0, n=N0) + GYRO
+    toml += session("cal", "A", "B", more=[CAL])
+    toml += session("run", "C", "D", more=[SURVEY]) + session("back", "D", "C", more=[SURVEY])
+    books = {"cal": azimuths("0-00-00", "0-00-02"), "run": azimuths("90-00-00")}
+    books["back"] = azimuths("270-00-00")
+    limits = {}
+    for sigma, length in ((0.001, 20.0), (10.0, 5.0), (10.0, 1e-3)):
+        head = TM + f"deflection = {{ sigma_arcsec = {sigma}, correlation_km = {length} }}\n"
+        folder = write(tmp_path / f"{sigma} {length}", toml, books, head=head)
+        (found,) = [c for c in api.check(folder) if c.rule == "line.forward_back"]
+        assert found.limit is not None
+        limits[sigma, length] = found.limit
+    plain = limits[0.001, 20.0]
+    apart = limits[10.0, 1e-3] ** 2 - plain**2
+    near = limits[10.0, 5.0] ** 2 - plain**2
+    assert apart > 0.0
+    assert near / apart == pytest.approx(1.0 - math.exp(-0.3 / 5.0), rel=2e-2)
+
+
 def test_levelling_is_paid_for_by_steep_sights(tmp_path: Path) -> None:
     # physics.md 3.8: v cot z, not cancelled by two faces
     toml = station("A", e=0.0, n=N0) + station("B", e=0.0, n=N0 + 200.0) + GYRO

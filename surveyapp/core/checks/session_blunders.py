@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -174,6 +175,7 @@ def _faces(orientation: Orientation, items: Items) -> list[Check]:
     return checks
 
 
+@lru_cache(maxsize=256)
 def _f_quantile(level: float, numerator: int, denominator: int) -> float:
     """Upper quantile of F by bisection."""
     low, high = 0.0, 1.0

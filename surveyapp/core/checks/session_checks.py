@@ -276,7 +276,8 @@ def _forward_back(orientation: Orientation) -> list[Check]:
         pairs = list(product(lines, ways.get((target, station), ())))
         for line, back in pairs:
             if line.grid is not None and back.grid is not None:
-                difference = (line.grid - back.grid).shifted(math.pi)
+                there, here = orientation.deflections.jointly([line.grid, back.grid])
+                difference = (there - here).shifted(math.pi)
                 checks.append(_there_and_back(line, back, difference, level, alone=len(pairs) == 1))
     return checks
 

@@ -30,7 +30,7 @@ from surveyapp.core.geodesy import (
 from surveyapp.core.orientation.adopted import apply_adopted
 from surveyapp.core.orientation.calibration_sessions import calibrations_of
 from surveyapp.core.orientation.campaign_columns import session_temperature
-from surveyapp.core.orientation.deflection_field import Field, deflection_field
+from surveyapp.core.orientation.deflection_field import DeflectionField, deflection_field
 from surveyapp.core.orientation.error_terms import (
     Circumstance,
     latitude_warnings,
@@ -94,6 +94,7 @@ class Orientation:
     lines: tuple[OrientedLine, ...]
     shown_lines: tuple[OrientedLine, ...]
     warnings: tuple[ResultWarning, ...]
+    deflections: DeflectionField
 
 
 def orient_project(
@@ -129,10 +130,7 @@ def orient_project(
     """
     grid = grid_of(project)
     positions = {station.name: position_of(station, grid) for station in project.stations}
-    stations = {
-        station.name: _with_position(station, positions[station.name])
-        for station in project.stations
-    }
+    stations = {s.name: _with_position(s, positions[s.name]) for s in project.stations}
     warnings = [*project.warnings, *check_adopted(project)]
     tested = sum(session.method != "automatic" for session in project.sessions)
     judge = Judge(sessions=tested)
@@ -142,7 +140,8 @@ def orient_project(
     for instrument in project.instruments:
         reduced, found = apply_adopted(instrument, reduced, positions)
         warnings += found
-    geometry = _geometries(reduced, stations, grid, positions, deflection_field(project, positions))
+    deflections = deflection_field(project, positions)
+    geometry = _geometries(reduced, stations, grid, positions, deflections)
     reduced = _with_terms(project, reduced, geometry)
     warnings += latitude_warnings(project, positions)
     groups = {item.id: run_groups(project, reduced, item.id) for item in project.instruments}
@@ -176,6 +175,7 @@ def orient_project(
         lines,
         shown,
         tuple(warnings),
+        deflections,
     )
 
 
@@ -349,7 +349,7 @@ def _geometries(
     stations: Mapping[str, Station],
     grid: Grid | None,
     positions: Mapping[str, Position],
-    field: Field,
+    field: DeflectionField,
 ) -> dict[tuple[str, str], LineGeometry]:
     """Geometry of every sighted line by (session, target)."""
     result = {}
@@ -364,6 +364,6 @@ def _geometries(
                 positions=positions,
                 zenith=zenith,
                 stated=stated_convergence(session, stations[session.station]),
-                deflection_sources=field[session.station],
+                deflection_sources=field.sources[session.station],
             )
     return result

@@ -75,10 +75,9 @@ class Mixture:
         low, high = 0.0, float(np.max(np.abs(offsets) + 6.0 * scales))
         for _ in range(40):
             middle = 0.5 * (low + high)
-            inside = student_cdf((middle - offsets) / scales, self.dof) - student_cdf(
-                (-middle - offsets) / scales, self.dof
-            )
-            if float(weights @ inside) < PROBABILITY:
+            ends = np.stack([middle - offsets, -middle - offsets]) / scales
+            below = student_cdf(ends, self.dof)
+            if float(weights @ (below[0] - below[1])) < PROBABILITY:
                 low = middle
             else:
                 high = middle

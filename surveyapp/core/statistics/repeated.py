@@ -13,6 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from operator import mul
 
 from surveyapp.core.statistics.distributions import f_tail
 from surveyapp.core.uncertain import Source, Uncertain, combine
@@ -112,30 +113,27 @@ def consistency(groups: Sequence[Sequence[Uncertain]]) -> Consistency | None:
 
 def between_variance(groups: Sequence[Sequence[Uncertain]]) -> float:
     """Variance between runs [rad^2] that makes the groups consistent (Mandel-Paule), >= 0."""
+    own = [[own_variance(item) for item in group] for group in groups]
+    usable = [
+        (variances, [item.value for item in group])
+        for variances, group in zip(own, groups, strict=True)
+        if len(group) >= 2 and all(0.0 < v < math.inf for v in variances)
+    ]
 
     def statistic(extra: float) -> float:
         total = 0.0
-        for group in groups:
-            variances = [own_variance(item) + extra for item in group]
-            if len(group) < 2 or not all(0.0 < v < math.inf for v in variances):
-                continue
-            weights = [1.0 / v for v in variances]
-            mean = math.fsum(
-                w * item.value for w, item in zip(weights, group, strict=True)
-            ) / math.fsum(weights)
+        for variances, values in usable:
+            weights = [1.0 / (v + extra) for v in variances]
+            mean = math.fsum(map(mul, weights, values)) / math.fsum(weights)
             total += math.fsum(
-                w * (item.value - mean) ** 2 for w, item in zip(weights, group, strict=True)
+                w * (value - mean) ** 2 for w, value in zip(weights, values, strict=True)
             )
         return total
 
-    dof = sum(
-        len(group) - 1
-        for group in groups
-        if len(group) >= 2 and all(0.0 < own_variance(item) < math.inf for item in group)
-    )
+    dof = sum(len(values) - 1 for _, values in usable)
     if dof == 0 or statistic(0.0) <= dof:
         return 0.0
-    low, high = 0.0, max(own_variance(item) for group in groups for item in group)
+    low, high = 0.0, max(v for variances, _ in usable for v in variances)
     while statistic(high) > dof:
         high *= 4.0
     for _ in range(200):

@@ -17,6 +17,7 @@ from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.filing.ledger import LEDGER_FILE
 from surveyapp.io.filing.sealed_files import WITNESS_FILE, hash_inside, project_file_names
 from surveyapp.io.guarded import is_regular, open_regular
+from surveyapp.io.project import check_project_folder
 
 MANIFEST: Final = "MANIFEST.sha256"
 _MOMENT: Final = (1980, 1, 1, 0, 0, 0)
@@ -37,8 +38,9 @@ def archive(folder: Path) -> tuple[bytes, int]:
     Raises
     ------
     SurveyError
-        If a file cannot be read.
+        If the folder is no project folder, or a file cannot be read.
     """
+    check_project_folder(folder)
     names = list(project_file_names(folder))
     names += [name for name in (LEDGER_FILE, WITNESS_FILE) if is_regular(folder / name)]
     stream = io.BytesIO()

@@ -10,7 +10,6 @@ NOT_DETERMINED: Final = "-"
 # verdicts: words, never colour alone
 MET: Final = "met"
 NOT_MET: Final = "NOT MET"
-WARNS: Final = "warning"
 OPEN: Final = "open"
 
 # problems
