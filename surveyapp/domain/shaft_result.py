@@ -165,6 +165,24 @@ class JointAzimuth:
 
 
 @dataclass(frozen=True, slots=True)
+class PlumbedPoint:
+    """A point below with its position in the frame of the surface points [m].
+
+    ``sigma_m`` is of east and north together, sqrt(sigma_E^2 + sigma_N^2), relative to the surface
+    points with coordinates.
+    """
+
+    station: str
+    e: float
+    n: float
+    sigma_m: float
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON."""
+        return {"station": self.station, "e": self.e, "n": self.n, "sigma_m": self.sigma_m}
+
+
+@dataclass(frozen=True, slots=True)
 class ShaftBudgetLine:
     """Share of one source in the sigma of the orientation through a shaft [rad]."""
 
@@ -219,6 +237,8 @@ class ShaftOrientation:
     combined : JointAzimuth
     budget : tuple of ShaftBudgetLine
     checks : tuple of PlumbingCheck
+    points : tuple of PlumbedPoint
+        Ends of the oriented side whose place is determined.
     drawing : ShaftDrawing
         Not in the JSON.
     """
@@ -237,6 +257,7 @@ class ShaftOrientation:
     combined: JointAzimuth
     budget: tuple[ShaftBudgetLine, ...]
     checks: tuple[PlumbingCheck, ...] = ()
+    points: tuple[PlumbedPoint, ...] = ()
     drawing: ShaftDrawing = field(default_factory=ShaftDrawing)
 
     @property
@@ -261,6 +282,7 @@ class ShaftOrientation:
             "depth": self.depth.to_dict(),
             "gyro": None if self.gyro is None else self.gyro.to_dict(),
             "combined": self.combined.to_dict(),
+            "points": [item.to_dict() for item in self.points],
             "checks": [_check_dict(recorded.get(name, PlumbingCheck(name))) for name in CHECK_IDS],
         }
 

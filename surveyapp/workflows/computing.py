@@ -22,6 +22,7 @@ from surveyapp.domain.advance import Advance, silent
 from surveyapp.domain.project import Project, ResultWarning
 from surveyapp.domain.results import OrientationResult
 from surveyapp.domain.traverse import GyroConstant, Network, OrientedLine
+from surveyapp.workflows.underground import breakthrough_evidence, shaft_evidence
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,14 +169,17 @@ def judged(found: OrientedProject, *, software: str, session: str | None = None)
     SurveyError
         If a traverse names a gyro side that no session has oriented.
     """
+    project = found.project
     evidence = Evidence(
-        found.project,
+        project,
         found.orientation,
         tuple(
             TraverseEvidence(traverse, found.network(traverse.name))
-            for traverse in found.project.traverses
+            for traverse in project.traverses
             if traverse.rows
         ),
+        breakthrough_evidence(found.orientation, project, software=software),
+        shaft_evidence(project),
     )
     checks = verdicts(evidence)
     shown = checks if session is None else verdicts_of(checks, session)

@@ -1,10 +1,11 @@
-"""The rule book applied to everything that a project has measured, traverses included."""
+"""The rule book applied to everything that a project has measured and predicted."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import combinations
 
+from surveyapp.core.checks.breakthrough_checks import breakthrough_measures, shaft_measures
 from surveyapp.core.checks.evidence import Evidence, TraverseEvidence
 from surveyapp.core.network import adjust
 from surveyapp.core.network.closures import network_closures
@@ -27,7 +28,12 @@ def limit_checks(evidence: Evidence) -> tuple[Check, ...]:
     book = evidence.project.rules
     if book is None:
         return ()
-    measured = [*measure(evidence.orientation), *traverse_measures(evidence.traverses, book)]
+    measured = [
+        *measure(evidence.orientation),
+        *traverse_measures(evidence.traverses, book),
+        *shaft_measures(evidence.shafts),
+        *breakthrough_measures(evidence.breakthrough),
+    ]
     return rule_book_checks(book, measured)
 
 

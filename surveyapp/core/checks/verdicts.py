@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from surveyapp.core.checks.always_on import always_on_checks
+from surveyapp.core.checks.breakthrough_checks import breakthrough_checks
 from surveyapp.core.checks.evidence import Evidence
 from surveyapp.core.checks.filing_checks import filing_checks
 from surveyapp.core.checks.instrument_checks import instrument_checks
@@ -71,6 +72,11 @@ CHECKS: Final[tuple[CheckGroup, ...]] = (
         "traverses",
         "closures and repeated sides of the traverses",
         lambda e: traverse_checks(e.traverses),
+    ),
+    CheckGroup(
+        "breakthrough",
+        "predicted and measured error at the meeting point against the project's own tolerance",
+        lambda e: breakthrough_checks(e.breakthrough),
     ),
     CheckGroup("limits", "every limit of the rule book", limit_checks),
 )

@@ -24,6 +24,7 @@ from surveyapp.core.shafts.plane import (
     length,
     solve_plane,
 )
+from surveyapp.core.shafts.points import plumbed_points
 from surveyapp.core.shafts.swings import SwingRest, period_s, pooled_sigma, swing_rest
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.shaft import Shaft, ShaftRow, ShaftRowKind
@@ -129,6 +130,7 @@ def orient_shaft(
         combined=combined,
         budget=_budget(join, (upper, plumb, lower)),
         checks=shaft.checks,
+        points=plumbed_points(shaft, join.surface, join.underground),
         drawing=_drawing(join, triangles),
     )
     return found, (*told, *_warnings(shaft, distance, triangles))

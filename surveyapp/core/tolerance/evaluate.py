@@ -54,6 +54,8 @@ def apply_limit(book: RuleBook, limit: Limit, item: Measured) -> Check | None:
     if item.class_name and limit.class_name and item.class_name != limit.class_name:
         return None
     kind = quantity(limit.quantity)
+    # what a rule book states as a parameter is the least that a project may set for it
+    sense = "at least" if kind.subject == PARAMETER else limit.sense
     bound, missing = None, item.text if item.value is None else ""
     try:
         if not holds(limit.when, item.variables):
@@ -65,9 +67,9 @@ def apply_limit(book: RuleBook, limit: Limit, item: Measured) -> Check | None:
     passed = None
     if value is not None and bound is not None:
         slack = _ROUNDING * max(abs(bound), 1.0)
-        passed = value <= bound + slack if limit.sense == "at most" else value >= bound - slack
+        passed = value <= bound + slack if sense == "at most" else value >= bound - slack
     text = missing or (f"{kind.title}: {item.text}" if item.text else kind.title)
-    if limit.sense == "at least" and not missing:
+    if sense == "at least" and not missing:
         text += " (at least)"
     return Check(
         rule=f"{book.id}.{limit.id}",

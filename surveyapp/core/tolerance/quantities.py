@@ -37,7 +37,8 @@ class Quantity:
     needs : str
         What a project must hold for it, said where it is missing.
     subject : str
-        orientation | traverse | plumbing | breakthrough: who measures it; parameter: nobody does.
+        orientation | traverse | plumbing | breakthrough: who measures it; parameter: nobody
+        does, and a project may set it.
     """
 
     id: str
@@ -58,7 +59,7 @@ class Quantity:
 
 _TRAVERSE, _PLUMBING, _BREAKTHROUGH = "traverse", "plumbing", "breakthrough"
 PARAMETER: Final = "parameter"
-"""Subject of what a rule book states and nobody measures: no check comes of it."""
+"""Subject of what a rule book states and nobody measures: a project may set it, not below."""
 
 QUANTITIES: Final[tuple[Quantity, ...]] = (
     Quantity(
@@ -267,7 +268,7 @@ QUANTITIES: Final[tuple[Quantity, ...]] = (
     ),
     Quantity(
         "height_transfer",
-        "two transfers of height through a shaft, L its depth",
+        "two transfers of height through a shaft, L its depth in kilometres",
         "length",
         "two transfers of height",
         _PLUMBING,
