@@ -52,3 +52,12 @@ def test_traverse_book_beyond_all_measures(tmp_path: Path, column: str, cell: st
     outcome = run("adjust", project, "--json")
     assert outcome.code == 2, outcome.out
     assert outcome.json["problems"][0]["where"].endswith("line 3")
+
+
+@pytest.mark.parametrize(("at", "to"), [("E", "X"), ("ü", "F"), ("0", "nan")])
+def test_gyro_side_to_an_unknown_point_is_named(tmp_path: Path, at: str, to: str) -> None:
+    row = f"azimuth,underground,{at},,{to},120.0,deg,8,arcsec,,\n"
+    outcome = run("shaft", folder(tmp_path / "p", book=BOOK + row), "--json")
+    assert outcome.code == 2, outcome.out
+    unknown = {name for name in (at, to) if name not in ("E", "F")}
+    assert {problem["found"] for problem in outcome.json["problems"]} == unknown
