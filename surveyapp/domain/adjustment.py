@@ -19,6 +19,7 @@ from surveyapp_models.angles import RHO_ARCSEC, wrap_two_pi
 
 __all__ = [
     "SCHEMA",
+    "SIGMAS",
     "AdjustedObservation",
     "AdjustedPoint",
     "AdjustmentResult",
@@ -34,6 +35,8 @@ __all__ = [
 ]
 
 SCHEMA = "surveyapp.adjust/1"
+SIGMAS = 3.0
+"""A closure within this many of its standard deviations passes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,7 +201,8 @@ class Closure:
     angular_sigma : float or None
         Its standard deviation from the sigmas of the angles [rad].
     linear_m, length_m : float or None
-        Misclosure and length of the route [m].
+        Misclosure and length of the route [m]; of a height route the levelled length, None where a
+        section has none.
     height_m, height_sigma_m : float or None
         Height misclosure and its standard deviation [m].
     passed : bool or None
@@ -215,6 +219,18 @@ class Closure:
     height_m: float | None = None
     height_sigma_m: float | None = None
     passed: bool | None = None
+
+    @property
+    def height_per_sqrt_km(self) -> float | None:
+        """Height misclosure over the square root of the length [mm per root of km]."""
+        if self.height_m is None or not self.length_m:
+            return None
+        return self.height_m * 1e3 / math.sqrt(self.length_m / 1e3)
+
+    @property
+    def height_allowed_m(self) -> float | None:
+        """Largest height misclosure that passes [m]: 3 sigma."""
+        return None if self.height_sigma_m is None else SIGMAS * self.height_sigma_m
 
     def to_dict(self) -> dict[str, object]:
         """Keys of the JSON."""
@@ -234,6 +250,8 @@ class Closure:
             "relative_1_in": relative,
             "height_m": self.height_m,
             "height_sigma_m": self.height_sigma_m,
+            "height_mm_per_sqrt_km": self.height_per_sqrt_km,
+            "height_allowed_m": self.height_allowed_m,
             "pass": self.passed,
         }
 

@@ -87,6 +87,8 @@ class Observation:
     group : str
         Variance component group; empty = the kind.
     note, extern : str
+    length_m : float or None
+        Length of the levelled section of a height difference [m]; None where nobody says.
     line : int
         Line of the file, 0 = unknown.
 
@@ -111,6 +113,7 @@ class Observation:
     note: str = ""
     extern: str = ""
     line: int = 0
+    length_m: float | None = None
 
     def __post_init__(self) -> None:
         if (
@@ -121,6 +124,7 @@ class Observation:
             and math.isfinite(self.value)
             and 0.0 < self.sigma < math.inf
             and (self.value > 0.0 or self.kind not in _POSITIVE)
+            and (self.length_m is None or 0.0 < self.length_m < math.inf)
             and math.isfinite(self.hi + self.ht + self.convergence)
         ):
             return
@@ -164,6 +168,8 @@ def _observation_problems(obs: Observation) -> list[Problem]:
         add("A side has no length", f"{obs.value:g} m", "a length above 0 m")
     if not (0.0 < obs.sigma < math.inf):
         add("The standard deviation is not positive", str(obs.sigma), "a number above 0")
+    if obs.length_m is not None and not 0.0 < obs.length_m < math.inf:
+        add("A levelled section has no length", f"{obs.length_m:g} m", "a length above 0 m")
     if not math.isfinite(obs.hi + obs.ht + obs.convergence):
         add("A height or a convergence is no number", f"{obs.hi}, {obs.ht}", "finite numbers")
     return problems

@@ -41,6 +41,7 @@ class TraverseRow:
     ht: float
     note: str
     line: int
+    length_m: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -143,6 +143,8 @@ def _closure(values: dict[str, object]) -> str:
         ("linear_m", "linear {:.4f} m"),
         ("relative_1_in", "1:{:.0f}"),
         ("height_m", "height {:+.4f} m"),
+        ("height_mm_per_sqrt_km", "{:+.1f} mm per root km"),
+        ("height_allowed_m", "allowed {:.4f} m"),
     ):
         value = values[key]
         if isinstance(value, float):

@@ -7,8 +7,8 @@ from collections import defaultdict
 from collections.abc import Sequence
 
 from surveyapp.core.checks.evidence import TraverseEvidence
-from surveyapp.core.network.closures import SIGMAS, network_closures
-from surveyapp.domain.adjustment import Closure
+from surveyapp.core.network.closures import network_closures
+from surveyapp.domain.adjustment import SIGMAS, Closure
 from surveyapp.domain.observations import Observation, ObservationKind
 from surveyapp.domain.results import Check
 from surveyapp.domain.subject import Subject

@@ -13,14 +13,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from surveyapp.core.network.sights import Sighted, sighted
-from surveyapp.domain.adjustment import Closure
+from surveyapp.domain.adjustment import SIGMAS, Closure
 from surveyapp.domain.traverse import Network, NetworkPoint, Status
 from surveyapp_models.angles import wrap_pi
 
 MOST_ROUTES = 500
 """So many closures are formed, the shortest routes first; a dense network has no use for more."""
-SIGMAS = 3.0
-"""A closure within this many of its standard deviations passes."""
 
 _GROUND = ""
 
@@ -205,9 +203,11 @@ def _height(route: Route, seen: Sighted, points: dict[str, NetworkPoint]) -> Clo
     elif len(names) < 3:
         return None
     sigma = math.sqrt(sum(step.sigma**2 for step in steps))
+    known = [step.length for step in steps if step.length is not None]
     return Closure(
         "height",
         names,
+        length_m=sum(known) if len(known) == len(steps) else None,
         height_m=total,
         height_sigma_m=sigma,
         passed=abs(total) <= SIGMAS * sigma,

@@ -19,10 +19,11 @@ K = ObservationKind
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """A measured quantity and its standard deviation, [rad] or [m]."""
+    """A measured quantity and its standard deviation, [rad] or [m]; length of a rise [m]."""
 
     value: float
     sigma: float
+    length: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +37,8 @@ class Sighted:
     lengths : dict
         By (point, point): horizontal length, both orders.
     rises : dict
-        By (point, point): height difference, both orders.
+        By (point, point): height difference, both orders; with the length of the levelled section
+        or of the sight.
     """
 
     angles: dict[tuple[str, str, str], Measured]
@@ -60,7 +62,9 @@ def _mean(values: list[Measured], *, angular: bool) -> Measured:
     offsets = [wrap_pi(item.value - first) if angular else item.value - first for item in values]
     total = sum(weights)
     shift = sum(w * x for w, x in zip(weights, offsets, strict=True)) / total
-    return Measured(first + shift, 1.0 / math.sqrt(total))
+    lengths = [item.length for item in values if item.length is not None]
+    length = sum(lengths) / len(lengths) if lengths else None
+    return Measured(first + shift, 1.0 / math.sqrt(total), length)
 
 
 def _angles(observations: Iterable[Observation]) -> dict[tuple[str, str, str], list[Measured]]:
@@ -108,7 +112,9 @@ def sighted(observations: Iterable[Observation]) -> Sighted:
         if obs.kind is K.DISTANCE:
             lengths[obs.at, obs.to].append(Measured(obs.value, obs.sigma))
         elif obs.kind is K.HEIGHT_DIFFERENCE:
-            rises[obs.at, obs.to].append(Measured(obs.value - obs.ht + obs.hi, obs.sigma))
+            rises[obs.at, obs.to].append(
+                Measured(obs.value - obs.ht + obs.hi, obs.sigma, obs.length_m)
+            )
         elif obs.kind is K.SLOPE_DISTANCE and (obs.at, obs.to) in zeniths:
             steep = zeniths[obs.at, obs.to]
             level, up = obs.value * math.sin(steep.value), obs.value * math.cos(steep.value)
@@ -119,6 +125,7 @@ def sighted(observations: Iterable[Observation]) -> Sighted:
                 Measured(
                     up + steep.hi - steep.ht,
                     math.hypot(obs.sigma * math.cos(steep.value), level * steep.sigma),
+                    level,
                 )
             )
     return Sighted(
@@ -134,5 +141,7 @@ def _both_ways(
     joined: dict[tuple[str, str], list[Measured]] = {}
     for (a, b), values in found.items():
         joined.setdefault((a, b), []).extend(values)
-        joined.setdefault((b, a), []).extend(Measured(sign * v.value, v.sigma) for v in values)
+        joined.setdefault((b, a), []).extend(
+            Measured(sign * v.value, v.sigma, v.length) for v in values
+        )
     return {key: _mean(values, angular=False) for key, values in joined.items()}

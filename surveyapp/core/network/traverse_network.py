@@ -97,6 +97,7 @@ def _observation(
             ht=row.ht,
             note=row.note,
             line=row.line,
+            length_m=row.length_m,
         )
     except SurveyError as refused:
         problems += [

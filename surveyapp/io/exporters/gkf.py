@@ -379,6 +379,8 @@ def _observation(obs: Observation, axes: Axes, *, bare: bool, station: str) -> s
         ends = f" from={quoteattr(obs.at)}" + ends
     spread = "" if bare else f' stdev="{sigma!r}"'
     heights = "" if obs.kind is K.HEIGHT_DIFFERENCE else _heights(obs)
+    if obs.length_m is not None:
+        spread += f' dist="{obs.length_m / 1000.0!r}"'
     if obs.kind is K.ANGLE:
         heights = heights.replace("to_dh", "fs_dh")
     return f'<{name}{ends} val="{value!r}"{spread}{heights}{_extern(obs)}/>'

@@ -141,8 +141,22 @@ class _Builder:
                 "ht": heights[1],
                 "extern": attributes.get("extern", ""),
                 "line": line,
+                "length_m": self._section(kind, attributes, line),
             },
         )
+
+    def _section(
+        self, kind: ObservationKind, attributes: dict[str, str], line: int
+    ) -> float | None:
+        """Length of a levelled section [m]; ``dist`` is in kilometres."""
+        if kind is not ObservationKind.HEIGHT_DIFFERENCE or "dist" not in attributes:
+            return None
+        length = self.document.number(attributes["dist"], line, "dist")
+        if length is None or length > 0.0:
+            return None if length is None else length * 1000.0
+        found = attributes["dist"]
+        self.document.problem("A section has no length", line, found, "kilometres above 0")
+        return None
 
     def _sigma(
         self,
@@ -158,13 +172,9 @@ class _Builder:
             return None if number is None else number * unit
         if cluster.dim is not None:
             return 1.0
-        if "dist" in attributes:
-            length = self.document.number(attributes["dist"], line, "dist")
-            if length is None or length <= 0.0:
-                found = attributes["dist"]
-                self.document.problem("A section has no length", line, found, "kilometres above 0")
-                return None
-            return self.sigma_apriori * float(np.sqrt(length)) * MM
+        if kind is ObservationKind.HEIGHT_DIFFERENCE and "dist" in attributes:
+            length = self._section(kind, attributes, line)
+            return None if length is None else self.sigma_apriori * math.sqrt(length / 1e3) * MM
         sigma = self._default_sigma(kind, value, unit)
         if sigma is None:
             self.document.problem(

@@ -30,6 +30,8 @@ COLUMNS: Final = (
     "ht",
     "note",
 )
+OPTIONAL: Final = ("length_m",)
+"""Columns that a book may have beside them: length of a levelled section."""
 REQUIRED: Final = ("kind", "at", "to", "value")
 KINDS: Final = {
     str(kind): kind
@@ -158,6 +160,9 @@ def _read(row: _Row, default: AngleUnit) -> TraverseRow | None:
     if kind is ObservationKind.ZENITH and value is not None and not 0.0 < value < math.pi:
         hint = "Reduce both faces to face left first."
         row.problem("no zenith angle", cells["value"], "between 0 and 180 degrees", hint)
+    length = row.number("length_m") if kind is ObservationKind.HEIGHT_DIFFERENCE else None
+    if length is not None and length <= 0.0:
+        row.problem("a levelled section has no length", cells["length_m"], "metres above 0")
     if len(row.problems) > before:
         return None
     back = cells["from"] if kind is ObservationKind.ANGLE else ""
@@ -173,6 +178,7 @@ def _read(row: _Row, default: AngleUnit) -> TraverseRow | None:
         ht,
         cells["note"],
         row.line,
+        length,
     )
 
 
@@ -233,7 +239,7 @@ def parse_traverse(
                     Problem("more values than columns", place, shown(",".join(cells)), "", hint)
                 )
                 continue
-            named = dict.fromkeys(COLUMNS, "")
+            named = dict.fromkeys((*COLUMNS, *OPTIONAL), "")
             named.update(zip(header, stripped, strict=False))
             row = _read(_Row(named, where, reader.line_num, problems), angle_unit)
             if row is not None:

@@ -32,8 +32,12 @@ def blocks(
         Instead of ``Traverse NAME``.
     """
     found: list[Block] = [Heading(title or f"Traverse {name}"), KeyValues(_facts(result))]
-    if result.closures:
-        found += [Heading("Closures before the adjustment", 2), _closures(result.closures)]
+    plane = [item for item in result.closures if item.kind != "height"]
+    heights = [item for item in result.closures if item.kind == "height"]
+    if plane:
+        found += [Heading("Closures before the adjustment", 2), _closures(plane)]
+    if heights:
+        found += [Heading("Height closures before the adjustment", 2), _levelling(heights)]
     found += [Heading("Points", 2), _points(result)]
     plan = plan_figure(result)
     if plan is not None:
@@ -121,7 +125,24 @@ def _facts(result: AdjustmentResult) -> tuple[tuple[str, str], ...]:
     return tuple(facts)
 
 
-def _closures(closures: tuple[Closure, ...]) -> Table:
+def _levelling(closures: Sequence[Closure]) -> Table:
+    """Loops and lines of height differences: misclosure by length, against what is allowed."""
+    rows = [
+        (
+            _route(item.stations),
+            plain(None if item.length_m is None else item.length_m / 1000.0, 3),
+            plain(None if item.height_m is None else item.height_m * MM, 2, sign=True),
+            plain(item.height_per_sqrt_km, 2, sign=True),
+            plain(None if item.height_allowed_m is None else item.height_allowed_m * MM, 2),
+            {True: "yes", False: "NO", None: NOTHING}[item.passed],
+        )
+        for item in closures
+    ]
+    head = ("route", "km", "height mm", "mm per root km", "allowed mm", "3 sigma")
+    return _filled(head, rows, "lrrrrl")
+
+
+def _closures(closures: Sequence[Closure]) -> Table:
     rows = []
     for item in closures:
         relative = NOTHING
@@ -135,7 +156,6 @@ def _closures(closures: tuple[Closure, ...]) -> Table:
                 plain(None if item.angular_sigma is None else item.angular_sigma * RHO_ARCSEC),
                 plain(None if item.linear_m is None else item.linear_m * MM),
                 relative,
-                plain(None if item.height_m is None else item.height_m * MM, sign=True),
                 {True: "yes", False: "NO", None: NOTHING}[item.passed],
             )
         )
@@ -146,10 +166,9 @@ def _closures(closures: tuple[Closure, ...]) -> Table:
         '\N{PLUS-MINUS SIGN}"',
         "place mm",
         "relative",
-        "height mm",
         "3 sigma",
     )
-    return _filled(head, rows, "llrrrrrl")
+    return _filled(head, rows, "llrrrrl")
 
 
 def _filled(head: tuple[str, ...], rows: Sequence[tuple[str, ...]], align: str) -> Table:
