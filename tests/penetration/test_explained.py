@@ -42,19 +42,21 @@ def observed(gyros: str, *, shift: float, seed: int) -> Network:
     rows = []
     for i in range(1, SIDES):
         value = math.pi + ANGLE * ARCSEC * rng.normal()
-        ends = {"back": names[i - 1]}
-        rows.append(Observation(K.ANGLE, names[i], names[i + 1], value, ANGLE * ARCSEC, **ends))
+        ends, sigma = (names[i], names[i + 1]), ANGLE * ARCSEC
+        rows.append(Observation(K.ANGLE, *ends, value, sigma, back=names[i - 1]))
     for a, b in itertools.pairwise(names):
         rows.append(Observation(K.DISTANCE, a, b, 100.0 + LENGTH * rng.normal(), LENGTH))
     constants = {name: SHARED * ARCSEC * rng.normal() for name in gyros}
     for name in gyros:
         for i in OBSERVED:
-            for a, b, azimuth in ((i, i + 1, 0.0), (i + 1, i, math.pi)):
+            for start, end, azimuth in ((i, i + 1, 0.0), (i + 1, i, math.pi)):
                 wrong = shift if name == "G" and i >= FIRST else 0.0
                 value = azimuth + (wrong + OWN * rng.normal()) * ARCSEC - constants[name]
                 sigma = OWN * ARCSEC
                 rows.append(
-                    Observation(K.GYRO, names[a], names[b], value % math.tau, sigma, constant=name)
+                    Observation(
+                        K.GYRO, names[start], names[end], value % math.tau, sigma, constant=name
+                    )
                 )
     known = tuple(GyroConstant(name, 0.0, SHARED * ARCSEC) for name in gyros)
     return Network(tuple(points), tuple(rows), constants=known)
