@@ -1,0 +1,166 @@
+"""Sensor logs in the record: parameters with sigma, before and after, geometry, Allan deviation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import chain
+
+from surveyapp.domain.calibration import Calibration
+from surveyapp.domain.noise import AllanChannel, AllanResult
+from surveyapp.domain.project import ResultWarning
+from surveyapp.report.blocks import Block, Figure, Heading, KeyValues, Paragraph, Table
+from surveyapp.report.numbers import NOTHING, four_digits
+from surveyapp.report.plots import Axis, Frame
+
+DIGEST_SHOWN = 16
+"""Hexadecimal digits of a sha256 that the record shows."""
+
+
+def title_of(identity: str) -> str:
+    """Heading of the section of a log."""
+    return f"Sensor log {identity}"
+
+
+def calibration_blocks(identity: str, result: Calibration) -> tuple[Block, ...]:
+    """Blocks of the calibration of one log; nothing in them depends on the day of printing."""
+    lasting = tuple(item for item in result.warnings if item.code != "recalibration_due")
+    return (Heading(title_of(identity)), *calibration_body(replace(result, warnings=lasting)))
+
+
+def calibration_body(result: Calibration) -> tuple[Block, ...]:
+    """The same without the heading."""
+    found: list[Block] = [_facts(result), _parameters(result)]
+    if result.models:
+        found += [Heading("Models compared", 2), _models(result)]
+    if not result.met:
+        text = "Not determined, refused or inconsistent: no sensor card comes of this log."
+        found.append(Paragraph(text, "warning"))
+    if result.geometry.undetermined:
+        names = ", ".join(result.geometry.undetermined)
+        found.append(Paragraph(f"Not determined: {names}.", "warning"))
+    return (*found, *_warnings(result.warnings))
+
+
+def allan_blocks(identity: str, result: AllanResult) -> tuple[Block, ...]:
+    """Blocks of the noise of one log: for every column a table, a plot and the coefficients."""
+    found: list[Block] = [Heading(title_of(identity))]
+    for channel in result.channels:
+        text = f"Allan deviation of {channel.name}, {channel.n} samples at {channel.rate_hz:g} Hz"
+        found += [Heading(text, 2), deviations(channel), *allan_figures(channel)]
+        found.append(coefficients(channel))
+    return (*found, *_warnings(result.warnings))
+
+
+def _facts(result: Calibration) -> KeyValues:
+    geometry = result.geometry
+    words: list[str] = [geometry.verdict]
+    if geometry.coverage is not None:
+        words.append(f"coverage {geometry.coverage:.0%}")
+    if geometry.heading_sigma_deg is not None:
+        words.append(f"heading sigma {geometry.heading_sigma_deg:.3g} degrees")
+    if geometry.condition is not None:
+        words.append(f"condition {geometry.condition:.3g}")
+    pairs = [
+        ("calibration", f"{result.kind}, {result.n} rows"),
+        ("sha256 of the log", result.sha256[:DIGEST_SHOWN] or NOTHING),
+        ("geometry", ", ".join(words)),
+    ]
+    for name, misfit in (("rms before", result.before), ("rms after", result.after)):
+        of = f" ({misfit.of})" if misfit.of else ""
+        pairs.append((name, f"{four_digits(misfit.rms)} {misfit.unit}{of}"))
+    held = result.held_out
+    if held is not None:
+        values = f"{four_digits(held.before)} before, {four_digits(held.after)} after"
+        pairs.append(("left out", f"{values} {held.unit}: {held.scheme}"))
+    return KeyValues(tuple(pairs))
+
+
+def _parameters(result: Calibration) -> Table:
+    rows = tuple(
+        (item.name.replace("_", " "), four_digits(item.value), four_digits(item.sigma), item.unit)
+        for item in result.parameters
+    )
+    return Table(("parameter", "value", "\N{PLUS-MINUS SIGN}", "unit"), rows, "lrrl")
+
+
+def _models(result: Calibration) -> Table:
+    rows = tuple(
+        (
+            model.id.replace("_", " "),
+            four_digits(model.rms),
+            four_digits(model.held_out_rms),
+            "chosen" if model.chosen else "",
+        )
+        for model in result.models
+    )
+    chosen = frozenset(i for i, model in enumerate(result.models) if model.chosen)
+    return Table(("model", "rms", "left out", ""), rows, "lrrl", strong=chosen)
+
+
+def deviations(channel: AllanChannel) -> Table:
+    """Allan deviation with its 95 % interval."""
+    rows = tuple(
+        (f"{tau:g}", four_digits(value), four_digits(low), four_digits(high))
+        for tau, value, low, high in zip(
+            channel.taus_s, channel.deviation, channel.low, channel.high, strict=True
+        )
+    )
+    return Table(("time s", f"deviation {channel.unit}", "95 % from", "to"), rows, "rrrr")
+
+
+def coefficients(channel: AllanChannel) -> Table:
+    """The noise coefficients, with the reason where there is none."""
+    rows = tuple(
+        (
+            f"{item.symbol} {item.name.replace('_', ' ')}",
+            four_digits(item.value),
+            four_digits(item.sigma),
+            item.unit,
+            (item.reason or "").replace("_", " "),
+        )
+        for item in channel.coefficients
+    )
+    head = ("coefficient", "value", "\N{PLUS-MINUS SIGN}", "unit", "why not")
+    return Table(head, rows, "lrrll")
+
+
+def allan_figures(channel: AllanChannel) -> tuple[Figure, ...]:
+    """The deviation over time, both logarithmic; none where nothing is above zero."""
+    points = [
+        (math.log10(tau), math.log10(value), low, high)
+        for tau, value, low, high in zip(
+            channel.taus_s, channel.deviation, channel.low, channel.high, strict=True
+        )
+        if value > 0.0
+    ]
+    if len(points) < 2:
+        return ()
+    bars = [
+        (x, math.log10(low) if low > 0.0 else y, math.log10(high) if high > 0.0 else y)
+        for x, y, low, high in points
+    ]
+    across, x_names = _decades([x for x, *_ in points])
+    up, _ = _decades(list(chain.from_iterable((low, high) for _, low, high in bars)))
+    frame = Frame(across, up)
+    curve = [(x, y) for x, y, *_ in points]
+    label = f"lg of the deviation [{channel.unit}]"
+    parts = frame.axes("averaging time [s]", label, x_names)
+    for x, low, high in bars:
+        parts += frame.bar(x, low=low, high=high, cap_mm=0.8)
+    parts += [frame.curve(curve, "data"), *frame.marks(curve, "dot")]
+    return (frame.figure(f"Allan deviation of {channel.name} with 95 % interval", parts),)
+
+
+def _decades(values: Sequence[float]) -> tuple[Axis, list[str]]:
+    """Axis of decimal logarithms over whole decades, and the numbers at its ticks."""
+    low, high = math.floor(min(values) + 1e-9), math.ceil(max(values) - 1e-9)
+    high = max(high, low + 1)
+    ticks = tuple(range(low, high + 1))
+    axis = Axis(float(low), float(high), tuple(float(tick) for tick in ticks), 0)
+    return axis, [f"{10.0**tick:g}" for tick in ticks]
+
+
+def _warnings(warnings: Sequence[ResultWarning]) -> tuple[Block, ...]:
+    return tuple(Paragraph(f"{item.code}: {item.text}", "warning") for item in warnings)
