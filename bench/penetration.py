@@ -12,6 +12,7 @@ import resource
 import time
 from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +22,7 @@ from surveyapp.core.penetration.covariance import contributions, total
 from surveyapp.core.penetration.evaluation import closure_test, covariance3
 from surveyapp.core.penetration.mine import Mine, build_mine
 from surveyapp.core.penetration.placement import Candidate, outlook
-from surveyapp.core.penetration.search import best_placements
+from surveyapp.core.penetration.search import best_placements, enumerated, exchanged, greedy
 from surveyapp.core.penetration.simulation import Task, Undeclared, simulate_all
 from surveyapp.domain.penetration import (
     AssumedSigmas,
@@ -84,19 +85,23 @@ def random_mine(seed: int) -> Mine:
     return build_mine(plan, stations, {"G": 8 * ARCSEC})
 
 
-def straight(sides: int, gyro: range) -> Mine:
-    """A straight drive of 100 m sides."""
-    stations = {f"P{i}": Station(f"P{i}", 0.0, 100.0 * i, fixed=i == 0) for i in range(sides + 1)}
+def straight(sides: int, gyro: range, *, bent: bool = False, shared: float = 8.0) -> Mine:
+    """A drive of 100 m sides, straight or turned by 60 degrees in the middle."""
+    azimuth = np.zeros(sides)
+    azimuth[sides // 2 :] = math.radians(60.0) if bent else 0.0
+    e = np.concatenate([[0.0], np.cumsum(100.0 * np.sin(azimuth))]).tolist()
+    n = np.concatenate([[0.0], np.cumsum(100.0 * np.cos(azimuth))]).tolist()
+    stations = {f"P{i}": Station(f"P{i}", e[i], n[i], fixed=i == 0) for i in range(sides + 1)}
     plan = Penetration(
         case=ExcavationCase.ONE_END,
         tunnel=TunnelCase.WITHIN_MINE,
-        meeting=MeetingPoint(0.0, 100.0 * sides),
-        axis_azimuth=0.0,
+        meeting=MeetingPoint(e[-1], n[-1]),
+        axis_azimuth=float(azimuth[-1]),
         headings=(Heading("A", tuple(stations)),),
         gyro=tuple(GyroSide(f"P{i}", f"P{i + 1}", "G", 15 * ARCSEC) for i in gyro),
         sigmas=AssumedSigmas(7 * ARCSEC),
     )
-    return build_mine(plan, stations, {"G": 8 * ARCSEC})
+    return build_mine(plan, stations, {"G": shared * ARCSEC})
 
 
 def speed(executor: Executor | None) -> Iterator[str]:
@@ -110,29 +115,50 @@ def speed(executor: Executor | None) -> Iterator[str]:
         began = time.perf_counter()
         best_placements(outlook(mine, free), 5)
         yield f"plan of 5 among {sides} sides: {time.perf_counter() - began:.3f} s"
+    yield from every_placement()
     computed = api.compute(SAMPLE)
     mine = ready_mine(computed.orientation.project, computed.result).mine
     began = time.perf_counter()
     simulate_all(Task(mine, 1, 10_000))
     yield f"10,000 surveys of the sample, one process: {time.perf_counter() - began:.2f} s"
-    yield from workers(mine, executor)
+    yield from workers(Task(mine, 1, 200_000), "surveys of the sample", executor)
+    large = straight(400, range(0, 400, 20))
+    yield from workers(Task(large, 1, 50_000), "surveys of a mine of 400 sides", executor)
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
     yield f"peak memory {peak:.0f} MB"
 
 
-def workers(mine: Mine, executor: Executor | None) -> Iterator[str]:
+def every_placement() -> Iterator[str]:
+    """Exchange against all placements of 5 among 40 free sides, straight and bent, A and B."""
+    for bent in (False, True):
+        for shared in (0.0, 8.0):
+            mine = straight(41, range(1), bent=bent, shared=shared)
+            free = [Candidate(0, i, "G", 15 * ARCSEC) for i in range(1, 41)]
+            start = outlook(mine, free)
+            began = time.perf_counter()
+            every = enumerated(start, 5)
+            spent = time.perf_counter() - began
+            same = exchanged(start, greedy(start, 5)).sets[0] == every.sets[0]
+            yield (
+                f"{math.comb(40, 5)} placements, {'bent' if bent else 'straight'}, constant "
+                f'{shared:g}" shared: {spent:.2f} s, best {every.lateral[0]:.4f} m, '
+                f"exchange finds the same: {same}"
+            )
+
+
+def workers(task: Task, name: str, executor: Executor | None) -> Iterator[str]:
     """The same work with one worker and with two, processes warm."""
-    task, spent, found = Task(mine, 1, 400_000), [], []
+    spent, found = [], []
     for count in (1, 2):
         with ProcessPoolExecutor(count) as pool:
             list(pool.map(math.sqrt, range(8 * count)))
-            simulated_misses(Task(mine, 1, 20_000), pool)
+            simulated_misses(replace(task, runs=task.runs // 10), pool)
             began = time.perf_counter()
             found.append(np.concatenate(simulated_misses(task, pool)))
             spent.append(time.perf_counter() - began)
     same = np.array_equal(found[0], found[1])
     yield (
-        f"{task.runs} surveys: one worker {spent[0]:.1f} s, two {spent[1]:.1f} s "
+        f"{task.runs} {name}: one worker {spent[0]:.1f} s, two {spent[1]:.1f} s "
         f"({spent[0] / spent[1]:.2f} times faster), the same numbers: {same}"
     )
     if executor is not None:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from surveyapp.api.judgement import diagnose
 from surveyapp.api.orientation import Source, oriented
 from surveyapp.api.project import SOFTWARE, Folder, open_project
+from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.penetration_result import Prediction
 from surveyapp.domain.project import Project
 from surveyapp.errors import SurveyError
@@ -78,7 +79,12 @@ def predict(
 
 def _explained(source: Source, ready: ReadyMine, found: Prediction) -> Prediction:
     """The prediction with what the residuals of the traverses say of a measured miss."""
-    from surveyapp.core.penetration.explaining import HeadingResiduals, NamedEffect, explain
+    from surveyapp.core.penetration.explaining import (
+        HeadingResiduals,
+        NamedEffect,
+        explain,
+        shifted_sides,
+    )
 
     miss = ready.mine.plan.measured
     if miss is None or found.measured is None or found.measured.consistent:
@@ -89,11 +95,18 @@ def _explained(source: Source, ready: ReadyMine, found: Prediction) -> Predictio
             continue
         try:
             made = diagnose(source, traverse=heading.traverse, log=False).diagnosis
+            network = oriented(source, even_unfinished=True).network(heading.traverse)
         except SurveyError:
             continue  # nothing controls this traverse
         if made is not None:
+            shown = [row for row in network.observations if row.kind is ObservationKind.GYRO]
             named = tuple(
-                NamedEffect(item.effect, item.coefficients[0].value) for item in made.adopted
+                NamedEffect(
+                    item.effect,
+                    item.coefficients[0].value,
+                    shifted_sides(item.effect, {g[0]: g[1] for g in item.grid}, shown),
+                )
+                for item in made.adopted
             )
             verdict = str(made.verdict)
             residuals.append(HeadingResiduals(number, heading.traverse, verdict, named))

@@ -83,7 +83,7 @@ COMMANDS: tuple[Command, ...] = (
         waits=False,
     ),
     Command("instrument", "instrument", "read a total station on the cable", waits=False),
-    Command("export", "export", "results and projects as csv, json or zip"),
+    Command("export", "export", "results, points, drawings, maps; a project as zip"),
     Command(
         "batch", "batch", "many projects, one row each; failures are told, not fatal", waits=False
     ),

@@ -2,25 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from concurrent.futures import Executor
 from functools import partial
 
-import numpy as np
-
 from surveyapp.core.penetration.mine import Mine
-from surveyapp.core.penetration.simulation import Task, simulate_block, summary
+from surveyapp.core.penetration.simulation import Task, simulate_blocks, summary
 from surveyapp.domain.penetration_result import SimulatedSigma
 from surveyapp.workflows.spreading import spread
 from surveyapp_models.arrays import Floats
 
 TOGETHER = 10
 """Blocks that one worker takes at a time: a tenth of a second of work or more."""
-
-
-def simulate_blocks(task: Task, blocks: Sequence[int]) -> Floats:
-    """Misses of several blocks, shape (runs, 3) [m]: one task of an executor."""
-    return np.concatenate([simulate_block(task, block) for block in blocks])
 
 
 def simulated_misses(task: Task, executor: Executor | None = None) -> list[Floats]:

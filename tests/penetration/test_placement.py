@@ -96,6 +96,17 @@ def test_five_of_twenty_by_brute_force(bent: bool, shared: float) -> None:
     assert exchanged(start, greedy(start, 5)).lateral[0] == pytest.approx(every.lateral[0])
 
 
+@pytest.mark.parametrize("bent", [False, True])
+@pytest.mark.parametrize("shared", [0.0, 8.0])
+def test_five_of_forty_by_brute_force(bent: bool, shared: float) -> None:
+    """All 575,757 placements of 5 among the 39 sides that side 0 leaves."""
+    start = outlook(straight(40, (0,), shared=shared, bent=bent), candidates(range(1, 40)))
+    every = enumerated(start, 5)
+    found = exchanged(start, greedy(start, 5))
+    assert found.lateral[0] == pytest.approx(every.lateral[0], rel=1e-12)
+    assert found.sets[0] == every.sets[0]
+
+
 @pytest.mark.parametrize("surveys", [1, 2])
 @pytest.mark.parametrize("gradient", [0.0, 0.1])
 @pytest.mark.parametrize("field", [None, DeflectionField(5 * ARCSEC, 3e3, math.pi / 4, "P0")])

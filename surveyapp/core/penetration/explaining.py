@@ -8,7 +8,7 @@ miss back within the declared errors. Everything else stays not separable.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,7 +16,8 @@ import numpy as np
 from surveyapp.core.penetration.covariance import estimator, heights_known
 from surveyapp.core.penetration.evaluation import closure_test, covariance3, one_wall
 from surveyapp.core.penetration.mine import PPM, Mine
-from surveyapp.core.penetration.rows import HeadingRows, RowKind
+from surveyapp.core.penetration.rows import HeadingRows, Row, RowKind
+from surveyapp.domain.observations import Observation
 from surveyapp.domain.penetration import MeasuredMiss
 from surveyapp.domain.penetration_result import MissTest, ResidualVerdict
 from surveyapp_models.angles import ARCSEC
@@ -33,10 +34,13 @@ class NamedEffect:
     effect : str
         gyro_constant_shift [arcsec], lateral_refraction [arcsec/100 m], distance_scale [ppm].
     value : float
+    sides : tuple of (at, to, instrument) or None
+        Gyro sides that a shift of the constant has turned; None: all of the heading.
     """
 
     effect: str
     value: float
+    sides: tuple[tuple[str, str, str], ...] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +109,48 @@ def separated(heading: HeadingRows, effect: str) -> bool:
     return False
 
 
+def shifted_sides(
+    effect: str, grid: Mapping[str, float], observed: Sequence[Observation]
+) -> tuple[tuple[str, str, str], ...] | None:
+    """Gyro sides from the first shifted one of its instrument on; None where none is named.
+
+    The diagnosis numbers gyro sides instrument by instrument, in the order of the book.
+
+    Parameters
+    ----------
+    effect : str
+    grid : mapping
+        What the diagnosis has scanned, with its ``first_side``.
+    observed : sequence of Observation
+        Gyro sides of the network, in its order.
+    """
+    first = grid.get("first_side")
+    if effect != "gyro_constant_shift" or first is None:
+        return None
+    names = dict.fromkeys(row.constant for row in observed)
+    ordered = [row for name in names for row in observed if row.constant == name]
+    place = round(first) - 1
+    if not 0 <= place < len(ordered):
+        return None
+    instrument = ordered[place].constant
+    return tuple(
+        (row.at, row.to, row.constant) for row in ordered[place:] if row.constant == instrument
+    )
+
+
+def _turned(heading: HeadingRows, effect: NamedEffect) -> Floats:
+    """1 for each row of a heading that a shift of the constant has turned, else 0."""
+    ends = heading.route.heading.sides
+
+    def turned(row: Row) -> bool:
+        if row.kind is not RowKind.GYRO or effect.sides is None:
+            return row.kind is RowKind.GYRO
+        at, to = ends[row.side] if row.forward else ends[row.side][::-1]
+        return (at, to, row.instrument) in effect.sides
+
+    return np.array([turned(row) for row in heading.rows], dtype=np.float64)
+
+
 def movement(mine: Mine, number: int, effect: NamedEffect) -> Floats:
     """What an effect in one heading does to the miss: right and along [m]."""
     if effect.effect == "distance_scale":
@@ -114,7 +160,7 @@ def movement(mine: Mine, number: int, effect: NamedEffect) -> Floats:
     rows, gain = mine.arrays, estimator(mine).gain
     own = rows.heading == number
     if effect.effect == "gyro_constant_shift":
-        moved = gain[own & (rows.kind == RowKind.GYRO)].sum(axis=0)
+        moved = _turned(mine.headings[number], effect) @ gain[own]
         return np.asarray(effect.value * ARCSEC * moved, dtype=np.float64)
     if effect.effect == "lateral_refraction":
         walled = mine if any(mine.plan.headings[number].wall_signs()) else one_wall(mine)

@@ -10,7 +10,7 @@ do not depend on who computes which block.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -75,12 +75,15 @@ class Task:
         return min(BLOCK, self.runs - block * BLOCK)
 
 
-def simulate_block(task: Task, block: int) -> Floats:
-    """Misses of one block of simulated surveys, shape (runs, 3) [m]: right, along, up."""
+def simulate_block(task: Task, block: int, solver: Floats | None = None) -> Floats:
+    """Misses of one block of simulated surveys, shape (runs, 3) [m]: right, along, up.
+
+    ``solver`` is that of ``adjuster`` where somebody has it already: it is the same for all blocks.
+    """
     stream = np.random.SeedSequence(task.seed, spawn_key=(block,))
     draw = Draw(np.random.default_rng(stream), task.size(block))
     mine, surveys = task.mine, task.mine.plan.independent_surveys
-    solver = adjuster(mine)
+    solver = adjuster(mine) if solver is None else solver
     shared = shared_errors(
         mine, draw, gradient=task.undeclared.gradient, shift=task.undeclared.shift
     )
@@ -161,6 +164,12 @@ def summary(blocks: Iterable[Floats], task: Task) -> SimulatedSigma:
     return SimulatedSigma(MissSigma(float(sigma[0]), float(sigma[1]), up), count, task.seed)
 
 
+def simulate_blocks(task: Task, blocks: Sequence[int]) -> Floats:
+    """Misses of several blocks, shape (runs, 3) [m]: one task of an executor."""
+    solver = adjuster(task.mine)
+    return np.concatenate([simulate_block(task, block, solver) for block in blocks])
+
+
 def simulate_all(task: Task) -> Floats:
     """Misses of all runs in this process, shape (runs, 3) [m]."""
-    return np.concatenate([simulate_block(task, block) for block in range(task.blocks)])
+    return simulate_blocks(task, range(task.blocks))

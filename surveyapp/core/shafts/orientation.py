@@ -10,7 +10,7 @@ Source: physics.md section 6; penetration.md section 6.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,7 +39,7 @@ from surveyapp.domain.shaft_result import (
     TriangleCheck,
     WireRest,
 )
-from surveyapp.errors import Problem, SurveyError
+from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp_models.angles import wrap_pi, wrap_two_pi
 from surveyapp_models.arrays import Floats
 
@@ -178,6 +178,7 @@ def _gyro(
     shaft, net = join.shaft, join.underground
     at, to = shaft.orient
     values, slopes, own = [by_wires.value], [lower], [by_wires.sigma**2 - float(lower @ lower)]
+    _refuse_unknown_sides(shaft, net.places)
     for row in shaft.of_kind(K.AZIMUTH, "underground"):
         carried = net.per_row(
             lambda p, row=row: bearing(p, at, to) - bearing(p, row.at, row.to),  # type: ignore[misc]
@@ -191,6 +192,24 @@ def _gyro(
     covariance = matrix @ matrix.T + np.diag(own)
     relative = np.array([wrap_pi(value - values[0]) for value in values])
     return joined(values[0], relative, covariance)
+
+
+def _refuse_unknown_sides(shaft: Shaft, places: Collection[str]) -> None:
+    """A gyro side is carried between points that the angles and distances underground place."""
+    problems = [
+        Problem(
+            "a gyro side to a point that no other row places",
+            f"[[shaft]] {shaft.id}, azimuth {row.at}-{row.to}",
+            name,
+            "a point of the angles and distances underground",
+            nearest_names(name, places),
+        )
+        for row in shaft.of_kind(K.AZIMUTH, "underground")
+        for name in (row.at, row.to)
+        if name not in places
+    ]
+    if problems:
+        raise SurveyError(problems)
 
 
 def _triangles(shaft: Shaft) -> list[TriangleCheck]:

@@ -12,6 +12,7 @@ from typing import Final, Literal, cast
 from surveyapp.domain.shaft import ShaftRow, ShaftRowKind
 from surveyapp.errors import Problem, nearest_names
 from surveyapp.io.files import shown
+from surveyapp.io.measures import MEASURES, is_measure
 from surveyapp_models.angles import ARCSEC, AngleError, AngleUnit, parse_angle
 
 COLUMNS: Final = (
@@ -63,8 +64,11 @@ class _Row:
             value = float(text)
         except ValueError:
             value = math.nan
-        if math.isfinite(value):
+        if is_measure(value):
             return value
+        if math.isfinite(value):
+            self.problem(f"{key} is beyond all measures", text, MEASURES)
+            return None
         hint = "decimals are written with a point" if "," in text else ""
         self.problem(f"{key} is no number", text, "a number", hint)
         return None

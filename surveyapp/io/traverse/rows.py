@@ -14,6 +14,7 @@ from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.traverse_book import TraverseRow
 from surveyapp.errors import Problem, nearest_names
 from surveyapp.io.files import MAX_COLUMNS, shown, too_many_columns, visible
+from surveyapp.io.measures import MEASURES, is_measure
 from surveyapp_models.angles import ARCSEC, AngleError, AngleUnit, parse_angle
 
 COLUMNS: Final = (
@@ -82,8 +83,11 @@ class _Row:
             value = float(text)
         except ValueError:
             value = math.nan
-        if math.isfinite(value):
+        if is_measure(value):
             return value
+        if math.isfinite(value):
+            self.problem(f"{key} is beyond all measures", text, MEASURES)
+            return None
         hint = "decimals are written with a point" if "," in text else ""
         self.problem(f"{key} is no number", text, "a number", hint)
         return None
@@ -140,7 +144,7 @@ class _Row:
         if value is None:
             return None
         sigma = math.hypot(mm * MM, ppm * 1e-6 * value)
-        if mm < 0.0 or ppm < 0.0 or sigma <= 0.0 or not math.isfinite(sigma):
+        if mm < 0.0 or ppm < 0.0 or sigma <= 0.0 or not is_measure(sigma):
             self.problem("the sigma is not positive", text, "numbers from 0 on, not both 0")
             return None
         return sigma
