@@ -84,7 +84,7 @@ def test_forward_and_back_of_two_instruments_are_all_compared(tmp_path: Path) ->
     assert set(values) == {
         "A-B (G1)",
         "A-B (G1 there, G2 back)",
-        "A-B (G2 there, G1 back)",
+        "B-A (G1 there, G2 back)",
         "A-B (G2)",
     }
     shift = 10 - values["A-B (G1)"]
