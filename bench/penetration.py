@@ -121,7 +121,7 @@ def speed(executor: Executor | None) -> Iterator[str]:
     began = time.perf_counter()
     simulate_all(Task(mine, 1, 10_000))
     yield f"10,000 surveys of the sample, one process: {time.perf_counter() - began:.2f} s"
-    yield from workers(Task(mine, 1, 200_000), "surveys of the sample", executor)
+    yield from workers(Task(mine, 1, 800_000), "surveys of the sample", executor)
     large = straight(400, range(0, 400, 20))
     yield from workers(Task(large, 1, 50_000), "surveys of a mine of 400 sides", executor)
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
