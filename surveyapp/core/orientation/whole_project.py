@@ -351,19 +351,24 @@ def _geometries(
     positions: Mapping[str, Position],
     field: DeflectionField,
 ) -> dict[tuple[str, str], LineGeometry]:
-    """Geometry of every sighted line by (session, target)."""
+    """Geometry of every sighted line by (session, target); sessions alike have the same one."""
     result = {}
+    known: dict[tuple[object, ...], LineGeometry] = {}
     for item in reduced:
         session = item.session
+        stated = stated_convergence(session, stations[session.station])
         for target in item.targets:
             zenith = zenith_angle(session.book, target.target, default_target=session.target)
-            result[session.id, target.target] = line_geometry(
-                stations[session.station],
-                stations[target.target],
-                grid=grid,
-                positions=positions,
-                zenith=zenith,
-                stated=stated_convergence(session, stations[session.station]),
-                deflection_sources=field.sources[session.station],
-            )
+            key = (session.station, target.target, zenith, stated)
+            if key not in known:
+                known[key] = line_geometry(
+                    stations[session.station],
+                    stations[target.target],
+                    grid=grid,
+                    positions=positions,
+                    zenith=zenith,
+                    stated=stated,
+                    deflection_sources=field.sources[session.station],
+                )
+            result[session.id, target.target] = known[key]
     return result

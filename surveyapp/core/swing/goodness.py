@@ -92,15 +92,16 @@ class FitTest:
 
 def lag1_correlation(residuals: Floats) -> Floats:
     """Lag-1 correlation of each row of residuals, shape (..., n); 0 where all are zero."""
-    squares = np.sum(residuals * residuals, axis=-1)
-    products = np.sum(residuals[..., 1:] * residuals[..., :-1], axis=-1)
+    squares = np.einsum("...i,...i->...", residuals, residuals)
+    products = np.einsum("...i,...i->...", residuals[..., 1:], residuals[..., :-1])
     return np.asarray(np.divide(products, squares, out=np.zeros_like(squares), where=squares > 0))
 
 
 def run_count(residuals: Floats) -> Floats:
     """Number of runs of equal sign in each row of residuals, shape (..., n)."""
     signs = residuals >= 0.0
-    return np.asarray(1.0 + np.sum(signs[..., 1:] != signs[..., :-1], axis=-1), dtype=np.float64)
+    changes = np.count_nonzero(signs[..., 1:] != signs[..., :-1], axis=-1)
+    return np.asarray(1.0 + changes, dtype=np.float64)
 
 
 def goodness_of_fit(
