@@ -157,9 +157,12 @@ def batch(
     SurveyError
         If the output cannot be written. Projects that fail do not raise.
     """
+    from surveyapp.io.outputs import check_output
+
     counts = {"good": 0, "limit": 0, "failed": 0}
     failures: list[tuple[str, str]] = []
     path = Path(output)
+    check_output(path)
     try:
         with path.open("w", encoding="utf-8", newline="") as stream:
             stream.write(_line(BATCH_COLUMNS))

@@ -125,7 +125,7 @@ def export_survey(
     from surveyapp.api.network import network
     from surveyapp.io.exporters.catalogue import EXPORTERS, Stamp
     from surveyapp.io.importing.writing import sha256
-    from surveyapp.io.tomltext import atomic_write
+    from surveyapp.io.outputs import write_output
     from surveyapp.workflows.exporting import exported_survey
 
     exporter = next((item for item in EXPORTERS if item.id == form), None)
@@ -136,6 +136,6 @@ def export_survey(
     survey = exported_survey(project, network(project) if project.traverses else None)
     written = exporter.write(survey, Stamp(SOFTWARE, now()))
     data = written.text.encode("utf-8")
-    atomic_write(Path(output), data)
+    write_output(Path(output), data)
     warnings = (*survey.warnings, *written.warnings)
     return ExportResult(form, str(output), written.items, sha256(data), warnings)

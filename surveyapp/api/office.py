@@ -209,12 +209,12 @@ def _write_document(
     font: Folder | None,
     advance: Advance = silent,
 ) -> ReportResult:
-    from surveyapp.io.tomltext import atomic_write
+    from surveyapp.io.outputs import write_output
     from surveyapp.report.pdf import write_pdf
     from surveyapp.report.written import ReportResult
 
     written = write_pdf(document, face=None if font is None else Path(font), advance=advance)
-    atomic_write(output, written.data)
+    write_output(output, written.data)
     digest = hashlib.sha256(written.data).hexdigest()
     return ReportResult(str(output), written.pages, sections, digest, written.missing)
 
@@ -307,9 +307,9 @@ def export_json(source: Source, output: Folder) -> ExportResult:
 
 def _write_export(name: str, data: bytes, output: Path, items: int) -> ExportResult:
     from surveyapp.domain.filing import ExportResult
-    from surveyapp.io.tomltext import atomic_write
+    from surveyapp.io.outputs import write_output
 
-    atomic_write(output, data)
+    write_output(output, data)
     return ExportResult(name, str(output), items, hashlib.sha256(data).hexdigest())
 
 

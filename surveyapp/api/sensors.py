@@ -295,7 +295,7 @@ def filter_log(
 
         times = np.arange(raw.size) / result.before.rate_hz
         columns = {"time_s": times, result.column: raw, f"filtered_{result.column}": filtered}
-        write_columns(Path(out), columns)
+        write_columns(Path(out), columns, inputs=(opened.file.request.path,))
     return result
 
 
@@ -339,10 +339,12 @@ def compensate(
     import math
 
     from surveyapp.core.sensors.compensation import Declination
+    from surveyapp.io.outputs import check_output
     from surveyapp.workflows.calibrating.compass import declination_of
     from surveyapp.workflows.compensating import compensate_log, write_compensated
 
     opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
+    check_output(Path(out), (opened.file.request.path, Path(card)))
     added = None
     if declination is not None:
         value, sigma = declination_of(declination)

@@ -29,7 +29,7 @@ def write_sheets(source: Source, output: Folder) -> SheetsResult:
     SurveyError
         If the project cannot be used or a file not be written.
     """
-    from surveyapp.io.tomltext import atomic_write
+    from surveyapp.io.outputs import write_output
     from surveyapp.report.sheets import gyro_sheet, sheet_csv, sheet_html, traverse_sheet
 
     found = compute(source)
@@ -50,6 +50,6 @@ def write_sheets(source: Source, output: Folder) -> SheetsResult:
         page = sheet_html(sheet, project=found.project.name, software=SOFTWARE)
         for ending, text in ((".csv", sheet_csv(sheet)), (".html", page)):
             path = base.with_name(f"{base.stem}-{name}{ending}")
-            atomic_write(path, text.encode("utf-8"))
+            write_output(path, text.encode("utf-8"))
             paths.append(str(path))
     return SheetsResult(tuple(paths), tuple(problems))

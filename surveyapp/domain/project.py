@@ -17,6 +17,7 @@ from surveyapp.domain.penetration import PenetrationTable
 from surveyapp.domain.readings import FieldBook
 from surveyapp.domain.rulebook import RuleBook
 from surveyapp.domain.sensor_entry import SensorLogEntry
+from surveyapp.domain.session_sensors import LogLevelling, PreOrientation
 from surveyapp.domain.shaft import ShaftTables
 from surveyapp.domain.subject import Subject
 from surveyapp.domain.traverse_book import Traverse
@@ -155,6 +156,9 @@ class OrientationSession:
         The instrument was centred anew for this session: its centring error is its own.
     refraction_sigma : float or None
         Lateral refraction of its sights, along a wall or over a shaft [rad].
+    levelling : LogLevelling or None
+        Tilt of its standing axis from a calibrated log.
+    pre_orientation : PreOrientation or None
     override : tuple of (str, object)
         Further keys of the table, kept for those who know them.
     """
@@ -181,6 +185,8 @@ class OrientationSession:
     convergence: StatedConvergence | None = None
     recentred: bool = False
     refraction_sigma: float | None = None
+    levelling: LogLevelling | None = None
+    pre_orientation: PreOrientation | None = None
     override: tuple[tuple[str, object], ...] = ()
 
 

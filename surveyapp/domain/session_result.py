@@ -7,6 +7,7 @@ from typing import Any
 
 from surveyapp.domain.angle_result import AngleResult, finite, to_arcsec, to_degrees
 from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.session_sensors import LogLevelling, PreOrientation
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +113,8 @@ class SessionResult:
     schuler_means: tuple[float, ...] = ()
     quantities: tuple[tuple[str, float, str], ...] = ()
     warnings: tuple[ResultWarning, ...] = ()
+    levelling: LogLevelling | None = None
+    pre_orientation: PreOrientation | None = None
 
     @property
     def main(self) -> TargetResult | None:
@@ -149,6 +152,10 @@ class SessionResult:
             "tape_zero_correction_arcsec": to_arcsec(self.tape_zero_correction),
             "levelling_correction_arcsec": to_arcsec(
                 None if main is None else main.levelling_correction
+            ),
+            "levelling": None if self.levelling is None else self.levelling.to_dict(),
+            "pre_orientation": (
+                None if self.pre_orientation is None else self.pre_orientation.to_dict()
             ),
             "tape_zero": None if self.tape_zero is None else self.tape_zero.to_dict(),
             "schuler_means_deg": [to_degrees(mean) for mean in self.schuler_means],

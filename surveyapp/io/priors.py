@@ -15,9 +15,10 @@ from typing import Any, Final
 from surveyapp.domain.instrument import Instrument
 from surveyapp.domain.priors import AMPLITUDES, BASE, UNITS, Priors
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.io.outputs import write_output
 from surveyapp.io.project_files import ProjectFiles
 from surveyapp.io.tables import Table
-from surveyapp.io.tomltext import atomic_write, toml_value
+from surveyapp.io.tomltext import toml_value
 
 FORMAT: Final = 1
 KIND: Final = "priors of the instrument constant"
@@ -48,7 +49,7 @@ def priors_text(priors: Priors, *, instrument: str, serial: str, software: str) 
 def write_priors(path: Path, text: str) -> None:
     """Write the file, whole or not at all."""
     try:
-        atomic_write(path, text.encode("utf-8"))
+        write_output(path, text.encode("utf-8"), named=False)
     except OSError as error:
         reason = error.strerror or str(error)
         raise SurveyError(

@@ -38,6 +38,7 @@ from surveyapp.io.project_tables import (
 from surveyapp.io.rulebooks import read_rule_book
 from surveyapp.io.sensor_logs.tables import read_sensor_logs
 from surveyapp.io.session_books import read_sessions
+from surveyapp.io.session_sensors import with_sensors
 from surveyapp.io.shafts.table import read_shaft_tables
 from surveyapp.io.tables import Findings, Table, parse_toml
 from surveyapp.io.traverse.book import read_traverses
@@ -205,7 +206,8 @@ def _read_tables(top: _Top, repair: bool | None) -> Project:
         with_priors(instrument, card, files)
         for instrument, card in zip(instruments, cards, strict=True)
     ]
-    sessions = read_sessions(top.tables("orientation"), files, names, repair=repair)
+    orientations = top.tables("orientation")
+    sessions = read_sessions(orientations, files, names, repair=repair)
     for instrument, card in zip(instruments, cards, strict=True):
         names.check_choice(card, instrument.constant_choice or "pooled", instrument.id)
         if instrument.card.id and is_path(str(card.get("card"))):
@@ -216,6 +218,7 @@ def _read_tables(top: _Top, repair: bool | None) -> Project:
     crs = table.text("crs", multiline=True)
     refuse_two_convergences(stations, sessions, files.findings)
     sensor_logs = read_sensor_logs(table, top.lines.get("sensor_log", ()))
+    sessions = with_sensors(sessions, orientations, files, sensor_logs, unit=unit)
     stations, length = with_regional_deflection(table, stations)
     project = Project(
         name=table.text("name") or files.path.resolve().name,

@@ -252,6 +252,8 @@ def read_session(table: Table, names: Names) -> OrientationSession:
     sigma = table.number("azimuth_known_sigma_arcsec", low=0.0, high=36000.0)
     if sigma is not None and azimuth is None and purpose == "survey":
         table.problem("azimuth_known_sigma_arcsec stands in a survey session", "", "a calibration")
+    for key in ("levelling", "pre_orientation"):  # io.session_sensors reads them
+        table.get(key)
     resolution = table.number("resolution_arcsec", high=36000.0, positive=True)
     session = OrientationSession(
         id=identity,

@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import Final
 
+import numpy as np
+
 from surveyapp.core.sensors.rate.motion_log import (
     NEEDED,
     OPTIONAL,
@@ -13,9 +15,13 @@ from surveyapp.core.sensors.rate.motion_log import (
     judge_motion,
 )
 from surveyapp.domain.motion import Motion
+from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
+
+LONGEST_PATH_M: Final = 1e6
+"""Of the odometer in one record."""
 
 SMALLEST_ALARM: Final = 1e-9
 """Of a rest; quantiles nearer to 1 are not to be had in a float."""
@@ -36,9 +42,25 @@ def find_motion(
         log = file.read(Need(columns=NEEDED, varying=NEEDED, optional=OPTIONAL), progress=progress)
     except SurveyError as error:
         raise SurveyError([*problems, *error.problems]) from None
+    if asked.path or asked.snap:
+        problems += _odometer_problems(log)
     if problems:
         raise SurveyError(problems)
     return judge_motion(log, asked)
+
+
+def _odometer_problems(log: SensorLog) -> list[Problem]:
+    """A path of half-metre steps needs a reading in each row, and a length that a drive has."""
+    distance = log.columns.get("odometer_m")
+    if distance is None or not distance.size:
+        return []
+    if not np.isfinite(distance).all():
+        what, expected = "odometer_m has rows without a reading", "a number in each row"
+        return [Problem(what, log.path, f"{np.count_nonzero(np.isnan(distance))} rows", expected)]
+    if np.ptp(distance) > LONGEST_PATH_M:
+        found, expected = f"{np.ptp(distance):g} m", f"{LONGEST_PATH_M:g} m or less"
+        return [Problem("no vehicle drives as far in one record", log.path, found, expected)]
+    return []
 
 
 def motion_options(options: Mapping[str, object], problems: list[Problem]) -> MotionOptions:

@@ -19,6 +19,7 @@ from surveyapp.domain.sensor_log import NUMBER_COLUMNS, SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
+from surveyapp.workflows.noise import FEWEST
 from surveyapp_models.rate.triad import magnetic_bias
 
 GYROS = ("gyr_x_rad_s", "gyr_y_rad_s", "gyr_z_rad_s")
@@ -89,9 +90,13 @@ def _axes(file: LogFile, other: LogFile, column: str) -> list[str]:
 def _read(file: LogFile, columns: list[str], progress: Progress | None) -> SensorLog:
     known = tuple(c for c in columns if c in NUMBER_COLUMNS)
     others = tuple(c for c in columns if c not in NUMBER_COLUMNS)
-    return file.read(
+    log = file.read(
         Need(columns=known, varying=tuple(columns), optional=(), others=others), progress=progress
     )
+    if log.size < FEWEST:
+        found, expected = f"{log.size} rows", f"{FEWEST} rows or more"
+        raise SurveyError(Problem("the log is too short", log.path, found, expected))
+    return log
 
 
 def _magnetic_problems(magnetic: MagneticOptions) -> list[Problem]:

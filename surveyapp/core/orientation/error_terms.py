@@ -16,7 +16,7 @@ from typing import Final
 
 from surveyapp.core.geodesy import Position
 from surveyapp.core.orientation.lines import LineGeometry
-from surveyapp.core.swing.levelling import tilt_of
+from surveyapp.core.swing.levelling import session_tilt
 from surveyapp.core.swing.session import ReducedSession, TargetReduction
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import InstrumentCard
@@ -61,9 +61,9 @@ def error_terms(item: ReducedSession, target: TargetReduction, at: Circumstance)
 
     zenith = at.geometry.zenith
     level = LEVEL_SIGMA if sigma.level is None else sigma.level
-    tilt = tilt_of(session.book, tape_zero=False)
+    tilt = session_tilt(session, tape_zero=False)
     if tilt is not None:  # the readings tell the tilt; what remains is their own sigma
-        level = max(tilt.sigma, sigma.level or 0.0)
+        level = tilt.sigma if tilt.logged else max(tilt.sigma, sigma.level or 0.0)
     # tilt across the sight times cot z: both faces have it alike
     add("levelling", session.id, level * abs(math.cos(zenith) / math.sin(zenith)))
     add("graduation", session.id, math.sqrt(2.0) * (sigma.graduation or 0.0))

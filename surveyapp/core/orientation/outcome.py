@@ -136,6 +136,8 @@ def session_result(item: ReducedSession) -> SessionResult:
         schuler_means=reduction.schuler_means,
         quantities=reduction.quantities,
         warnings=item.warnings,
+        levelling=session.levelling,
+        pre_orientation=session.pre_orientation,
     )
 
 

@@ -55,12 +55,15 @@ class Tilt:
         Of each [rad]: from their scatter, not below rounding.
     count : int
         Readings of the axis that was read less often.
+    logged : bool
+        From a calibrated log: its sigma is the whole one.
     """
 
     along: float
     across: float
     sigma: float
     count: int
+    logged: bool = False
 
     def across_direction(self, direction: float) -> float:
         """v_T across a direction [rad], clockwise from the session's target."""
@@ -111,6 +114,24 @@ def tilt_of(book: FieldBook, *, tape_zero: bool) -> Tilt | None:
         sigmas.append(max(scatter, rounding))
     along, across = (math.fsum(own) / len(own) for own in values)
     return Tilt(along, across, max(sigmas), min(len(own) for own in values))
+
+
+def session_tilt(session: OrientationSession, *, tape_zero: bool) -> Tilt | None:
+    """Tilt from the session's calibrated log, else from its level rows.
+
+    Parameters
+    ----------
+    session : OrientationSession
+    tape_zero : bool
+        During the tape zero, or during everything else.
+    """
+    log = session.levelling
+    if log is not None and log.run is not None:
+        block = log.tape_zero if tape_zero else log.run
+        if block is None:
+            return None
+        return Tilt(block.along, block.across, block.sigma, block.samples, logged=True)
+    return tilt_of(session.book, tape_zero=tape_zero)
 
 
 def steepness(
@@ -169,7 +190,7 @@ def tilt_change_across_north(session: OrientationSession, north: float) -> float
     float or None
         None unless both blocks have both levels and the target was sighted.
     """
-    run, zero = (tilt_of(session.book, tape_zero=value) for value in (False, True))
+    run, zero = (session_tilt(session, tape_zero=value) for value in (False, True))
     if run is None or zero is None:
         return None
     sights = reduce_sights(session.book, session.target or "", default_target=session.target)

@@ -12,7 +12,7 @@ from surveyapp.core.swing.automatic import azimuth_targets, reduce_automatic
 from surveyapp.core.swing.clamped_north import reduce_nontracking
 from surveyapp.core.swing.classical_transit import is_classical, reduce_classical
 from surveyapp.core.swing.goodness import Judge
-from surveyapp.core.swing.levelling import Tilt, sight_correction, steepness, tilt_of
+from surveyapp.core.swing.levelling import Tilt, session_tilt, sight_correction, steepness
 from surveyapp.core.swing.reduction import Reduction
 from surveyapp.core.swing.run_model import RunModel
 from surveyapp.core.swing.sights import (
@@ -278,7 +278,7 @@ def reduce_targets(
                     own = own.with_part(Source("eccentricity", session.id), spread)
             results.append(TargetReduction(target, None, None, correction, own))
         return tuple(results)
-    tilt = tilt_of(session.book, tape_zero=False)
+    tilt = session_tilt(session, tape_zero=False)
     for target, item in sights.items():
         correction, spread = eccentric_of(session, target, item.line_reading, stations)
         level = None

@@ -24,6 +24,9 @@ CLIPPED_ROWS: Final = 5
 CLIPPED_RATIO: Final = 3.0
 """At the end of its range a sensor stays: that often, and that much more than at the next value."""
 
+LARGEST: Final = 1e20
+"""No sensor and no clock gives more in any unit; squares above would leave the range of a float."""
+
 _PIECE: Final = 1 << 20
 
 
@@ -49,11 +52,13 @@ def pieces(values: Array) -> list[Array]:
     return [values[i : i + _PIECE] for i in range(0, values.size, _PIECE)]
 
 
-def not_finite(name: str, values: Array, *, where: str, first_row: int) -> list[Problem]:
-    """NaN, infinite or empty cells of a needed column."""
+def not_finite(
+    name: str, values: Array, *, where: str, first_row: int, blanks: bool = False
+) -> list[Problem]:
+    """NaN, infinite, impossibly large or empty cells; ``blanks`` are allowed in other columns."""
     count, first = 0, None
     for number, piece in enumerate(pieces(values)):
-        bad = np.flatnonzero(~np.isfinite(piece))
+        bad = np.flatnonzero(~((np.abs(piece) <= LARGEST) | (blanks & np.isnan(piece))))
         count += bad.size
         if first is None and bad.size:
             first = number * _PIECE + int(bad[0])
@@ -64,7 +69,7 @@ def not_finite(name: str, values: Array, *, where: str, first_row: int) -> list[
             f"{name} is not a number in {count} {'row' if count == 1 else 'rows'}",
             f"{where}, line {first_row + first}",
             str(values[first]) if not np.isnan(values[first]) else "NaN or an empty cell",
-            "a finite number in each row",
+            "a number that a sensor can give, in each row",
             "cut the log where the sensor was silent, or leave these rows out",
         )
     ]

@@ -203,8 +203,10 @@ class LogFile:
         problems: list[Problem] = []
         for name, values in columns.items():
             timed = name == "time_s" and need.timed != "no"
-            if name in need.columns or name in need.others or timed:
-                problems += checks.not_finite(name, values, where=where, first_row=first)
+            needed = name in need.columns or name in need.others or timed
+            problems += checks.not_finite(
+                name, values, where=where, first_row=first, blanks=not needed
+            )
             if name in need.varying:
                 problems += checks.constant(name, values, where=where)
         if "time_s" in columns and need.timed != "no":

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from surveyapp.io.tomltext import atomic_write
+from surveyapp.io.outputs import write_output
 from surveyapp_models.arrays import Floats
 
 
@@ -28,13 +28,16 @@ def columns_text(columns: Mapping[str, Sequence[float] | Sequence[str] | Floats]
 
 
 def write_columns(
-    path: Path, columns: Mapping[str, Sequence[float] | Sequence[str] | Floats]
+    path: Path,
+    columns: Mapping[str, Sequence[float] | Sequence[str] | Floats],
+    *,
+    inputs: Iterable[Path] = (),
 ) -> None:
-    """Write a CSV file as a whole.
+    """Write a CSV file as a whole, never over one of the inputs.
 
     Raises
     ------
     SurveyError
-        If the system refuses.
+        If an input or the record of a project stands there, or the system refuses.
     """
-    atomic_write(path, columns_text(columns).encode())
+    write_output(path, columns_text(columns).encode(), inputs=inputs)

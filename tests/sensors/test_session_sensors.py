@@ -1,0 +1,110 @@
+"""Tilt log and compass log of a session: what they move, what they check, what is refused."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from surveyapp import api
+from surveyapp.errors import SurveyError
+from tests.sensors.test_levelling import project
+
+TILT_CARD = """id = "t"
+title = "t"
+kind = "{kind}"
+source = "dividing head"
+valid_to = {valid}
+temperature_c = [0.0, 30.0]
+""" + "".join(
+    f'[parameter.{name}_{axis}]\nvalue = {value}\nsigma = {sigma}\nunit = "1"\n'
+    for axis in ("along", "across")
+    for name, value, sigma in (("zero", 5.0, 0.5), ("scale", 2.0, 0.0), ("cross", 0.0, 0.0))
+)
+COMPASS_CARD = """id = "c"
+title = "c"
+kind = "compass"
+source = "swing"
+[constants]
+heading_sigma_deg = 0.1
+""" + "".join(
+    f'[parameter.deviation_{letter}]\nvalue = 0.0\nsigma = 0.1\nunit = "deg"\n'
+    for letter in "ABCDE"
+)
+
+
+def session(
+    folder: Path, *, valid: str = "2030-01-01", kind: str = "tilt", start: float = 0.0,
+    log: str = "T", temperature: float = 20.0, declination: str = "", card: bool = True,
+) -> Path:  # fmt: skip
+    more = f'levelling = {{ log = "{log}", card = "t.toml" }}\ndate = 2026-05-01\n'
+    more += (
+        f'pre_orientation = {{ log = "C", card = "c.toml"{declination}, circle = "10-00-00" }}\n'
+    )
+    more += '[[sensor_log]]\nid = "T"\nkind = "tilt"\nfile = "t.csv"\n'
+    more += '[[sensor_log]]\nid = "C"\nkind = "compass"\nfile = "c.csv"\n'
+    made = project(folder, [], more=more)
+    book = (made / "s.csv").read_text().splitlines()
+    timed = [line.replace(",,", f",,{60.0 * k}", 1) for k, line in enumerate(book[1:])]
+    (made / "s.csv").write_text("\n".join([book[0], *timed]) + "\n")
+    if card:
+        (made / "t.toml").write_text(TILT_CARD.format(kind=kind, valid=valid))
+    (made / "c.toml").write_text(COMPASS_CARD)
+    # true tilt 12" along, 30" across: the card reads 5 + 2 x true
+    rows = [f"{start + 10.0 * k},29.0,65.0,{temperature}" for k in range(80)]
+    head = "time_s,tilt_along_arcsec,tilt_across_arcsec,temperature_c\n"
+    (made / "t.csv").write_text(head + "\n".join(rows) + "\n")
+    angle = np.radians(0.1)
+    field = f"{20.0 * np.cos(angle)},{20.0 * np.sin(angle)},-40.0,0.0,0.0,9.81"
+    head = "time_s,mag_x_uT,mag_y_uT,mag_z_uT,acc_x_m_s2,acc_y_m_s2,acc_z_m_s2\n"
+    (made / "c.csv").write_text(head + "\n".join(f"{k},{field}" for k in range(20)) + "\n")
+    return made
+
+
+def test_a_calibrated_log_moves_the_line_as_level_rows_do(tmp_path: Path) -> None:
+    found = api.orient(session(tmp_path / "a")).to_dict()
+    own = found["sessions"][0]
+    assert own["levelling"]["across_arcsec"] == pytest.approx(30.0)
+    assert own["levelling"]["along_arcsec"] == pytest.approx(12.0)
+    assert own["levelling_correction_arcsec"] == pytest.approx(10.919, abs=5e-4)
+    assert own["levelling"]["sigma_arcsec"] == pytest.approx(0.5)
+    assert "levelling" in [row["source"] for row in found["lines"][0]["budget"]]
+
+
+@pytest.mark.parametrize("wrong", [{"valid": "2026-01-01"}, {"temperature": 35.0}])
+def test_where_the_card_does_not_hold_nothing_is_applied(
+    tmp_path: Path, wrong: dict[str, str]
+) -> None:
+    folder = session(tmp_path / "a", **wrong)  # type: ignore[arg-type]
+    check = next(c for c in api.check(folder) if c.rule == "levelling.card_valid")
+    assert check.passed is False
+    assert api.orient(folder).to_dict()["sessions"][0]["levelling_correction_arcsec"] is None
+
+
+@pytest.mark.parametrize(
+    ("wrong", "text"),
+    [
+        ({"log": "X"}, "there is no such sensor log"),
+        ({"kind": "rate"}, "the card is of another kind"),
+        ({"start": 1e5}, "no sample during the session"),
+        ({"card": False}, "t.toml"),
+    ],
+)
+def test_what_cannot_be_used_is_told(tmp_path: Path, wrong: dict[str, str], text: str) -> None:
+    with pytest.raises(SurveyError, match=text):
+        api.orient(session(tmp_path / "a", **wrong))  # type: ignore[arg-type]
+
+
+def test_a_model_declination_never_passes_ten_minutes(tmp_path: Path) -> None:
+    folder = session(tmp_path / "a", declination=", declination_deg = 0.0")
+    aimed = api.orient(folder).to_dict()["sessions"][0]["pre_orientation"]
+    assert abs(aimed["offset_deg"]) == pytest.approx(0.1, abs=1e-6)
+    assert 0.31 <= aimed["declination_sigma_deg"] <= 0.5
+    assert aimed["turn_to_deg"] == pytest.approx(10.0 - aimed["offset_deg"])
+    checks = {c.rule: c for c in api.check(folder)}
+    assert checks["pre_orientation.transit"].passed is False
+    assert checks["pre_orientation.tracking"].passed is True
+
+
+def test_a_magnetic_heading_alone_says_nothing_of_north(tmp_path: Path) -> None:
+    checks = {c.rule: c for c in api.check(session(tmp_path / "a"))}
+    assert checks["pre_orientation.tracking"].passed is None
