@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from surveyapp.domain.fieldfile import ReducedSet
+from surveyapp_models.angles import wrap_pi
 
 LEAST_DOF: Final = 6
 """Below this the estimate is worth less than the instrument's data sheet (30 % and worse)."""
@@ -31,18 +32,21 @@ class FacePrecision:
 
 
 def distance_precision(sets: Sequence[ReducedSet]) -> tuple[float, int] | None:
-    """Pooled scatter of the distances of one sight over the sets of its set-up [m], and its dof.
+    """Scatter of a distance (mean of its faces) [m] and its degrees of freedom.
 
+    Pooled over the whole file from the differences of the faces and of the sets of a set-up.
     Neither the zero nor the scale of the instrument is in it, for all of them share both.
     """
     found: dict[tuple[str, str, str], list[float]] = {}
+    total, dof = 0.0, 0
     for item in sets:
+        total += sum(gap**2 for gap in item.length_gaps)
+        dof += len(item.length_gaps)
         for sight in item.sights:
             length = sight.slope_distance if sight.slope_distance is not None else sight.distance
             if length is not None:
                 key = (item.name.rpartition("/")[0], item.at, sight.to)
                 found.setdefault(key, []).append(length)
-    total, dof = 0.0, 0
     for lengths in found.values():
         mean = sum(lengths) / len(lengths)
         total += sum((length - mean) ** 2 for length in lengths)
@@ -51,7 +55,11 @@ def distance_precision(sets: Sequence[ReducedSet]) -> tuple[float, int] | None:
 
 
 def face_precision(sets: Sequence[ReducedSet]) -> FacePrecision | None:
-    """Pooled scatter of the collimation within sets; None with fewer than ``LEAST_DOF``."""
+    """Pooled scatter of directions over the whole file; None with fewer than ``LEAST_DOF``.
+
+    Two sources with the same variance, independent of each other as difference and mean of the
+    faces are: the collimation within sets, and the directions of a set-up between its sets.
+    """
     total, dof = 0.0, 0
     for item in sets:
         count = len(item.spread)
@@ -60,6 +68,40 @@ def face_precision(sets: Sequence[ReducedSet]) -> FacePrecision | None:
         mean = sum(item.spread) / count
         total += sum((value - mean) ** 2 for value in item.spread)
         dof += count - 1
+    between, more = _between_sets(sets)
+    total, dof = total + between, dof + more
     if dof < LEAST_DOF or total <= 0.0:
         return None
     return FacePrecision(math.sqrt(total / dof), dof)
+
+
+def _between_sets(sets: Sequence[ReducedSet]) -> tuple[float, int]:
+    """Sum of squares and degrees of freedom of directions between the sets of one set-up.
+
+    The residuals of set + target (two-way table): (targets - 1) (sets - 1) for sets that hold the
+    same targets in both faces.
+    """
+    tables: dict[tuple[str, str, tuple[str, ...]], list[list[float]]] = {}
+    for item in sets:
+        rays = {s.to: s.direction for s in item.sights if s.faces == 2 and s.direction is not None}
+        if len(rays) < 2 or len(rays) < len(item.sights):
+            continue
+        names = tuple(sorted(rays))
+        first = rays[names[0]]
+        turned = [wrap_pi(rays[name] - first) for name in names]
+        tables.setdefault((item.name.rpartition("/")[0], item.at, names), []).append(turned)
+    total, dof = 0.0, 0
+    for (_, _, names), rows in tables.items():
+        if len(rows) < 2:
+            continue
+        gaps = [[wrap_pi(x - y) for x, y in zip(row, rows[0], strict=True)] for row in rows]
+        by_set = [sum(row) / len(row) for row in gaps]
+        by_target = [sum(column) / len(gaps) for column in zip(*gaps, strict=True)]
+        mean = sum(by_set) / len(by_set)
+        total += sum(
+            (x - own - target + mean) ** 2
+            for row, own in zip(gaps, by_set, strict=True)
+            for x, target in zip(row, by_target, strict=True)
+        )
+        dof += (len(rows) - 1) * (len(names) - 1)
+    return total, dof

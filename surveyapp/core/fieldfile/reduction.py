@@ -77,7 +77,7 @@ def _by_target(made: Round) -> list[list[Pointing]]:
 
 def _reduced(made: Round, *, corrected: bool) -> ReducedSet:
     targets = _by_target(made)
-    collimations, indices = [], []
+    collimations, indices, gaps = [], [], []
     for sights in targets:
         left = next((p for p in sights if p.face == "L"), None)
         right = next((p for p in sights if p.face == "R"), None)
@@ -87,6 +87,8 @@ def _reduced(made: Round, *, corrected: bool) -> ReducedSet:
             collimations.append(0.5 * wrap_pi(left.hz - right.hz + math.pi))
         if left.v is not None and right.v is not None:
             indices.append(0.5 * wrap_pi(left.v + right.v))
+        if left.sd is not None and right.sd is not None:
+            gaps.append(0.5 * (left.sd - right.sd))
     return ReducedSet(
         name=made.name,
         at=made.at,
@@ -94,6 +96,7 @@ def _reduced(made: Round, *, corrected: bool) -> ReducedSet:
         collimation=_mean(collimations),
         index=_mean(indices),
         spread=tuple(collimations),
+        length_gaps=tuple(gaps),
     )
 
 

@@ -151,7 +151,7 @@ def _angle_sigma(
     angle = told
     if angle is None and faces is not None:
         angle = max(round(faces.angle * RHO_ARCSEC, 1), 0.1)
-        text = f'sigma of an angle {angle:g}" from the faces ({faces.dof} degrees of freedom)'
+        text = f'sigma of an angle {angle:g}" from faces and sets ({faces.dof} degrees of freedom)'
         warnings.append(ResultWarning("sigma_from_faces", text))
     elif angle is None:
         angle = ASSUMED_ANGLE_ARCSEC
@@ -171,8 +171,8 @@ def _distance_sigma(
         return distance, [ResultWarning("sigma_assumed", text + " (--sigma-distance tells it)")]
     distance = (max(round(scatter[0] * 1000.0, 1), 0.1), 0.0)
     text = (
-        f"sigma of a distance {distance[0]:g} mm from its sets ({scatter[1]} degrees of freedom): "
-        "zero and scale of the instrument are not in it"
+        f"sigma of a distance {distance[0]:g} mm from faces and sets ({scatter[1]} degrees of "
+        "freedom): zero and scale of the instrument are not in it"
     )
     return distance, [ResultWarning("sigma_from_sets", text)]
 
