@@ -5,7 +5,8 @@ does (it knows no refraction, no deflection and not the true constant), and carr
 the meeting point. That is what the covariance promises to describe.
 
 Runs come in blocks of a fixed size, each with a random stream of its own number, so that results
-do not depend on who computes which block.
+do not depend on who computes which block, beyond the rounding of a product of matrices (a worker
+of one thread adds in another order than one of two).
 """
 
 from __future__ import annotations
