@@ -16,7 +16,7 @@ TOGETHER = 10
 
 
 def simulated_misses(task: Task, executor: Executor | None = None) -> list[Floats]:
-    """Misses of all runs in the order of their blocks: the same, but for rounding, on all machines."""
+    """Misses of all runs in the order of their blocks: the same, but for rounding, everywhere."""
     every = range(task.blocks)
     parts = [every[i : i + TOGETHER] for i in range(0, task.blocks, TOGETHER)]
     return list(spread(partial(simulate_blocks, task), parts, executor))
