@@ -41,6 +41,8 @@ SINGLE_SHARE = 0.75
 PULSE_PHASES = (0.0, 0.25, 0.5, 0.75)
 SHORTEST_PULSE, LONGEST_PULSE = 2, 6
 """Places for which a pulse lasts; a quarter of the record at most."""
+SLOWEST_CYCLES = 1.5
+"""Cycles over the record of the slowest wave."""
 AMPLITUDE_SHAPES = frozenset({"amplitude_step", "amplitude_smooth"})
 """Generic shapes of the amplitude of a swing."""
 
@@ -216,6 +218,8 @@ def _shapes(problem: Case, columns: Mapping[str, Floats], root: Floats) -> list[
         return []
     span = float(np.ptp(position))
     x = 2.0 * (position - position.min()) / span - 1.0
+    if problem.series is not None:
+        return _shapes_of_each(problem, x, root)
     shapes = [
         _shape("quadratic", [np.column_stack([x, x**2])], 2, root),
         _shape("smooth", [np.column_stack([x, x**2, x**3])], 3, root),
@@ -239,10 +243,40 @@ def _shapes(problem: Case, columns: Mapping[str, Floats], root: Floats) -> list[
             steps = [(position > p).astype(np.float64)[:, None] for p in inner]
             if steps:
                 shapes.append(_shape("step", steps, 2, root))
-        shapes.append(_periodic("periodic", x, (1.5, 0.25 * problem.size), root, n=problem.size))
+        shapes.append(
+            _periodic("periodic", x, (SLOWEST_CYCLES, 0.25 * problem.size), root, n=problem.size)
+        )
     if "gross_error" not in taken:
         single = [np.eye(problem.size)[:, i : i + 1] for i in range(problem.size)]
         shapes.append(_shape("outlier", single, 2, root))
+    return shapes
+
+
+def _shapes_of_each(problem: Case, x: Floats, root: Floats) -> list[Candidate]:
+    """Generic shapes of several channels side by side: each channel has coefficients of its own."""
+    series = np.zeros(problem.size) if problem.series is None else problem.series
+    channels = np.unique(series[np.isfinite(series)])
+    masks = (series[:, None] == channels[None, :]).astype(np.float64)
+    count = masks.shape[1]
+
+    def each(columns: Floats) -> Floats:
+        return np.hstack([masks * column[:, None] for column in columns.T])
+
+    shapes = [
+        _shape("quadratic", [each(np.column_stack([x, x**2]))], 2 * count, root),
+        _shape("smooth", [each(np.column_stack([x, x**2, x**3]))], 3 * count, root),
+    ]
+    places = np.unique(problem.position)[1:-2]
+    steps = [each((problem.position > p)[:, None].astype(np.float64)) for p in places]
+    if steps:
+        shapes.append(_shape("step", steps, count + 1, root))
+    longest = 0.25 * problem.size / count
+    if longest > SLOWEST_CYCLES:
+        waves = [
+            each(np.column_stack([np.cos(np.pi * c * x), np.sin(np.pi * c * x)]))
+            for c in np.arange(SLOWEST_CYCLES, longest, 0.25)
+        ]
+        shapes.append(_shape("periodic", waves, 2 * count + 1, root))
     return shapes
 
 
