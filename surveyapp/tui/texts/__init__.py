@@ -7,6 +7,7 @@ Texts with braces are filled by ``str.format``. No text is made anywhere else in
 from surveyapp.tui.texts.common import *
 from surveyapp.tui.texts.exchange import *
 from surveyapp.tui.texts.forms import *
+from surveyapp.tui.texts.habits import *
 from surveyapp.tui.texts.penetration import *
 from surveyapp.tui.texts.project import *
 from surveyapp.tui.texts.result import *
