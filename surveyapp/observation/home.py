@@ -123,6 +123,11 @@ def keep_sound(*, sound: bool) -> Settings:
     return settings
 
 
+def keep_language(language: str) -> bool:
+    """Remember the language of screens and record; False where that is not possible."""
+    return write_settings(replace(read_settings(), language=language))
+
+
 def samples() -> tuple[str, ...]:
     """Names of the measured samples."""
     from surveyapp.io.locations import sample_names
