@@ -118,7 +118,7 @@ def _sensor(options: argparse.Namespace) -> int:
     from surveyapp.errors import Problem, SurveyError
 
     kinds = {log.id: log.kind for log in api.open_project(options.folder).sensor_logs}
-    rate = kinds.get(options.sensor) == "rate"
+    rate = kinds.get(options.sensor) in ("rate", "fog-station")
     others = [options.session, options.campaign, options.traverse, options.confirm]
     others += [] if rate else [options.effects]
     if any(other is not None for other in others) or options.adopt:
@@ -212,5 +212,8 @@ def subjects_text(found: Diagnosed) -> str:
     """What could be diagnosed."""
     if not found.subjects:
         return "\n".join(textwrap.fill(text, 79) for text in found.words)
-    rows = [[f"--{s.keyword}", s.id, str(s.observations)] for s in found.subjects]
+    rows = [
+        [f"--{s.keyword}", s.id, "" if s.observations is None else str(s.observations)]
+        for s in found.subjects
+    ]
     return "Choose one:\n" + table(["option", "", "rows"], rows)

@@ -92,6 +92,7 @@ def _held_stops(log: SensorLog, latitude: float | None) -> tuple[list[RateStop],
             temperature_c=_mean(log, "temperature_c", stop.start, stop.stop),
             field=_field(log, stop.start, stop.stop),
             label=f"stop {k + 1}",
+            rows=(stop.start, stop.stop),
         )
         for k, stop in enumerate(stops)
     ]
@@ -158,6 +159,7 @@ def _table_stops(log: SensorLog, latitude: float | None) -> list[RateStop]:
                     temperature_c=_mean(log, "temperature_c", first, last),
                     field=_field(log, first, last),
                     label=f"{place.position} {'clockwise' if item.rate > 0 else 'back'}",
+                    rows=(first, last),
                 )
             )
     return sorted(found, key=lambda stop: stop.elapsed_s)

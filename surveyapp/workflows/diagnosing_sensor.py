@@ -25,6 +25,7 @@ from surveyapp_models.effects.effect import Effect
 
 CASES: Final = {
     "rate": "rate_case",
+    "fog-station": "fog_case",
 }
 """Kind of a sensor log to the module of ``workflows`` that makes its case."""
 
@@ -33,13 +34,14 @@ CASES: Final = {
 class SensorCase:
     """A case, what a reader must know of it, and further keys of the JSON.
 
-    ``told`` makes keys of what was found.
+    ``finished`` adds what the case alone cannot show, ``told`` makes keys of what was found.
     """
 
     case: Case
     warnings: tuple[ResultWarning, ...] = ()
     extra: dict[str, Any] = field(default_factory=dict)
     told: Callable[[Diagnosis], dict[str, Any]] | None = None
+    finished: Callable[[Diagnosis], Diagnosis] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,6 +110,8 @@ def diagnose_sensor(
     module = importlib.import_module(f"surveyapp.workflows.{CASES[entry.kind]}")
     made: SensorCase = module.case(file, entry, tuple(own))
     diagnosis = run_engine(made.case)
+    if made.finished is not None:
+        diagnosis = made.finished(diagnosis)
     notes = list(made.warnings)
     if project is not None:
         moment = (now or datetime.now(UTC)).isoformat(timespec="seconds")

@@ -20,6 +20,7 @@ from surveyapp_models.effects.rate import bias_ramp as _s_bias_ramp
 from surveyapp_models.effects.rate import flip_error as _s_flip_error
 from surveyapp_models.effects.rate import g_sensitivity as _s_g_sensitivity
 from surveyapp_models.effects.rate import gross_error as _s_gross_error
+from surveyapp_models.effects.rate import interference_line as _s_interference_line
 from surveyapp_models.effects.rate import magnetic_sensitivity as _s_magnetic_sensitivity
 from surveyapp_models.effects.rate import scale_asymmetry as _s_scale_asymmetry
 from surveyapp_models.effects.rate import temperature as _s_temperature
@@ -73,6 +74,7 @@ CATALOGUE: tuple[Effect, ...] = (
     _s_scale_asymmetry.EFFECT,
     _s_flip_error.EFFECT,
     _s_magnetic_sensitivity.EFFECT,
+    _s_interference_line.EFFECT,
     _s_gross_error.EFFECT,
 )
 

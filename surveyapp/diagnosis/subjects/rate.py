@@ -59,6 +59,8 @@ class RateStop:
     field : ndarray, shape (3,), or None
         [T]
     label : str
+    rows : tuple of int, or None
+        First and last row of the log, last exclusive.
     """
 
     output: Floats
@@ -69,6 +71,7 @@ class RateStop:
     temperature_c: float | None = None
     field: Floats | None = None
     label: str = ""
+    rows: tuple[int, int] | None = None
 
 
 @dataclass(frozen=True, slots=True)
