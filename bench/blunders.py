@@ -20,7 +20,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bench.coverage import specification
+from bench.coverage import specification, write_files
 from surveyapp import api
 from surveyapp.core.simulate.project import project_files, simulate_reversal_project
 from surveyapp.core.simulate.specification import SwingMethod
@@ -63,13 +63,6 @@ def clean_projects(count: int, seed: int) -> Iterator[Clean]:
         yield Clean(files, survey.simulated.spec.line_azimuth, fixed)
 
 
-def write(folder: Path, files: Files) -> None:
-    for name, text in files.items():
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
-
-
 @dataclass(frozen=True, slots=True)
 class Outcome:
     """What became of one project."""
@@ -90,7 +83,7 @@ def judged(files: Files, azimuth: float) -> Outcome:
     """Check and orient one project."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        write(folder, files)
+        write_files(folder, files)
         try:
             result = api.orient(folder)
         except SurveyError:
