@@ -9,11 +9,12 @@ import pytest
 from scipy import optimize, stats
 
 from surveyapp.diagnosis import Case, Determination, TurningPoints
-from surveyapp.diagnosis.candidates import Candidate, all_candidates, project
+from surveyapp.diagnosis.candidates import Candidate, all_candidates
 from surveyapp.diagnosis.compare import orthonormal_design, spans
 from surveyapp.diagnosis.fits import Fit, Member, fit_members, with_noise
 from surveyapp.diagnosis.held_out import leave_one_out
 from surveyapp.diagnosis.nulls import Noise, null_of, reductions
+from surveyapp.diagnosis.projection import project
 from surveyapp.diagnosis.run_value import plain_value, value_of
 from surveyapp.diagnosis.stochastic import noise_models
 from surveyapp.diagnosis.subjects.campaign import campaign
@@ -140,7 +141,7 @@ def test_every_noise_model_is_whitened() -> None:
 def test_leave_one_out_is_what_leaving_out_gives() -> None:
     g = np.random.default_rng(8)
     made = [
-        Determination(v * ARCSEC, elapsed_days=float(i), sigma=5.0 * ARCSEC)
+        Determination.at(v * ARCSEC, elapsed_days=float(i), sigma=5.0 * ARCSEC)
         for i, v in enumerate(5.0 * g.standard_normal(12) + np.arange(12))
     ]
     problem = campaign(made)
