@@ -113,7 +113,8 @@ def _temperature(p: Programme, g: np.random.Generator) -> Floats:
 
 
 def _latitude(p: Programme, g: np.random.Generator) -> Floats:
-    return _unit(p, np.tan(p.latitude))
+    x = np.tan(p.latitude)
+    return np.asarray(5.0 * (x - x[: p.n].mean()))
 
 
 def _warm_up(p: Programme, g: np.random.Generator) -> Floats:

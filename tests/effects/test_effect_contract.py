@@ -40,6 +40,20 @@ def columns_of(subject: str) -> Columns:
             "gyro_group": gyro,
             "observation": np.arange(1.0, 31.0),
             "own_sigma": np.where(kind == 0, 0.002, 3e-5),
+            "distance_temperature_c": np.where(kind == 0, generator.normal(15.0, 5.0, 30), 0.0),
+            "prism": np.where(kind == 0, generator.integers(1, 4, 30), 0.0),
+            **{
+                f"by_{role}_{axis}": generator.normal(size=30)
+                for role in ("station", "target", "backsight")
+                for axis in ("east", "north")
+            },
+            "station": np.repeat(np.arange(1.0, 11.0), 3),
+            "target": np.repeat(np.arange(2.0, 12.0), 3),
+            "backsight": np.where(kind == 1, np.repeat(np.arange(0.0, 10.0), 3), 0.0),
+            **{
+                f"{role}_fixed": (np.arange(30) < 4).astype(float)
+                for role in ("station", "target", "backsight")
+            },
         }
     return {
         "elapsed_days": np.cumsum(generator.uniform(1.0, 20.0, 30)),

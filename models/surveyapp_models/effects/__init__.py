@@ -37,9 +37,13 @@ from surveyapp_models.effects.traverse import angle_bias as _t_angle_bias
 from surveyapp_models.effects.traverse import distance_constant as _t_distance_constant
 from surveyapp_models.effects.traverse import distance_cyclic as _t_distance_cyclic
 from surveyapp_models.effects.traverse import distance_scale as _t_distance_scale
+from surveyapp_models.effects.traverse import distance_temperature as _t_distance_temperature
+from surveyapp_models.effects.traverse import fixed_point as _t_fixed_point
 from surveyapp_models.effects.traverse import gross_error as _t_gross_error
 from surveyapp_models.effects.traverse import gyro_constant_shift as _t_gyro_constant_shift
 from surveyapp_models.effects.traverse import lateral_refraction as _t_lateral_refraction
+from surveyapp_models.effects.traverse import prism_constant as _t_prism_constant
+from surveyapp_models.effects.traverse import station_centring as _t_station_centring
 
 CATALOGUE: tuple[Effect, ...] = (
     _r_damping_break.EFFECT,
@@ -66,6 +70,10 @@ CATALOGUE: tuple[Effect, ...] = (
     _t_angle_bias.EFFECT,
     _t_lateral_refraction.EFFECT,
     _t_gyro_constant_shift.EFFECT,
+    _t_distance_temperature.EFFECT,
+    _t_prism_constant.EFFECT,
+    _t_station_centring.EFFECT,
+    _t_fixed_point.EFFECT,
     _t_gross_error.EFFECT,
     _s_g_sensitivity.EFFECT,
     _s_temperature.EFFECT,
