@@ -29,6 +29,7 @@ UNITS = (
     "circle",
     "line",
     "day",
+    "covariate",
     "excess",
     "walk",
     "slow",
@@ -53,6 +54,7 @@ LEARNED: Mapping[str, float] = MappingProxyType(
         "circle": 0.015,
         "line": 0.02,
         "day": 0.05,
+        "covariate": 0.02,
         "excess": 0.01,
         "walk": 0.03,
         "slow": 0.13,
@@ -62,7 +64,8 @@ LEARNED: Mapping[str, float] = MappingProxyType(
     }
 )
 """The causes beside each other, learned by expectation and maximization; those below .03 share what
-is left."""
+is left. ``covariate`` is whatever else a project tells of its determinations (pressure, humidity,
+supply voltage): no archive told it, and it counts as much as the latitude does."""
 DEFAULT_SHARES: Mapping[str, float] = MappingProxyType(
     {
         BASE: CLEAN_SHARE,

@@ -64,6 +64,11 @@ def columns_of(subject: str) -> Columns:
         "line_reading": generator.uniform(0.0, 6.28, 30),
         "north_reading": generator.uniform(0.0, 6.28, 30),
         "running_s": generator.uniform(60.0, 3600.0, 30),
+        "observer": generator.integers(0, 3, 30).astype(float),
+        "pressure_hpa": generator.uniform(950.0, 1030.0, 30),
+        "humidity_percent": generator.uniform(20.0, 95.0, 30),
+        "supply_v": generator.uniform(22.0, 28.0, 30),
+        "transport_h": generator.uniform(0.5, 72.0, 30),
     }
 
 
