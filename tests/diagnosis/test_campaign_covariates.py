@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -22,6 +23,11 @@ N = 45
 SIGMA = 5.0
 
 
+def extra(column: str, value: object) -> dict[str, Any]:
+    """One circumstance by its column."""
+    return {column: value if isinstance(value, str) else float(cast("float", value))}
+
+
 def told(column: str, values: Floats | list[str], shift: Floats, seed: int = 1) -> set[str]:
     """Names in a campaign of 45 determinations whose constant moves by ``shift`` [arcsec]."""
     rng = np.random.default_rng(seed)
@@ -32,7 +38,7 @@ def told(column: str, values: Floats | list[str], shift: Floats, seed: int = 1) 
             sigma=SIGMA * ARCSEC,
             elapsed_days=20000.0 + 3.0 * (i // 3) + 0.05 * (i % 3),
             temperature_c=float(12.0 + 5.0 * rng.standard_normal()),
-            **{column: values[i] if isinstance(values[i], str) else float(values[i])},
+            **extra(column, values[i]),
         )
         for i in range(N)
     ]
