@@ -21,7 +21,8 @@ from numpy.typing import NDArray
 from scipy.stats import beta
 
 from bench._coverage_lines import LINES as FURTHER
-from bench._coverage_lines import Drawn, Line, Quantity
+from bench._coverage_lines import Line, Quantity
+from bench._coverage_sides import Drawn
 from surveyapp import api
 from surveyapp.core.simulate.project import (
     ProjectSession,
@@ -189,21 +190,38 @@ def row_of(name: str, quantity: str, item: Coverage, before: str = "", silent: i
     )
 
 
-def run() -> list[str]:
-    """The whole campaign: 2000 runs a method, 1000 a further line; writes the page."""
+NAMES = {"gyro": "gyro azimuth", "grid": "grid azimuth", "combined": "side, combined"}
+
+
+def method_rows(place: int) -> list[str]:
+    """Rows of the method at a place of ``METHODS``: 2000 runs."""
+    method = METHODS[place]
+    both = zip(
+        ("gyro north", "gyro azimuth"), campaign(method, 2000, 20261122 + place), strict=True
+    )
+    return [row_of(method.replace("_", " "), name, item) for name, item in both]
+
+
+def further_rows(place: int) -> list[str]:
+    """Row of the further line at a place of ``FURTHER``: 1000 runs."""
+    line = FURTHER[place]
+    found, silent = further(line, FURTHER_RUNS, 20261128 + place)
+    return [row_of(line.name, NAMES[line.quantity], found, line.before, silent)]
+
+
+def page(rows: list[str]) -> list[str]:
+    """Write the page; its table."""
     lines = [
         "| line | quantity | runs | holds truth | bias/sigma | sd/sigma "
         '| sigma " | 95 % " | before |',
         "|---|---|---|---|---|---|---|---|---|",
+        *rows,
     ]
-    for seed, method in enumerate(METHODS):
-        for name, item in zip(
-            ("gyro north", "gyro azimuth"), campaign(method, 2000, 20261122 + seed), strict=True
-        ):
-            lines.append(row_of(method.replace("_", " "), name, item))
-    names = {"gyro": "gyro azimuth", "grid": "grid azimuth", "combined": "side, combined"}
-    for seed, line in enumerate(FURTHER):
-        found, silent = further(line, FURTHER_RUNS, 20261128 + seed)
-        lines.append(row_of(line.name, names[line.quantity], found, line.before, silent))
     PAGE.write_text(HEAD + "\n".join(lines) + "\n", encoding="utf-8")
     return lines
+
+
+def run() -> list[str]:
+    """The whole campaign: 2000 runs a method, 1000 a further line; writes the page."""
+    rows = [row for place in range(len(METHODS)) for row in method_rows(place)]
+    return page(rows + [row for place in range(len(FURTHER)) for row in further_rows(place)])
