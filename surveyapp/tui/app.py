@@ -56,7 +56,7 @@ class SurveyApp(App[int]):
     CSS_PATH = "app.tcss"
     TITLE = texts.APP_TITLE
     ENABLE_COMMAND_PALETTE = True
-    HORIZONTAL_BREAKPOINTS = [(0, "-tiny"), (60, "-narrow"), (110, "-wide")]  # noqa: RUF012
+    HORIZONTAL_BREAKPOINTS = [(0, "-tiny"), (70, "-narrow"), (110, "-wide")]  # noqa: RUF012
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("f1", "help", texts.KEY_HELP),
         Binding("f9", "next_theme", texts.KEY_THEME, show=False),

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from surveyapp.tui.texts.common import *
     from surveyapp.tui.texts.exchange import *
     from surveyapp.tui.texts.forms import *
+    from surveyapp.tui.texts.habits import *
     from surveyapp.tui.texts.penetration import *
     from surveyapp.tui.texts.project import *
     from surveyapp.tui.texts.result import *
@@ -26,6 +27,7 @@ _MODULES: Final = (
     "common",
     "exchange",
     "forms",
+    "habits",
     "penetration",
     "project",
     "result",
