@@ -12,7 +12,7 @@ from surveyapp.domain.results import (
     OrientationResult,
     to_degrees,
 )
-from surveyapp.languages import said, said_each
+from surveyapp.languages import joined, said, said_each
 from surveyapp.report.blocks import Block, Heading, Paragraph, Table
 from surveyapp.report.numbers import (
     NOTHING,
@@ -139,33 +139,19 @@ def _steps(
         said("{rounds} rounds: {sessions}", rounds=line.rounds, sessions=sessions),
     )
     choice = line.constant_choice or ""
-    origin = (
-        f"{line.instrument}, {choice}"
-        if choice
-        else said("no constant of this instrument is known")
-    )
+    origin = said("no constant of this instrument is known")
+    if choice:
+        origin = joined(", ", (line.instrument, choice))
     small(said("+ instrument constant"), line.constant, line.constant_sigma, origin)
     if line.true_azimuth is not None:
         strong.add(len(rows))
     result(said("= true azimuth (astronomic)"), line.true_azimuth, "")
-    station = project.station(line.station)
-    known = (
-        said("of the station")
-        if station.deflection.known
-        else said("not known, 0 assumed with its sigma")
-    )
-    small(said("- deflection of the vertical"), line.deflection, None, known)
-    where = (
-        said("{station} in the grid", station=line.station)
-        if project.crs or project.grid
-        else said("as stated")
-    )
+    small(said("- deflection of the vertical"), line.deflection, None, _deflection(project, line))
+    known = project.crs or project.grid
+    where = said("{station} in the grid", station=line.station) if known else said("as stated")
     small(said("- meridian convergence"), line.convergence, None, where)
-    ends = (
-        said("both ends in the grid")
-        if line.arc_to_chord is not None
-        else said("a position is missing")
-    )
+    whole = line.arc_to_chord is not None
+    ends = said("both ends in the grid") if whole else said("a position is missing")
     small(said("- arc-to-chord"), line.arc_to_chord, None, ends)
     if line.grid_azimuth is not None:
         strong.add(len(rows))
@@ -181,3 +167,10 @@ def _steps(
     if line.distance_m is not None:
         rows.append((said("length of the line m"), plain(line.distance_m, 3), "", "", said("grid")))
     return [row if any(row) else (NOTHING,) * 5 for row in rows], frozenset(strong)
+
+
+def _deflection(project: Project, line: LineResult) -> str:
+    """Where the deflection comes from."""
+    if project.station(line.station).deflection.known:
+        return said("of the station")
+    return said("not known, 0 assumed with its sigma")

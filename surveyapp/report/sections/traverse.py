@@ -148,31 +148,30 @@ def _facts(result: AdjustmentResult) -> tuple[tuple[str, str], ...]:
         )
     else:
         facts.append((said("global test"), said("nothing controls this traverse")))
+    return (*facts, *_snooping(result))
+
+
+def _snooping(result: AdjustmentResult) -> list[tuple[str, str]]:
+    """What data snooping accuses, if anything can be tested."""
     snoop = result.snooping
-    if snoop.critical is not None:
-        worst = said("nothing is accused")
-        if snoop.suspects:
-            first = snoop.suspects[0]
-            size = first.estimated_error * (RHO_ARCSEC if first.angular else MM)
-            what = '"' if first.angular else said(" mm")
-            worst = said(
-                "{description} stands off by {size:+.1f}{what}",
-                description=first.description,
-                size=size,
-                what=what,
-            )
-        facts.append(
-            (
-                said("data snooping"),
-                said(
-                    "limit {critical:.2f} ({tests} tests): {worst}",
-                    critical=snoop.critical,
-                    tests=snoop.tests,
-                    worst=worst,
-                ),
-            )
+    if snoop.critical is None:
+        return []
+    worst = said("nothing is accused")
+    if snoop.suspects:
+        first = snoop.suspects[0]
+        worst = said(
+            "{description} stands off by {size:+.1f}{what}",
+            description=first.description,
+            size=first.estimated_error * (RHO_ARCSEC if first.angular else MM),
+            what='"' if first.angular else " mm",
         )
-    return tuple(facts)
+    text = said(
+        "limit {critical:.2f} ({tests} tests): {worst}",
+        critical=snoop.critical,
+        tests=snoop.tests,
+        worst=worst,
+    )
+    return [(said("data snooping"), text)]
 
 
 def _levelling(closures: Sequence[Closure]) -> Table:
