@@ -10,4 +10,5 @@ from surveyapp.tui.texts.forms import *
 from surveyapp.tui.texts.penetration import *
 from surveyapp.tui.texts.project import *
 from surveyapp.tui.texts.result import *
+from surveyapp.tui.texts.sensors import *
 from surveyapp.tui.texts.session import *
