@@ -213,7 +213,7 @@ def campaign_problem(truth: CampaignTruth, seed: int) -> tuple[Case, float]:
     observed = np.round(value + 4.8 * noise if truth.ar1 else value + sigma * noise, 1)
     stated = np.full(n, 4.8) if truth.ar1 else sigma
     made = [
-        Determination(
+        Determination.at(
             float(observed[i]) * ARCSEC,
             sigma=float(stated[i]) * ARCSEC,
             elapsed_days=float(days[i]),

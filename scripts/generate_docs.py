@@ -15,6 +15,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "models")]
 
 PAGE_MODULES: tuple[str, ...] = (
     "pages_api",
+    "pages_campaign",
     "pages_cards",
     "pages_command_line",
     "pages_effects",

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.core.prediction.average import Determinations, predict
+from surveyapp.core.prediction.kernels import COLUMNS_READ
 from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.outlook import HeldOut, PredictionErrors
@@ -23,17 +24,6 @@ Rows = NDArray[np.intp]
 """Numbers of determinations."""
 LEAST_TRAINING = 4
 LEAST_TESTED = 2
-CAMPAIGN_COLUMNS = (
-    "elapsed_days",
-    "block",
-    "line",
-    "observer",
-    "temperature_c",
-    "latitude",
-    "line_reading",
-    "north_reading",
-    "running_s",
-)
 
 
 def is_campaign(case: Case) -> bool:
@@ -56,7 +46,7 @@ def campaign_data(
         Columns of q further visits.
     """
     columns = {}
-    for name in CAMPAIGN_COLUMNS:
+    for name in COLUMNS_READ:
         values = case.columns.get(name)
         if name == "elapsed_days" and values is None:
             values = case.position

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from surveyapp.core.orientation.campaign_columns import COLUMNS
 from surveyapp.core.prediction.members import Members, members
 from surveyapp.core.statistics.mixture import student_cdf
 from surveyapp.diagnosis.action import POSITION, Action, completed
@@ -33,6 +34,8 @@ LEAST = 4
 HORIZON_DAYS = 30.0
 """The later line for which the final interval is told: so many days on, at another line."""
 SUM = 0.95
+UNUSED_NUMBER = 1000.0
+"""Beyond the numbers of the names of a record: a name that none of it has."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,14 +85,12 @@ def _later(columns: Mapping[str, Floats]) -> dict[str, Floats]:
     days = columns["elapsed_days"]
     later = {name: np.array([float(np.mean(values))]) for name, values in columns.items()}
     later["elapsed_days"] = later[POSITION] = np.array([days.max() + HORIZON_DAYS])
-    for name in ("line", "block"):
-        if name in columns:
-            later[name] = np.array([columns[name].max() + 1000.0])
-    if "observer" in columns:
-        later["observer"] = columns["observer"][-1:]
-    for name in ("line_reading", "north_reading"):
-        if name in columns:
-            later[name] = columns[name][-1:]
+    for column in COLUMNS:
+        values = columns.get(column.name)
+        if values is not None and column.later == "last":
+            later[column.name] = values[-1:]
+        elif values is not None and column.later == "new":
+            later[column.name] = np.array([values.max() + UNUSED_NUMBER])
     return later
 
 

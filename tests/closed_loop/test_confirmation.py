@@ -83,7 +83,7 @@ def series(seed: int, effect: str | None) -> Case:
     days = np.arange(n) // 3 * 14.0 + np.arange(n) % 3 * 0.1
     line = np.arange(n) // 3 % 4
     made = [
-        Determination(
+        Determination.at(
             0.0,
             sigma=5.0 * ARCSEC,
             elapsed_days=float(days[i]),

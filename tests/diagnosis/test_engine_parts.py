@@ -140,7 +140,7 @@ def test_every_noise_model_is_whitened() -> None:
 def test_leave_one_out_is_what_leaving_out_gives() -> None:
     g = np.random.default_rng(8)
     made = [
-        Determination(v * ARCSEC, elapsed_days=float(i), sigma=5.0 * ARCSEC)
+        Determination.at(v * ARCSEC, elapsed_days=float(i), sigma=5.0 * ARCSEC)
         for i, v in enumerate(5.0 * g.standard_normal(12) + np.arange(12))
     ]
     problem = campaign(made)

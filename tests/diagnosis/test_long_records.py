@@ -368,7 +368,7 @@ def test_a_long_swing_is_refused() -> None:
 
 def determinations(n: int, lines: list[str], g: np.random.Generator) -> list[Determination]:
     return [
-        Determination(
+        Determination.at(
             5.0 * ARCSEC * g.standard_normal() + (12.0 * ARCSEC if line == "B" else 0.0),
             sigma=(4.0 + 2.0 * g.random()) * ARCSEC,
             elapsed_days=float(i),

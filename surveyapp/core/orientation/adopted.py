@@ -20,13 +20,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from surveyapp.core.geodesy import Position
-from surveyapp.core.orientation.campaign_columns import (
-    BLOCK_GAP_DAYS,
-    LABELLED,
+from surveyapp.core.orientation.campaign_columns import BLOCK_GAP_DAYS, LABELLED, Place
+from surveyapp.core.orientation.circumstances import (
     Circumstances,
-    circumstances,
+    circumstances_of,
     columns_of,
-    in_blocks,
 )
 from surveyapp.core.swing.session import ReducedSession, TargetReduction
 from surveyapp.core.uncertain import Source, Uncertain
@@ -74,18 +72,14 @@ def apply_adopted(
         for j, target in enumerate(item.targets)
         if target.gyro_azimuth is not None
     ]
-    facts = in_blocks(
-        [
-            circumstances(
-                reduced[place.session],
-                reduced[place.session].targets[place.target],
-                latitude=positions[reduced[place.session].session.station].latitude,
-            )
-            for place in places
-        ]
-    )
     sessions = [reduced[place.session].session for place in places]
     targets = {place: reduced[place.session].targets[place.target] for place in places}
+    facts = circumstances_of(
+        [
+            Place(reduced[place.session], targets[place], positions[session.station])
+            for place, session in zip(places, sessions, strict=True)
+        ]
+    )
     warnings: list[ResultWarning] = []
     for adopted in instrument.effects:
         effect = known_effects()[adopted.id]
@@ -132,7 +126,7 @@ def _not_moved(
     told = {
         sessions[i]: None
         for i in range(len(sessions))
-        if i not in calibrations and facts[i].line == line
+        if i not in calibrations and facts[i].name("line") == line
     }
     if not told:
         return []
@@ -226,19 +220,16 @@ def _columns(
     effect: Effect, adopted: AdoptedEffect, facts: Sequence[Circumstances]
 ) -> dict[str, Floats]:
     """The columns that an effect needs; a named line or block has the number 0."""
-    named = dict(adopted.grid)
+    named = {name: str(value) for name, value in adopted.grid if name in LABELLED}
     columns = columns_of(
-        facts,
-        lines=[str(named["line"])] if "line" in named else [],
-        blocks=[str(named["block"])] if "block" in named else [],
-        time=adopted.time,
+        facts, known={name: [value] for name, value in named.items()}, time=adopted.time
     )
     days = {name: (low, high) for name, low, high in adopted.valid}.get("elapsed_days")
     if "block" in named and days is not None:
         # the name of a block depends on its first session, which may be in another project
         start, end = days[0] - BLOCK_GAP_DAYS, days[1] + BLOCK_GAP_DAYS
-        known = [np.nan if f.elapsed_days is None else f.elapsed_days for f in facts]
-        dates = np.array(known, dtype=np.float64)
+        known = [fact.number("elapsed_days") for fact in facts]
+        dates = np.array([np.nan if day is None else day for day in known], dtype=np.float64)
         within = (dates >= start) & (dates <= end)
         columns["block"] = np.where(np.isnan(dates), np.nan, np.where(within, 0.0, 1.0))
     return {need.name: columns[need.name] for need in effect.needs}

@@ -1,14 +1,15 @@
-"""What a campaign effect may depend on: the circumstances of each determination.
+"""What a campaign effect may depend on: one entry a column, and that is all there is to add.
 
-One place collects them from the reduced sessions, for the diagnosis that finds an effect and for
-the orientation that applies it: both must mean the same by a temperature, a line or a day.
+The diagnosis that finds an effect, the orientation that applies it, the prediction, the actions
+that are proposed next, the trial of a user's own effect and the page of the reference all read
+``COLUMNS``: they mean the same by a temperature, a line or a day.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from datetime import date
 from typing import Literal
 
@@ -23,91 +24,105 @@ from surveyapp_models.arrays import Floats
 
 SECONDS_PER_DAY = 86400.0
 EPOCH_ORDINAL = date(1970, 1, 1).toordinal()
+NOON = 0.5
+"""Part of the day at which a session stands that has a date and no times [d]."""
 BLOCK_GAP_DAYS = 0.25
 """A pause of six hours ends a block: a shift is one block, also over midnight of any zone."""
-LABELLED = frozenset({"line", "block"})
-"""Columns that number names: between two numbers lies nothing."""
-NUMBERS = ("temperature_c", "latitude", "line_reading", "north_reading", "running_s")
+LEAST_TEMPERATURE_K = 5.0
+"""Standard deviation of a temperature that nobody read, at least."""
 
 
 @dataclass(frozen=True, slots=True)
-class Circumstances:
-    """Circumstances of one determination; None where the project does not tell.
+class Place:
+    """One gyro azimuth of the project: what a column may look at.
 
     Parameters
     ----------
-    elapsed_days : float or None
-        Days since 1970-01-01 UTC, from the times of the book or the date of the session.
-    order : float or None
-        As stated.
-    line : str
-        ``station-target``.
-    block : str
-        The block of work, named by the day on which it began (UTC); empty without a day.
-    temperature_c : float or None
-        Mean of the temperatures read.
-    latitude : float or None
-        [rad].
-    line_reading, north_reading : float or None
-        Circle readings [rad].
-    running_s : float or None
-        Mean elapsed_s of the observation: seconds since spin-up where the book counts from it.
+    item : ReducedSession
+    target : TargetReduction
+        One of its targets.
+    position : Position
+        Of the station [rad].
     """
 
-    elapsed_days: float | None
-    order: float | None
-    line: str
-    block: str
-    temperature_c: float | None
-    latitude: float | None
-    line_reading: float | None
-    north_reading: float | None
-    running_s: float | None
+    item: ReducedSession
+    target: TargetReduction
+    position: Position
+
+    @property
+    def session(self) -> OrientationSession:
+        """The session as it was observed."""
+        return self.item.session
 
 
-def circumstances(
-    item: ReducedSession, target: TargetReduction, *, latitude: float | None
-) -> Circumstances:
-    """Collect the circumstances of one target of a reduced session; ``in_blocks`` names blocks."""
-    session = item.session
+Told = float | str | None
+"""What a project tells of one determination: a number, a name, or nothing."""
+Example = Callable[[np.random.Generator, int], Floats]
+"""Made-up values of a column: generator, how many."""
+
+
+@dataclass(frozen=True, slots=True)
+class CampaignColumn:
+    """A circumstance of determinations that an effect may read under ``name``.
+
+    Parameters
+    ----------
+    name : str
+        Key in the columns of an effect.
+    unit : str
+        As the effects that need it state it.
+    meaning : str
+        For the reference page.
+    of : callable
+        From all gyro azimuths of an instrument to what each of them tells, None where the project
+        does not say; of a column of names "" as well.
+    example : callable
+        Values for the trial of a user's own effect.
+    named : bool
+        It numbers names: between two numbers lies nothing.
+    later : str
+        Of a visit that is only planned: the ``mean`` of all, as ``last``, or a ``new`` name.
+    of_line : bool
+        Belongs to the line: another line that was visited before has its value from there.
+    mean_fills : bool
+        Where less than half of the determinations lack it their mean stands in (and that is told).
+    least_spread : float
+        Standard deviation of what a later visit does not tell, at least [unit].
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    of: Callable[[Sequence[Place]], Sequence[Told]]
+    example: Example
+    named: bool = False
+    later: Literal["mean", "last", "new"] = "mean"
+    of_line: bool = False
+    mean_fills: bool = False
+    least_spread: float = 0.0
+
+
+def each(of: Callable[[Place], Told]) -> Callable[[Sequence[Place]], Sequence[Told]]:
+    """A column that looks at one determination at a time."""
+    return lambda places: [of(place) for place in places]
+
+
+def _within(low: float, high: float) -> Example:
+    return lambda generator, n: np.asarray(generator.uniform(low, high, n))
+
+
+def day_of(place: Place) -> float | None:
+    """Days since 1970-01-01 UTC, from the times of the book or the date of the session."""
+    session = place.session
     stamp = session_timestamp(session)
     if stamp is None and session.date is not None:
-        stamp = (session.date.toordinal() - EPOCH_ORDINAL) * SECONDS_PER_DAY + 0.5 * SECONDS_PER_DAY
-    days = None if stamp is None else stamp / SECONDS_PER_DAY
-    north = item.reduction.north
-    return Circumstances(
-        elapsed_days=days,
-        order=session.order,
-        line=f"{session.station}-{target.target}",
-        block="",
-        temperature_c=session_temperature(session),
-        latitude=latitude,
-        line_reading=None if target.line_reading is None else target.line_reading.value,
-        north_reading=None if north is None else north.value,
-        running_s=_running(session),
-    )
+        stamp = (session.date.toordinal() - EPOCH_ORDINAL + NOON) * SECONDS_PER_DAY
+    return None if stamp is None else stamp / SECONDS_PER_DAY
 
 
-def facts_of(
-    reduced: Sequence[ReducedSession], instrument: str, positions: Mapping[str, Position]
-) -> dict[tuple[str, str], Circumstances]:
-    """Circumstances of every gyro azimuth of one instrument, by session and target."""
-    places = [
-        (item, target)
-        for item in reduced
-        if item.session.instrument == instrument
-        for target in item.targets
-    ]
-    facts = in_blocks(
-        [
-            circumstances(item, target, latitude=positions[item.session.station].latitude)
-            for item, target in places
-        ]
-    )
-    return {
-        (item.session.id, target.target): fact
-        for (item, target), fact in zip(places, facts, strict=True)
-    }
+def line_of(place: Place) -> str:
+    """``station-target``."""
+    return f"{place.session.station}-{place.target.target}"
 
 
 def block_names(days: Sequence[float | None]) -> list[str]:
@@ -136,12 +151,6 @@ def block_names(days: Sequence[float | None]) -> list[str]:
     return ["" if day is None else names[day] for day in days]
 
 
-def in_blocks(items: Sequence[Circumstances]) -> tuple[Circumstances, ...]:
-    """The same circumstances with their block of work, which only all of them together tell."""
-    names = block_names([item.elapsed_days for item in items])
-    return tuple(replace(item, block=name) for item, name in zip(items, names, strict=True))
-
-
 def session_temperature(session: OrientationSession) -> float | None:
     """Mean temperature of a session [degree Celsius], None where none was read."""
     rows = session.book.live
@@ -152,45 +161,94 @@ def session_temperature(session: OrientationSession) -> float | None:
     return sum(values) / len(values) if values else None
 
 
-def _running(session: OrientationSession) -> float | None:
-    rows = [row for row in session.book.live if row.kind in SWING_KINDS]
+def _line_reading(place: Place) -> float | None:
+    reading = place.target.line_reading
+    return None if reading is None else reading.value
+
+
+def _north_reading(place: Place) -> float | None:
+    north = place.item.reduction.north
+    return None if north is None else north.value
+
+
+def _running(place: Place) -> float | None:
+    rows = [row for row in place.session.book.live if row.kind in SWING_KINDS]
     values = [row.elapsed_s for row in rows if row.elapsed_s is not None]
     return sum(values) / len(values) if values and len(values) == len(rows) else None
 
 
-def columns_of(
-    items: Sequence[Circumstances],
-    *,
-    lines: Sequence[str] = (),
-    blocks: Sequence[str] = (),
-    time: Literal["days", "order", ""] = "",
-) -> dict[str, Floats]:
-    """Columns of a basis, one row for each determination; a gap is NaN.
-
-    Parameters
-    ----------
-    items : sequence of Circumstances
-    lines, blocks : sequence of str
-        Names in the order in which they are numbered; further ones follow as they come.
-    time : str
-        What ``elapsed_days`` counts: days, or the stated order; empty = days if every item has
-        them, else the order.
-    """
-    columns = {
-        name: np.array(
-            [math.nan if (v := getattr(item, name)) is None else v for item in items],
-            dtype=np.float64,
-        )
-        for name in NUMBERS
-    }
-    days = [item.elapsed_days for item in items]
-    if time == "order" or (not time and any(day is None for day in days)):
-        days = [item.order for item in items]
-    columns["elapsed_days"] = np.array(
-        [math.nan if day is None else day for day in days], dtype=np.float64
-    )
-    for name, known in (("line", lines), ("block", blocks)):
-        values = [str(getattr(item, name)) for item in items]
-        order = list(dict.fromkeys([*known, *values]))
-        columns[name] = np.array([float(order.index(value)) for value in values])
-    return columns
+COLUMNS: tuple[CampaignColumn, ...] = (
+    CampaignColumn(
+        "temperature_c",
+        "degree Celsius",
+        "mean of the temperatures read during the session",
+        each(lambda place: session_temperature(place.session)),
+        lambda generator, n: np.asarray(15.0 + 5.0 * generator.normal(size=n)),
+        mean_fills=True,
+        least_spread=LEAST_TEMPERATURE_K,
+    ),
+    CampaignColumn(
+        "latitude",
+        "rad",
+        "latitude of the station",
+        each(lambda place: place.position.latitude),
+        _within(math.radians(30.0), math.radians(60.0)),
+        of_line=True,
+    ),
+    CampaignColumn(
+        "line_reading",
+        "rad",
+        "circle reading of the line",
+        each(_line_reading),
+        _within(0.0, math.tau),
+        later="last",
+        of_line=True,
+    ),
+    CampaignColumn(
+        "north_reading",
+        "rad",
+        "circle reading of gyro north",
+        each(_north_reading),
+        _within(0.0, math.tau),
+        later="last",
+        of_line=True,
+    ),
+    CampaignColumn(
+        "running_s",
+        "s since spin-up",
+        "mean `elapsed_s` of the readings, where the book counts from the spin-up",
+        each(_running),
+        _within(60.0, 3600.0),
+        mean_fills=True,
+    ),
+    CampaignColumn(
+        "elapsed_days",
+        "d",
+        "days since 1970-01-01 UTC, from the times of the book or the date of the session; the "
+        "stated order where a determination has neither",
+        each(day_of),
+        lambda generator, n: 20000.0 + 10.0 * np.arange(n) + generator.uniform(0.0, 9.0, n),
+    ),
+    CampaignColumn(
+        "line",
+        "number of the line",
+        "the line, numbered in the order of the project",
+        each(line_of),
+        lambda generator, n: np.asarray(np.arange(n) // 2 % 4, dtype=np.float64),
+        named=True,
+        later="new",
+    ),
+    CampaignColumn(
+        "block",
+        "number of the block, in order of time",
+        "the block of work: determinations with no pause of six hours between them",
+        lambda places: block_names([day_of(place) for place in places]),
+        lambda generator, n: np.asarray(np.arange(n) // 3, dtype=np.float64),
+        named=True,
+        later="new",
+    ),
+)
+"""Every column, in the order in which they are handed over. A new one goes to the end."""
+BY_NAME = {column.name: column for column in COLUMNS}
+LABELLED = frozenset(column.name for column in COLUMNS if column.named)
+"""Columns that number names."""

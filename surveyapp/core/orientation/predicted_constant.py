@@ -13,11 +13,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surveyapp.core.orientation.campaign_columns import Circumstances, columns_of
+from surveyapp.core.orientation.campaign_columns import BY_NAME
+from surveyapp.core.orientation.circumstances import Circumstances, columns_of
 from surveyapp.core.orientation.instrument_constant import Calibration, InstrumentConstant
 from surveyapp.core.orientation.prediction_notes import Wanted, one_block, told_of
 from surveyapp.core.prediction.average import Determinations, Predicted, predict
-from surveyapp.core.prediction.kernels import telling
+from surveyapp.core.prediction.kernels import COLUMNS_READ, telling
 from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp.core.statistics.repeated import SHARED, RunScatter
 from surveyapp.core.uncertain import Source, Spread, Uncertain
@@ -49,8 +50,6 @@ UNIT_OF_EFFECT: Mapping[str, str] = {
 """A named effect is taken out of the azimuths and out of the average."""
 SCENARIOS = (-1.2816, -0.5244, 0.0, 0.5244, 1.2816)
 """Equally likely states of what a later visit does not tell, in standard deviations."""
-LEAST_TEMPERATURE_K = 5.0
-"""Standard deviation of a temperature that nobody read, at least."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,7 +174,7 @@ def _latest(
     calibrations: Sequence[Calibration], facts: Mapping[tuple[str, str], Circumstances]
 ) -> list[Calibration]:
     """The latest determinations, all of them where nobody knows when they were made."""
-    days = [facts[item.session, item.target].elapsed_days for item in calibrations]
+    days = [facts[item.session, item.target].number("elapsed_days") for item in calibrations]
     if len(calibrations) <= MOST or any(day is None for day in days):
         return list(calibrations)[-MOST:]
     order = np.argsort(np.array(days, dtype=np.float64), kind="stable")[-MOST:]
@@ -215,7 +214,8 @@ def _columns(
 
     A number that some determinations lack is their mean there; what most of them lack is left out.
     """
-    columns = columns_of([*known, *visits])
+    every = columns_of([*known, *visits])
+    columns = {name: values for name, values in every.items() if name in COLUMNS_READ}
     n = len(known)
     kept: dict[str, Floats] = {}
     warnings = []
@@ -223,7 +223,7 @@ def _columns(
         missing = ~np.isfinite(values[:n])
         if not missing.any():
             kept[name] = values
-        elif 2 * int(missing.sum()) < n and name in ("temperature_c", "running_s"):
+        elif 2 * int(missing.sum()) < n and BY_NAME[name].mean_fills:
             mean = float(values[:n][~missing].mean())
             kept[name] = np.concatenate([np.where(missing, mean, values[:n]), values[n:]])
             text = (
@@ -271,9 +271,7 @@ def _scenarios(
 
 def _state(name: str, known: Floats, z: float) -> float:
     """One of the equally likely values of a column that a visit does not tell."""
-    mean, spread = float(known.mean()), float(known.std())
-    if name == "temperature_c":
-        spread = max(spread, LEAST_TEMPERATURE_K)
+    mean, spread = float(known.mean()), max(float(known.std()), BY_NAME[name].least_spread)
     if name == "elapsed_days":
         # within the campaign or one more span of it
         return float(known.max()) + z * float(np.ptp(known))

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from surveyapp.core.geodesy import Position
-from surveyapp.core.orientation.campaign_columns import Circumstances, facts_of
+from surveyapp.core.orientation.circumstances import Circumstances, facts_of
 from surveyapp.core.orientation.instrument_constant import InstrumentConstant
 from surveyapp.core.orientation.predicted_constant import predict_constants, predictable
 from surveyapp.core.orientation.prediction_notes import Wanted

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from surveyapp.core.orientation.campaign_columns import Circumstances
+from surveyapp.core.orientation.circumstances import Circumstances
 from surveyapp.core.uncertain import Uncertain
 from surveyapp.domain.project import ResultWarning
 from surveyapp_models.angles import RHO_ARCSEC
@@ -60,7 +60,8 @@ def told_of(
 
 def one_block(instrument: str, known: Sequence[Circumstances], wanted: bool) -> list[ResultWarning]:
     """Tell that all determinations belong together."""
-    one = len({item.block for item in known}) == 1 and known[0].elapsed_days is not None
+    blocks = {item.name("block") for item in known}
+    one = len(blocks) == 1 and known[0].number("elapsed_days") is not None
     if not one or not wanted:
         return []
     text = (
@@ -71,17 +72,14 @@ def one_block(instrument: str, known: Sequence[Circumstances], wanted: bool) -> 
 
 
 def _lacks(visit: Circumstances, name: str) -> bool:
-    value = getattr(visit, name, None)
-    if name == "elapsed_days" and value is None:
-        value = visit.order
-    return value is None
+    return visit.time is None if name == "elapsed_days" else name not in visit.told
 
 
 def _beyond(line: Wanted, known: Sequence[Circumstances]) -> list[str]:
     """In what a line lies outside the circumstances of the determinations."""
     found = []
-    thetas = [item.temperature_c for item in known if item.temperature_c is not None]
-    own = [visit.temperature_c for _, visit in line.visits if visit.temperature_c is not None]
+    visited = [visit for _, visit in line.visits]
+    thetas, own = _told(known, "temperature_c"), _told(visited, "temperature_c")
     if thetas and own:
         low, high = min(thetas) - ONE_TEMPERATURE_K, max(thetas) + ONE_TEMPERATURE_K
         far = max(own, key=lambda theta: max(low - theta, theta - high))
@@ -90,8 +88,7 @@ def _beyond(line: Wanted, known: Sequence[Circumstances]) -> list[str]:
                 f"its temperature of {far:.1f} C lies outside the {min(thetas):.1f} to "
                 f"{max(thetas):.1f} C of the determinations"
             )
-    days = [item.elapsed_days for item in known if item.elapsed_days is not None]
-    visits = [visit.elapsed_days for _, visit in line.visits if visit.elapsed_days is not None]
+    days, visits = _told(known, "elapsed_days"), _told(visited, "elapsed_days")
     if len(days) == len(known) and visits:
         span = max(days) - min(days)
         gap = max(max(visits) - max(days), min(days) - min(visits))
@@ -101,6 +98,10 @@ def _beyond(line: Wanted, known: Sequence[Circumstances]) -> list[str]:
                 f"{span:.0f} days"
             )
     return found
+
+
+def _told(items: Sequence[Circumstances], column: str) -> list[float]:
+    return [value for item in items if (value := item.number(column)) is not None]
 
 
 def leaves_out(choice: str, chosen: Uncertain, predicted: Uncertain, where: str) -> ResultWarning:

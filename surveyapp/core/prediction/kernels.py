@@ -32,6 +32,18 @@ CURVATURE = 0.7
 STEP_PAIRED = ("drift", "temperature", "curve", "latitude", "warm_up", "line", "day", "walk")
 PAIRED = (*STEP_PAIRED, "slow", "excess")
 """Causes that are tried two at a time."""
+COLUMNS_READ = (
+    "elapsed_days",
+    "block",
+    "line",
+    "observer",
+    "temperature_c",
+    "latitude",
+    "line_reading",
+    "north_reading",
+    "running_s",
+)
+"""Columns of a campaign that a cause here reads; others change no prediction."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surveyapp.core.orientation.campaign_columns import BLOCK_GAP_DAYS, block_names
+from surveyapp.core.orientation.campaign_columns import (
+    BLOCK_GAP_DAYS,
+    COLUMNS,
+    LABELLED,
+    block_names,
+)
+from surveyapp.core.orientation.circumstances import Circumstances, columns_of, numbered
 from surveyapp.diagnosis.action import POSITION, Action, last_rows
 from surveyapp.diagnosis.case import Case
 from surveyapp.domain.project import ResultWarning
@@ -16,6 +22,8 @@ from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Effect
+
+NOTHING_TOLD = Circumstances(None, {})
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,15 +36,8 @@ class Determination:
         [rad].
     sigma : float or None
         [rad]; without any the determinations are taken for equally good.
-    elapsed_days : float or None
-        Since any zero; ``order`` stands in where no determination has a date.
-    order : float or None
-    line : str
-        Name of the line, empty if unknown.
-    block : str
-        Spin-up, day or set-up; the day if absent.
-    temperature_c, latitude, line_reading, north_reading, running_s : float or None
-        Degrees Celsius, rad, rad, rad, seconds since spin-up.
+    circumstances : Circumstances
+        What the columns of a campaign say of it (``Circumstances.of({...})``).
     label : str
         For messages.
     subject : Subject or None
@@ -45,17 +46,38 @@ class Determination:
 
     value: float
     sigma: float | None = None
-    elapsed_days: float | None = None
-    order: float | None = None
-    line: str = ""
-    block: str = ""
-    temperature_c: float | None = None
-    latitude: float | None = None
-    line_reading: float | None = None
-    north_reading: float | None = None
-    running_s: float | None = None
+    circumstances: Circumstances = NOTHING_TOLD
     label: str = ""
     subject: Subject | None = None
+
+    @classmethod
+    def at(
+        cls,
+        value: float,
+        sigma: float | None = None,
+        *,
+        order: float | None = None,
+        **columns: float | str | None,
+    ) -> Determination:
+        """A determination with its circumstances by the names of their columns.
+
+        Parameters
+        ----------
+        value : float
+            [rad].
+        sigma : float or None
+            [rad].
+        order : float or None
+            Stands in for time where there is no date.
+        columns : float, str or None
+            Each in the unit of its column.
+        """
+        return cls(value, sigma, Circumstances.of(columns, order))
+
+    @property
+    def day(self) -> float | None:
+        """Days since any zero, None where it has no date."""
+        return self.circumstances.number("elapsed_days")
 
 
 TEMPERATURE_STEP_K = 8.0
@@ -109,7 +131,7 @@ def _other_line(columns: Mapping[str, Floats], /) -> dict[str, Floats] | None:
     chosen = float(names[np.argmin(counts)]) if names.size else float(line.max()) + 1.0
     row["line"] = np.array([chosen])
     there = np.flatnonzero(line == chosen)
-    for name in ("latitude", "line_reading", "north_reading"):
+    for name in (column.name for column in COLUMNS if column.of_line):
         if there.size and name in columns:
             row[name] = columns[name][there[-1:]]
     return row
@@ -198,7 +220,7 @@ def campaign(
         labels=tuple(d.label or f"determination {i + 1}" for i, d in enumerate(determinations)),
         grid_labels=labels,
         warnings=tuple(warnings),
-        position_unit="d" if all(d.elapsed_days is not None for d in determinations) else "",
+        position_unit="d" if all(d.day is not None for d in determinations) else "",
     )
 
 
@@ -243,31 +265,27 @@ def _check(determinations: Sequence[Determination], instrument: str) -> None:
         raise SurveyError(faults)
 
 
-def _numbered(names: Sequence[str]) -> tuple[Floats, dict[float, str]]:
-    order = list(dict.fromkeys(names))
-    return (
-        np.array([float(order.index(name)) for name in names]),
-        {float(i): name for i, name in enumerate(order)},
-    )
-
-
 def _columns(
     determinations: Sequence[Determination],
 ) -> tuple[dict[str, Floats], dict[str, dict[float, str]], list[ResultWarning]]:
+    """Columns that say something, the names behind numbers, and what stands in for the time."""
+    facts = [d.circumstances for d in determinations]
+    dated = all(d.day is not None for d in determinations)
     columns: dict[str, Floats] = {}
     labels: dict[str, dict[float, str]] = {}
     warnings: list[ResultWarning] = []
-    for name in ("temperature_c", "latitude", "line_reading", "north_reading", "running_s"):
-        raw = [getattr(d, name) for d in determinations]
-        if any(v is not None for v in raw):
-            columns[name] = np.array([np.nan if v is None else v for v in raw], dtype=np.float64)
-    days = [d.elapsed_days for d in determinations]
-    orders = [d.order for d in determinations]
-    if all(d is not None for d in days):
-        columns["elapsed_days"] = np.array(days, dtype=np.float64)
-    else:
-        if all(o is not None for o in orders):
-            columns["elapsed_days"] = np.array(orders, dtype=np.float64)
+    for name, values in columns_of(facts).items():
+        names = [fact.name(name) for fact in facts] if name in LABELLED else []
+        if name == "block" and not all(names) and dated:
+            names = block_names([d.day for d in determinations])
+        if name in LABELLED and all(names):
+            columns[name], labels[name] = numbered(names)
+        elif name == "elapsed_days":
+            if np.isfinite(values).all():
+                columns[name] = values
+        elif name not in LABELLED and np.isfinite(values).any():
+            columns[name] = values
+    if not dated:
         warnings.append(
             ResultWarning(
                 "no_dates",
@@ -276,10 +294,4 @@ def _columns(
                 else "dates and order are missing: effects of time cannot be judged",
             )
         )
-    if all(d.line for d in determinations):
-        columns["line"], labels["line"] = _numbered([d.line for d in determinations])
-    if all(d.block for d in determinations):
-        columns["block"], labels["block"] = _numbered([d.block for d in determinations])
-    elif "elapsed_days" in columns and all(d is not None for d in days):
-        columns["block"], labels["block"] = _numbered(block_names(days))
     return columns, labels, warnings

@@ -14,7 +14,7 @@ import numpy as np
 
 from surveyapp.core.checks.adopted_checks import occurrences
 from surveyapp.core.orientation.adopted import SOURCE
-from surveyapp.core.orientation.campaign_columns import Circumstances, facts_of
+from surveyapp.core.orientation.circumstances import Circumstances, facts_of
 from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.core.statistics.repeated import SHARED
 from surveyapp.core.swing.run_model import ModelledNorth
@@ -201,13 +201,13 @@ def _in_time(items: Sequence[Determination]) -> tuple[Determination, ...]:
 
     Where every date is the same (or none is known) the sequence stands in for time.
     """
-    if len({item.elapsed_days for item in items}) > 1:
-        if any(item.elapsed_days is None for item in items):
+    if len({item.day for item in items}) > 1:
+        if any(item.day is None for item in items):
             return tuple(items)
-        return tuple(sorted(items, key=lambda item: (item.elapsed_days or 0.0, item.label)))
-    stated = all(item.order is not None for item in items)
+        return tuple(sorted(items, key=lambda item: (item.day or 0.0, item.label)))
+    stated = all(item.circumstances.order is not None for item in items)
     return tuple(
-        replace(item, elapsed_days=None, order=item.order if stated else float(place))
+        replace(item, circumstances=item.circumstances.undated(None if stated else float(place)))
         for place, item in enumerate(items)
     )
 
@@ -226,7 +226,7 @@ def _azimuths(
             if target.gyro_azimuth is None:
                 continue
             facts = by_key[item.session.id, target.target]
-            members = lines.setdefault(facts.line, [])
+            members = lines.setdefault(facts.name("line"), [])
             value = target.gyro_azimuth.value
             if members:
                 first = -members[0].value
@@ -245,21 +245,8 @@ def _determination(
     value: float, own: Uncertain, facts: Circumstances, subject: Subject, *, label: str
 ) -> Determination:
     sigma = own.sigma
-    return Determination(
-        value=value,
-        sigma=sigma if 0.0 < sigma < math.inf else None,
-        elapsed_days=facts.elapsed_days,
-        order=facts.order,
-        line=facts.line,
-        block=facts.block,
-        temperature_c=facts.temperature_c,
-        latitude=facts.latitude,
-        line_reading=facts.line_reading,
-        north_reading=facts.north_reading,
-        running_s=facts.running_s,
-        label=label,
-        subject=subject,
-    )
+    stated = sigma if 0.0 < sigma < math.inf else None
+    return Determination(value, stated, facts, label, subject)
 
 
 def campaign_problem(

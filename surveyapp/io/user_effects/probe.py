@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from surveyapp.core.orientation.campaign_columns import COLUMNS as CAMPAIGN_COLUMNS
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.user_effects.calls import guarded
 from surveyapp_models.arrays import Floats
@@ -30,16 +31,7 @@ def _run_columns(generator: np.random.Generator) -> dict[str, Floats]:
 
 
 def _campaign_columns(generator: np.random.Generator) -> dict[str, Floats]:
-    return {
-        "elapsed_days": 20000.0 + np.cumsum(generator.uniform(1.0, 20.0, SIZE)),
-        "temperature_c": 15.0 + 5.0 * generator.normal(size=SIZE),
-        "latitude": np.radians(generator.uniform(30.0, 60.0, SIZE)),
-        "line": np.arange(SIZE) // 2 % 4 * 1.0,
-        "block": np.repeat(np.arange(SIZE / 3), 3),
-        "line_reading": generator.uniform(0.0, 6.28, SIZE),
-        "north_reading": generator.uniform(0.0, 6.28, SIZE),
-        "running_s": generator.uniform(60.0, 3600.0, SIZE),
-    }
+    return {column.name: column.example(generator, SIZE) for column in CAMPAIGN_COLUMNS}
 
 
 def _traverse_columns(generator: np.random.Generator) -> dict[str, Floats]:

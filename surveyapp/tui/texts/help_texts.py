@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Final
 
 from surveyapp.core.observing.steps import Step
+from surveyapp.languages import translated
 
 CLOSE_HINT: Final = "Escape closes   Ctrl+P every action   F9 colours   Ctrl+Q quit"
 
@@ -316,4 +317,15 @@ PAGES: Final = {
 
 def help_of(step: Step, method: str) -> str:
     """The explanation of a step."""
-    return _BY_METHOD[method] if step is Step.SWING else _BY_STEP[step]
+    return translated(_BY_METHOD[method] if step is Step.SWING else _BY_STEP[step])
+
+
+def page_of(screen: str) -> tuple[str, str] | None:
+    """Heading and words of a screen, in the language in use; None where it has none."""
+    page = PAGES.get(screen)
+    return None if page is None else (translated(page[0]), translated(page[1]))
+
+
+def close_hint() -> str:
+    """What closes the page."""
+    return translated(CLOSE_HINT)
