@@ -115,7 +115,7 @@ class ProjectScreen(Screen[None]):
                         columns, empty = LISTS[page]
                         details = partial(self.details, page)
                         yield Records(columns, empty=empty, details=details)
-        yield Footer(show_command_palette=False)
+        yield Footer(show_command_palette=False, compact=True)
 
     def on_mount(self) -> None:
         """Begin to compute."""
