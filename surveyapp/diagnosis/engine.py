@@ -190,7 +190,9 @@ def _model(problem: Case, fit: Fit, confirm: Case | None) -> ModelResult:
         rms=error,
         sigma0=sigma0,
         dof=dof,
-        loo_rms=leave_one_out(problem, fit),
+        loo_rms=leave_one_out(
+            problem, fit, None if problem.reported is None else 1.0 - problem.reported
+        ),
         confirm_rms=None if confirm is None else confirm_rms(confirm, fit),
         forecast_rms=None if fit.noise is not None else forecast(problem, fit),
         value=_quantity(problem, value_of(problem, fit)),

@@ -271,7 +271,10 @@ def datum_values(problem: Case, fit: Fit) -> tuple[tuple[str, str, Value], ...]:
 
 def rms(problem: Case, fit: Fit) -> float:
     """Root mean square of the unweighted residuals [SI]."""
-    return float(np.sqrt(np.mean((fit.residual / problem.root_weights) ** 2)))
+    errors = fit.residual / problem.root_weights
+    if problem.reported is not None:
+        errors = errors[problem.reported > 0.0]
+    return float(np.sqrt(np.mean(errors**2)))
 
 
 def coefficients(problem: Case, fit: Fit) -> dict[str, tuple[Floats, Floats]]:
