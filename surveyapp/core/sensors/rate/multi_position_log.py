@@ -20,6 +20,8 @@ from surveyapp.core.sensors.rate.hand_held import (
     fit_forces,
     fit_rates,
     left_out,
+    shifted_forces,
+    with_frame,
 )
 from surveyapp.core.sensors.rate.parameters import DEG_H, PPM
 from surveyapp.core.sensors.rate.still import (
@@ -31,6 +33,7 @@ from surveyapp.core.sensors.rate.still import (
     runs_of,
     statistic,
 )
+from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp.domain.calibration import (
     Calibration,
     CalibrationModel,
@@ -125,7 +128,7 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
     chosen = _chosen(models, held)
     turns = turns_between(log, stops, chosen, options)
     bias, sigma_bias = _bias(stops, chosen, options)
-    gyro = fit_rates(turns) if len(turns) >= LEAST_TURNS else None
+    gyro = _fitted(stops, chosen, turns) if len(turns) >= LEAST_TURNS else None
     parameters = (
         *_force_parameters(chosen),
         *_rate_parameters(gyro, bias, sigma_bias),
@@ -157,6 +160,26 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
             else _directions(gyro, turns, with_g_sensitivity(log, stops, chosen, turns)),
         },
     )
+
+
+def _fitted(stops: Sequence[HeldStop], model: ForceModel, turns: Sequence[Turn]) -> RateModel:
+    """The gyros from their turns, with the accelerometers' own uncertainty."""
+    gyro = fit_rates(turns)
+    if model.dof < 1:
+        return gyro
+    forces = np.array([s.force for s in stops])
+    shifted = []
+    for other in shifted_forces(model):
+        ups = other.corrected(forces)
+        ups = ups / np.linalg.norm(ups, axis=1)[:, None]
+        shifted.append([replace(t, before=ups[k], after=ups[k + 1]) for k, t in enumerate(turns)])
+    spread = np.sqrt(np.maximum(np.diag(model.covariance), 1e-300))
+    return with_frame(gyro, turns, shifted, model.covariance / np.outer(spread, spread))
+
+
+def widened(dof: int) -> float:
+    """Factor on a sigma of few degrees of freedom that makes 1.96 sigma the 95 % interval."""
+    return student_quantile(0.975, max(dof, 1)) / student_quantile(0.975, 1e6)
 
 
 def _directions(gyro: RateModel, turns: Sequence[Turn], pulled: Sequence[Turn]) -> dict[str, Any]:
@@ -255,7 +278,8 @@ def _bias(
 ) -> tuple[Floats, Floats]:
     """Bias of each gyro and its sigma from the scatter of the stops [rad/s]."""
     means = rest_rates(stops, _ups(stops, model), options.latitude)
-    return means.mean(axis=0), means.std(axis=0, ddof=1) / math.sqrt(len(stops))
+    sigma = means.std(axis=0, ddof=1) / math.sqrt(len(stops))
+    return means.mean(axis=0), sigma * widened(len(stops) - 1)
 
 
 def rest_rates(stops: Sequence[HeldStop], ups: Floats, latitude: float | None) -> Floats:
@@ -267,7 +291,7 @@ def rest_rates(stops: Sequence[HeldStop], ups: Floats, latitude: float | None) -
 
 
 def _force_parameters(model: ForceModel) -> list[SensorParameter]:
-    spread = np.sqrt(np.maximum(np.diag(model.covariance), 0.0))
+    spread = np.sqrt(np.maximum(np.diag(model.covariance), 0.0)) * widened(model.dof)
     known = model.dof > 0
     vector = model.vector
     found = []
@@ -315,7 +339,7 @@ def _rate_parameters(
 
 
 def _spread(gyro: RateModel, index: int) -> float:
-    return math.sqrt(max(float(gyro.covariance[index, index]), 0.0))
+    return math.sqrt(max(float(gyro.covariance[index, index]), 0.0)) * widened(gyro.dof)
 
 
 def _stop_dict(log: SensorLog, stop: HeldStop, model: ForceModel) -> dict[str, Any]:
