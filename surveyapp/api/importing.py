@@ -27,6 +27,7 @@ def import_file(
     sigma_angle_arcsec: float | None = None,
     sigma_distance: tuple[float, float] | None = None,
     skip_damaged: bool = False,
+    lines: tuple[int, int] | None = None,
     preview: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> ImportResult:
@@ -54,6 +55,8 @@ def import_file(
         Millimetres and ppm.
     skip_damaged : bool
         Leave damaged lines out and list them.
+    lines : tuple of int or None
+        First and last line whose readings are taken: a large file in parts.
     preview : bool
         Say what would be written, write nothing.
     progress : callable or None
@@ -74,7 +77,7 @@ def import_file(
     from surveyapp.io.importing.writing import write_additions
 
     project = open_project(folder)
-    read = ReadOptions(skip_damaged, station_code, columns or {}, units or {}, progress)
+    read = ReadOptions(skip_damaged, station_code, columns or {}, units or {}, progress, lines)
     options = ImportOptions(traverse, tuple(fixed), sigma_angle_arcsec, sigma_distance, read)
     if form == "gyro-csv":
         if instrument is None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Final
@@ -21,7 +20,6 @@ FORMATS: Final = {
 }
 """Formats and what they are."""
 
-_BAR_FROM_BYTES: Final = 4_000_000
 _MOST_SETS: Final = 20
 
 
@@ -47,6 +45,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--sigma-distance", metavar="MM+PPM", help="1 sigma of a distance")
     parser.add_argument(
         "--skip-damaged", action="store_true", help="leave damaged lines out and list them"
+    )
+    parser.add_argument(
+        "--lines", metavar="A-B", help="take the readings of these lines: a large file in parts"
     )
     parser.add_argument(
         "--preview", action="store_true", help="say what is understood, write nothing"
@@ -105,19 +106,15 @@ def _distance(text: str | None) -> tuple[float, float] | None:
     return values
 
 
-def _bar(file: str) -> Callable[[float], None] | None:
-    """A bar on the terminal for files that take their time; none where nobody looks."""
+def _progress(options: argparse.Namespace) -> Callable[[float], None]:
+    """What tells the bar how many megabytes are read."""
     try:
-        large = Path(file).stat().st_size >= _BAR_FROM_BYTES
+        total = Path(options.file).stat().st_size // 1_000_000
     except (OSError, ValueError):
-        return None
-    if not large or sys.stderr is None or not sys.stderr.isatty():
-        return None
+        total = 0
 
     def show(part: float) -> None:
-        done = round(40 * part)
-        sys.stderr.write(f"\r  [{'#' * done}{'.' * (40 - done)}] {part:4.0%}")
-        sys.stderr.flush()
+        options.advance("MB", round(part * total), total)
 
     return show
 
@@ -125,8 +122,8 @@ def _bar(file: str) -> Callable[[float], None] | None:
 def run(options: argparse.Namespace) -> int:
     """Import and tell; exit code 1 if a station lies elsewhere."""
     from surveyapp import api
+    from surveyapp.io.importers.fieldfiles.parts import line_range
 
-    progress = _bar(options.file)
     result = api.import_file(
         options.format,
         options.file,
@@ -141,10 +138,9 @@ def run(options: argparse.Namespace) -> int:
         sigma_distance=_distance(options.sigma_distance),
         skip_damaged=options.skip_damaged,
         preview=options.preview,
-        progress=progress,
+        lines=line_range(options.lines, "--lines"),
+        progress=_progress(options),
     )
-    if progress is not None:
-        sys.stderr.write("\r" + " " * 50 + "\r")
     if options.json:
         print_json(result.to_dict())
     else:

@@ -105,6 +105,8 @@ class FieldFile:
         Whether the reduction adds ``prism_m`` and ``ppm`` to ``sd`` (files with raw distances).
     skipped : tuple of SkippedLine
     warnings : tuple of ResultWarning
+    parts : tuple of (int, int)
+        First and last lines of parts that are books of their own if the whole is too large.
     """
 
     format: str
@@ -116,6 +118,7 @@ class FieldFile:
     corrected: bool = False
     skipped: tuple[SkippedLine, ...] = ()
     warnings: tuple[ResultWarning, ...] = ()
+    parts: tuple[tuple[int, int], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

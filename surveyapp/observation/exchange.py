@@ -18,6 +18,7 @@ from surveyapp.domain.filing import ExportResult
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.exporters.catalogue import EXPORTERS
 from surveyapp.io.importers.fieldfiles.catalogue import IMPORTERS
+from surveyapp.io.importers.fieldfiles.parts import line_range
 
 GYRO: Final = "gyro-csv"
 _MOST: Final = 400
@@ -55,6 +56,7 @@ class Told:
     columns: dict[str, str] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
     skip_damaged: bool = False
+    lines: tuple[int, int] | None = None
 
 
 def entries(folder: str) -> list[Entry]:
@@ -106,7 +108,7 @@ def told_options(text: str) -> Told:
         elif not sign or not value:
             expected = "key=value, such as traverse=main or unit.hz=gon"
             raise SurveyError(Problem("this is no option", "options", word, expected))
-        elif key in ("traverse", "station-code", "instrument", "fix"):
+        elif key in ("traverse", "station-code", "instrument", "fix", "lines"):
             values[key] = value
         elif key.startswith("unit."):
             units[key.removeprefix("unit.")] = value
@@ -120,6 +122,7 @@ def told_options(text: str) -> Told:
         columns=columns,
         units=units,
         skip_damaged=skip,
+        lines=line_range(values.get("lines"), "lines"),
     )
 
 
@@ -144,6 +147,7 @@ def bring(entry: Entry, folder: str, options: str, *, preview: bool) -> ImportRe
         units=told.units,
         fixed=told.fixed,
         skip_damaged=told.skip_damaged,
+        lines=told.lines,
         preview=preview,
     )
 

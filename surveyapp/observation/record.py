@@ -7,6 +7,7 @@ from pathlib import Path
 from surveyapp import api
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.guarded import checked_inside, is_regular
+from surveyapp.languages import current
 
 
 def write_record(folder: api.Folder) -> str:
@@ -24,7 +25,7 @@ def write_record(folder: api.Folder) -> str:
     except OSError as error:
         what = f"the record cannot be written ({error.strerror or error})"
         raise SurveyError(Problem(what, str(path))) from None
-    return str(api.report(folder, path / "record.pdf").path)
+    return str(api.report(folder, path / "record.pdf", language=current()).path)
 
 
 def record_written(folder: api.Folder) -> bool:

@@ -181,8 +181,10 @@ def test_no_field_file_at_all(tmp_path: Path, form: str, content: bytes) -> None
 def test_a_file_of_100_mb_is_answered_at_once(tmp_path: Path) -> None:
     with (tmp_path / "f.gsi").open("wb") as stream:
         stream.truncate(100 * 1024 * 1024)
-    where = _refused_file(tmp_path, "gsi", tmp_path / "f.gsi")
-    assert "105 MB" in where
+    assert "binary" in _refused_file(tmp_path, "gsi", tmp_path / "f.gsi")
+    with (tmp_path / "f.gsi").open("wb") as stream:
+        stream.truncate(300 * 1024 * 1024)
+    assert "315 MB" in _refused_file(tmp_path, "gsi", tmp_path / "f.gsi")
 
 
 def _refused_file(tmp_path: Path, form: str, path: Path) -> str:

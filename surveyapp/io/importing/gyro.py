@@ -17,12 +17,12 @@ from surveyapp.domain.project import Project, ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.fieldbook.rows import COLUMNS
 from surveyapp.io.files import shown
-from surveyapp.io.importers.fieldfiles.gathering import read_field_file
 from surveyapp.io.importers.fieldfiles.gyrocsv import GyroReading, read_gyro_csv
+from surveyapp.io.importers.fieldfiles.lines import field_digest
 from surveyapp.io.importing.stations import check_names, match_stations
 from surveyapp.io.importing.texts import RAW_COLUMNS, csv_text, degrees, plain
 from surveyapp.io.importing.traverse import ImportOptions, Planned, traverse_name
-from surveyapp.io.importing.writing import Additions, sha256, stored_name, taken_files
+from surveyapp.io.importing.writing import Additions, Content, FileCopy, stored_name, taken_files
 from surveyapp_models.angles import RHO_ARCSEC
 
 _UNSAFE: Final = '/\\:*?"<>| '
@@ -47,6 +47,7 @@ def plan_gyro(project: Project, file: Path, options: ImportOptions, instrument: 
     """
     folder = Path(project.path)
     name = traverse_name(options, file)
+    copied = FileCopy(file, field_digest(file))
     read = read_gyro_csv(file, options.read)
     readings = [_composed(reading) for reading in read.readings]
     lines: dict[tuple[str, str], list[GyroReading]] = {}
@@ -55,17 +56,16 @@ def plan_gyro(project: Project, file: Path, options: ImportOptions, instrument: 
     names = list(dict.fromkeys(name for line in lines for name in line))
     check_names(names, file.name)
     stations, tables, warnings = match_stations(project, names, {}, options.fixed)
-    data = read_field_file(file)
     raw = f"imports/{name}.raw.csv"
-    stored = stored_name(folder, file, data, name)
-    files = {stored: data, raw: _raw(readings).encode()}
+    stored = stored_name(folder, copied, name)
+    files: dict[str, Content] = {stored: copied, raw: _raw(readings)}
     new_tables: list[tuple[str, dict[str, object]]] = [("station", table) for table in tables]
     card, card_warnings = _instrument(project, instrument)
     for path, (text, table) in card.items():
         files[path] = text.encode()
         new_tables.append(("instrument", table))
     sessions = _sessions(project, lines, name, instrument)
-    files |= {str(table["book"]): text.encode() for table, text in sessions}
+    files |= {str(table["book"]): text for table, text in sessions}
     new_tables += [("orientation", table) for table, _ in sessions]
     problems = taken_files(folder, files)
     if problems:
@@ -74,7 +74,7 @@ def plan_gyro(project: Project, file: Path, options: ImportOptions, instrument: 
         format="gyro-csv",
         variant=read.variant,
         file=stored,
-        sha256=sha256(data),
+        sha256=copied.sha256,
         stations=tuple(stations),
         traverse="",
         book="",
@@ -95,7 +95,7 @@ def _composed(reading: GyroReading) -> GyroReading:
     return replace(reading, station=names[0], target=names[1])
 
 
-def _raw(readings: Sequence[GyroReading]) -> str:
+def _raw(readings: Sequence[GyroReading]) -> bytes:
     empty = dict.fromkeys(RAW_COLUMNS, "")
     rows = [
         {
@@ -163,7 +163,7 @@ def _sessions(
     lines: dict[tuple[str, str], list[GyroReading]],
     name: str,
     instrument: str,
-) -> list[tuple[dict[str, object], str]]:
+) -> list[tuple[dict[str, object], bytes]]:
     """Table and book of each session."""
     taken = {session.id for session in project.sessions}
     found = []

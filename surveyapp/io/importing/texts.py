@@ -8,7 +8,8 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from functools import lru_cache
 from typing import Final
 
 from surveyapp.domain.fieldfile import FieldFile, Pointing, ReducedSet, ReducedSight
@@ -25,6 +26,7 @@ def degrees(value: float | None) -> str:
     return "" if value is None else _trimmed(f"{math.degrees(value):.9f}")
 
 
+@lru_cache(maxsize=1 << 12)
 def metres(value: float | None) -> str:
     """A length, 0.1 micrometre without idle zeros."""
     return "" if value is None else _trimmed(f"{value:.7f}")
@@ -35,21 +37,26 @@ def _trimmed(text: str) -> str:
     return "0" if text in ("-0", "") else text
 
 
+@lru_cache(maxsize=1 << 12)
 def plain(value: float | None) -> str:
     """A number as short as it can be said."""
     return "" if value is None else f"{value:.10g}"
 
 
 def _clean(text: str) -> str:
+    if not text:
+        return ""
     return "".join(c if c.isprintable() else " " for c in text).strip()[:200]
 
 
-def csv_text(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table as CSV with plain line ends."""
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
+def csv_text(header: Sequence[str], rows: Iterable[Sequence[str]]) -> bytes:
+    """A table as CSV with plain line ends, in UTF-8."""
+    stream = io.BytesIO()
+    text = io.TextIOWrapper(stream, encoding="utf-8", newline="")
+    writer = csv.writer(text, lineterminator="\n")
     writer.writerow(header)
     writer.writerows(rows)
+    text.flush()
     return stream.getvalue()
 
 
@@ -64,7 +71,7 @@ def raw_row(p: Pointing) -> tuple[str, ...]:
     )
 
 
-def raw_text(file: FieldFile) -> str:
+def raw_text(file: FieldFile) -> bytes:
     """Every pointing as read, one row each."""
     return csv_text(RAW_COLUMNS, (raw_row(p) for p in file.pointings))
 
@@ -86,7 +93,17 @@ def _sight_rows(made: ReducedSet, sight: ReducedSight) -> list[tuple[str, ...]]:
     ]
 
 
-def book_text(sets: Sequence[ReducedSet]) -> tuple[str, int]:
+def book_text(sets: Sequence[ReducedSet]) -> tuple[bytes, int]:
     """Traverse book of reduced sets and the number of its rows."""
-    rows = [row for made in sets for sight in made.sights for row in _sight_rows(made, sight)]
-    return csv_text(COLUMNS, rows), len(rows)
+    number = 0
+
+    def rows() -> Iterator[tuple[str, ...]]:
+        nonlocal number
+        for made in sets:
+            for sight in made.sights:
+                found = _sight_rows(made, sight)
+                number += len(found)
+                yield from found
+
+    text = csv_text(COLUMNS, rows())
+    return text, number

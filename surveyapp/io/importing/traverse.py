@@ -20,10 +20,11 @@ from surveyapp.domain.project import Project, ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.files import shown
 from surveyapp.io.importers.fieldfiles.catalogue import IMPORTERS
-from surveyapp.io.importers.fieldfiles.gathering import ReadOptions, read_field_file
+from surveyapp.io.importers.fieldfiles.gathering import ReadOptions
+from surveyapp.io.importers.fieldfiles.lines import field_digest
 from surveyapp.io.importing.stations import check_names, match_stations
 from surveyapp.io.importing.texts import book_text, raw_text
-from surveyapp.io.importing.writing import Additions, sha256, stored_name, taken_files
+from surveyapp.io.importing.writing import Additions, Content, FileCopy, stored_name, taken_files
 from surveyapp_models.angles import RHO_ARCSEC
 
 ASSUMED_ANGLE_ARCSEC: Final = 5.0
@@ -254,6 +255,7 @@ def plan_traverse(project: Project, form: str, file: Path, options: ImportOption
 def _planned(project: Project, form: str, file: Path, options: ImportOptions) -> Planned:
     folder = Path(project.path)
     name = traverse_name(options, file)
+    copied = FileCopy(file, field_digest(file))
     read = read_traverse_file(form, file, options.read)
     _check_free(project, name)
     points: dict[str, KnownPoint] = {point.name: point for point in read.points}
@@ -262,16 +264,15 @@ def _planned(project: Project, form: str, file: Path, options: ImportOptions) ->
     sets, told = reduce_file(read)
     stations, tables, station_warnings = match_stations(project, names, points, options.fixed)
     sigmas, sigma_warnings = _sigmas(options, sets)
-    data = read_field_file(file)
     book, raw = f"observations/{name}.csv", f"imports/{name}.raw.csv"
     text, rows = book_text(sets)
-    stored = stored_name(folder, file, data, name)
-    files = {stored: data, raw: raw_text(read).encode(), book: text.encode()}
-    problems = taken_files(folder, files)
+    stored = stored_name(folder, copied, name)
+    files: dict[str, Content] = {stored: copied, raw: raw_text(read), book: text}
+    problems = taken_files(folder, files, parts=read.parts)
     if problems:
         raise SurveyError(problems)
     result = replace(
-        _result(read, sets, (stored, name, book, raw), (rows, sha256(data))),
+        _result(read, sets, (stored, name, book, raw), (rows, copied.sha256)),
         stations=tuple(stations),
         warnings=(*read.warnings, *told, *station_warnings, *sigma_warnings),
     )

@@ -7,29 +7,53 @@ written is taken away again when anything fails.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import MAX_BYTES, shown
+from surveyapp.io.importers.fieldfiles.lines import field_digest, open_field_file
+from surveyapp.io.importers.fieldfiles.parts import parts_hint
 from surveyapp.io.tomltext import atomic_write
 from surveyapp.io.writing import append_tables
+
+_CHUNK: Final = 1 << 20
+
+
+@dataclass(frozen=True, slots=True)
+class FileCopy:
+    """A file from outside that goes into the project unchanged, read in pieces.
+
+    Parameters
+    ----------
+    source : Path
+    sha256 : str
+        Of its bytes; a file that has others meanwhile is refused.
+    """
+
+    source: Path
+    sha256: str
+
+
+Content = bytes | FileCopy
 
 
 @dataclass(frozen=True, slots=True)
 class Additions:
     """New files by their path in the project, and tables for the end of project.toml."""
 
-    files: Mapping[str, bytes]
+    files: Mapping[str, Content]
     tables: Sequence[tuple[str, Mapping[str, object]]]
 
 
-def stored_name(folder: Path, file: Path, data: bytes, name: str) -> str:
+def stored_name(folder: Path, copied: FileCopy, name: str) -> str:
     """Path below imports/ for the file itself; one that is there with the same bytes is kept."""
+    file = copied.source
     for candidate in (file.name, f"{name}-{file.name}"):
         path = folder / "imports" / candidate
-        if not path.exists() or _same_bytes(path, data):
+        if not path.exists() or _same_bytes(path, copied):
             return f"imports/{candidate}"
     raise SurveyError(
         Problem(
@@ -42,20 +66,34 @@ def stored_name(folder: Path, file: Path, data: bytes, name: str) -> str:
     )
 
 
-def _same_bytes(path: Path, data: bytes) -> bool:
+def _same_bytes(path: Path, content: Content) -> bool:
     try:
-        return path.is_file() and path.stat().st_size == len(data) and path.read_bytes() == data
-    except OSError:
+        if not path.is_file():
+            return False
+        if isinstance(content, bytes):
+            return path.stat().st_size == len(content) and path.read_bytes() == content
+        return field_digest(path) == content.sha256
+    except (OSError, SurveyError):
         return False
 
 
-def taken_files(folder: Path, files: Mapping[str, bytes]) -> list[Problem]:
-    """Problems of files that exist already, or would be too large to be read again."""
+def taken_files(
+    folder: Path, files: Mapping[str, Content], *, parts: tuple[tuple[int, int], ...] = ()
+) -> list[Problem]:
+    """Problems of files that exist already, or of books that no project could read again.
+
+    Parameters
+    ----------
+    folder : Path
+    files : mapping
+    parts : tuple of (int, int)
+        Lines of the field file that are books of their own.
+    """
     problems = []
-    for name, data in files.items():
+    for name, content in files.items():
         path = folder / name
         own = name.startswith("imports/") and not name.endswith(".raw.csv")
-        if (path.exists() or path.is_symlink()) and not (own and _same_bytes(path, data)):
+        if (path.exists() or path.is_symlink()) and not (own and _same_bytes(path, content)):
             problems.append(
                 Problem(
                     "a file of this name exists",
@@ -65,17 +103,22 @@ def taken_files(folder: Path, files: Mapping[str, bytes]) -> list[Problem]:
                     "take another name with --traverse",
                 )
             )
-        if len(data) > MAX_BYTES:
+        if isinstance(content, bytes) and len(content) > MAX_BYTES and not _as_read(name):
             problems.append(
                 Problem(
                     "the readings are too many for one book",
                     shown(name),
-                    f"{len(data) / 1e6:.0f} MB",
+                    f"{len(content) / 1e6:.0f} MB",
                     f"at most {MAX_BYTES // 2**20} MB",
-                    "split the field file by days or set-ups and import the parts",
+                    parts_hint(parts),
                 )
             )
     return problems
+
+
+def _as_read(name: str) -> bool:
+    """Whether a file is kept as evidence, and read by no command."""
+    return name.startswith("imports/")
 
 
 def sha256(data: bytes) -> str:
@@ -98,8 +141,8 @@ def write_additions(folder: Path, additions: Additions) -> None:
             raise SurveyError(_not_writable(folder, closed=lock.closed))
         made: list[Path] = []
         try:
-            for name, data in additions.files.items():
-                _write_new(folder, name, data, made)
+            for name, content in additions.files.items():
+                _write_new(folder, name, content, made)
             append_tables(folder / "project.toml", additions.tables)
         except BaseException:
             _take_back(made)
@@ -114,14 +157,14 @@ def _not_writable(folder: Path, *, closed: bool) -> Problem:
     return Problem(what, shown(str(folder)), "", "a project that nobody else writes to")
 
 
-def _write_new(folder: Path, name: str, data: bytes, made: list[Path]) -> None:
+def _write_new(folder: Path, name: str, content: Content, made: list[Path]) -> None:
     path = folder / name
     parent = path.parent
     if parent.is_symlink() or (parent.exists() and not parent.is_dir()):
         raise SurveyError(
             Problem("this is no folder of the project", shown(parent.name), "", "a plain folder")
         )
-    if path.exists() and _same_bytes(path, data):
+    if path.exists() and _same_bytes(path, content):
         return
     try:
         if not parent.exists():
@@ -132,7 +175,19 @@ def _write_new(folder: Path, name: str, data: bytes, made: list[Path]) -> None:
             Problem(f"the folder cannot be made ({error.strerror or error})", shown(str(parent)))
         ) from None
     made.append(path)
-    atomic_write(path, data)
+    atomic_write(path, content if isinstance(content, bytes) else _pieces(content))
+
+
+def _pieces(copied: FileCopy) -> Iterator[bytes]:
+    """Bytes of a file; behind its end they are compared with those that were read."""
+    digest = hashlib.sha256()
+    with open_field_file(copied.source, copied.source.name) as stream:
+        while chunk := stream.read(_CHUNK):
+            digest.update(chunk)
+            yield chunk
+    if digest.hexdigest() != copied.sha256:
+        what = "the file was changed while it was imported"
+        raise SurveyError(Problem(what, copied.source.name, "", "a file that nobody writes to"))
 
 
 def _take_back(made: Sequence[Path]) -> None:

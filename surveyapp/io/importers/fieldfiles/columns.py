@@ -12,9 +12,11 @@ import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from typing import Final
 
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.io.importers.fieldfiles.lines import FieldText
 from surveyapp.io.importers.fieldfiles.units import (
     ANGLES,
     LENGTHS,
@@ -25,6 +27,8 @@ from surveyapp.io.importers.fieldfiles.units import (
 from surveyapp_models.angles import AngleError, AngleUnit, parse_angle
 
 _LEAST_ROWS: Final = 5
+_LATEST_HEADER: Final = 50
+_SAMPLE: Final = 2000
 _SEPARATORS: Final = (",", ";", "\t", "|")
 _NUMBER = re.compile(r"[+\-−]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][+-]?\d{1,3})?")
 
@@ -168,8 +172,7 @@ def _allowed(quantities: Quantities, name: str) -> tuple[str, ...]:
 
 
 def find_columns(
-    lines: Sequence[str],
-    where: str,
+    text: FieldText,
     quantities: Quantities,
     told: tuple[Mapping[str, str], Mapping[str, str]],
 ) -> Columns:
@@ -177,8 +180,7 @@ def find_columns(
 
     Parameters
     ----------
-    lines : sequence of str
-    where : str
+    text : FieldText
     quantities : Quantities
     told : tuple of mapping
         Columns and units by quantity.
@@ -192,15 +194,16 @@ def find_columns(
     problems = check_map(quantities, columns, units)
     if problems:
         raise SurveyError(problems)
-    wanted = set(columns.values())
-    for number, line in enumerate(lines[:50], start=1):
+    wanted, where = set(columns.values()), text.name
+    lines = [line for _, line in islice(text.lines(), _LATEST_HEADER + _SAMPLE)]
+    for number, line in enumerate(lines[:_LATEST_HEADER], start=1):
         for separator in _SEPARATORS:
             cells = _split(line, separator)
             if not wanted.issubset(cells):
                 continue
             _refuse_twice(cells, wanted, f"{where}, line {number}")
             places = {name: cells.index(column) for name, column in columns.items()}
-            sample = [_split(text, separator) for text in lines[number : number + 2000]]
+            sample = [_split(row, separator) for row in lines[number : number + _SAMPLE]]
             comma = separator != "," and _comma(sample, places, quantities)
             return Columns(places, dict(units), comma, separator, len(cells), number)
     raise SurveyError(_no_header(lines, where, wanted))
@@ -257,15 +260,14 @@ def cells_of(line: str, columns: Columns) -> list[str]:
     return cells
 
 
-def usual_decimals(lines: Sequence[str], columns: Columns) -> int | None:
+def usual_decimals(text: FieldText, columns: Columns) -> int | None:
     """Decimals of the last column, if the table writes every column with a fixed number of them.
 
     A spreadsheet that drops idle zeros does so in every column; then nothing can be said.
 
     Parameters
     ----------
-    lines : sequence of str
-        Rows without the header.
+    text : FieldText
     columns : Columns
 
     Returns
@@ -274,21 +276,25 @@ def usual_decimals(lines: Sequence[str], columns: Columns) -> int | None:
         A last cell with fewer was cut.
     """
     sign = "," if columns.comma else "."
-    rows = [
-        cells for line in lines if len(cells := _split(line, columns.separator)) == columns.width
-    ]
-    if len(rows) < _LEAST_ROWS:
+    counts: dict[int, Counter[int]] = {}
+    number = 0
+    for line_number, line in text.lines():
+        if line_number <= columns.header_line:
+            continue
+        row = _split(line, columns.separator)
+        if len(row) != columns.width:
+            continue
+        number += 1
+        if number == 1:
+            numeric = [p for p in columns.places.values() if _NUMBER.fullmatch(row[p])]
+            counts = {place: Counter() for place in {*numeric, columns.width - 1}}
+        for place, count in counts.items():
+            count[len(row[place].rpartition(sign)[2]) if sign in row[place] else 0] += 1
+    if number < _LEAST_ROWS:
         return None
-    numeric = [p for p in columns.places.values() if _NUMBER.fullmatch(rows[0][p])]
-    counts = {
-        place: Counter(
-            len(row[place].rpartition(sign)[2]) if sign in row[place] else 0 for row in rows
-        )
-        for place in {*numeric, columns.width - 1}
-    }
     last = counts.pop(columns.width - 1)
-    usual, number = last.most_common(1)[0]
-    if not counts or any(len(found) > 1 for found in counts.values()) or number < 0.8 * len(rows):
+    usual, most = last.most_common(1)[0]
+    if not counts or any(len(found) > 1 for found in counts.values()) or most < 0.8 * number:
         return None
     return usual or None
 

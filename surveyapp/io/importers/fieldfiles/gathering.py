@@ -1,14 +1,14 @@
 """What a reader of a field file has gathered so far: pointings, points, damage, what is ignored.
 
 Every reader fills one of these. Damage is noted with its line and never guessed over: what depends
-on a damaged line is left out with it.
+on a damaged line is left out with it. What is kept is bounded, however large the file is.
 """
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
@@ -16,14 +16,18 @@ from typing import Final
 from surveyapp.domain.fieldfile import FieldFile, KnownPoint, Pointing, SkippedLine
 from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.io.files import decode, read_bytes, shown
+from surveyapp.io.files import shown
+from surveyapp.io.importers.fieldfiles.damage import Damage
+from surveyapp.io.importers.fieldfiles.lines import Cut, FieldText
+from surveyapp.io.importers.fieldfiles.parts import Parts
 from surveyapp.io.importers.fieldfiles.units import FootChoice
 
 DAMAGED: Final = "damaged"
 DEPENDENT: Final = "depends_on_damaged"
 _SAME_M: Final = 1e-3
 _SHOWN: Final = 8
-_TOLD_EVERY: Final = 5000
+_MOST_POINTS: Final = 300_000
+_MOST_KINDS: Final = 1000
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +44,8 @@ class ReadOptions:
         CSV: columns and units by quantity; ``foot`` tells which foot.
     progress : callable or None
         Told from time to time which part of the file has been read, 0 to 1.
+    lines : tuple of int or None
+        First and last line whose readings are taken; what stands before them is read all the same.
     """
 
     skip_damaged: bool = False
@@ -47,6 +53,11 @@ class ReadOptions:
     columns: Mapping[str, str] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
     progress: Callable[[float], None] | None = None
+    lines: tuple[int, int] | None = None
+
+    def wants(self, line: int) -> bool:
+        """Whether readings and damage of a line count."""
+        return self.lines is None or self.lines[0] <= line <= self.lines[1]
 
 
 @dataclass(slots=True)
@@ -59,18 +70,22 @@ class Gathering:
     pointings: list[Pointing] = field(default_factory=list)
     points: dict[str, KnownPoint] = field(default_factory=dict)
     skipped: list[SkippedLine] = field(default_factory=list)
-    damage: list[Problem] = field(default_factory=list)
+    damage: Damage = field(default_factory=Damage)
     warnings: list[ResultWarning] = field(default_factory=list)
     ignored: Counter[str] = field(default_factory=Counter)
+    parts: Parts = field(default_factory=Parts)
     feet: bool = False
 
-    def numbered(self, lines: Sequence[str], start: int = 1) -> Iterator[tuple[int, str]]:
+    def lines(self, text: FieldText, *, cut: Cut | None = None) -> Iterator[tuple[int, str]]:
         """Lines with their numbers; tells the progress on the way."""
-        tell = self.options.progress
-        for number, line in enumerate(lines, start=start):
-            if tell is not None and number % _TOLD_EVERY == 0:
-                tell((number - start) / len(lines))
-            yield number, line
+        return text.lines(progress=self.options.progress, cut=cut)
+
+    def ignore(self, kind: str, count: int = 1) -> None:
+        """Note that something is not used; of kinds without end the first."""
+        if kind in self.ignored or len(self.ignored) < _MOST_KINDS:
+            self.ignored[kind] += count
+        else:
+            self.ignored["others"] += count
 
     def add(self, pointing: Pointing) -> None:
         """Take a pointing whose vertical reading agrees with its face."""
@@ -79,20 +94,26 @@ class Gathering:
             what = f"the vertical reading is none of face {'II' if pointing.face == 'R' else 'I'}"
             self.damaged(pointing.line, what, f"{math.degrees(v):.5f} degrees from the zenith")
             return
-        self.pointings.append(pointing)
+        if self.options.wants(pointing.line) and self.parts.takes(pointing.line, pointing.setup):
+            self.pointings.append(pointing)
 
     def damaged(self, line: int, what: str, found: str, expected: str = "") -> None:
         """Note a damaged line."""
-        self.damage.append(Problem(what, f"{self.name}, line {line}", shown(found), expected))
-        self.skipped.append(SkippedLine(line, DAMAGED, what))
+        if self.options.wants(line):
+            self.damage.add(
+                line, Problem(what, f"{self.name}, line {line}", shown(found), expected)
+            )
+            self.skip(line, DAMAGED, what)
 
     def dependent(self, line: int, text: str) -> None:
         """Note a line that is sound but means nothing without a damaged one."""
-        self.skipped.append(SkippedLine(line, DEPENDENT, text))
+        self.skip(line, DEPENDENT, text)
 
     def skip(self, line: int, code: str, text: str) -> None:
         """Note a line that is left out for another reason."""
-        self.skipped.append(SkippedLine(line, code, text))
+        if self.options.wants(line):
+            self.skipped.append(SkippedLine(line, code, text))
+            self.damage.refuse_flood(len(self.skipped), self.name)
 
     def warn(self, code: str, text: str) -> None:
         """Note something that the surveyor must know, once."""
@@ -112,6 +133,9 @@ class Gathering:
         if point.e is None and point.n is None and point.h is None:
             return
         old = self.points.setdefault(point.name, point)
+        if len(self.points) > _MOST_POINTS:
+            found, expected = f"more than {_MOST_POINTS}", "the points of a survey"
+            raise SurveyError(Problem("the file holds too many points", self.name, found, expected))
         pairs = ((old.e, point.e), (old.n, point.n), (old.h, point.h))
         if any(a is not None and b is not None and abs(a - b) > _SAME_M for a, b in pairs):
             text = f"line {point.line} has other coordinates of {point.name} than line {old.line}"
@@ -141,7 +165,9 @@ class Gathering:
             With every damaged line, unless they are to be left out; without any pointing.
         """
         if self.damage and not self.options.skip_damaged:
-            raise SurveyError([_with_hint(problem) for problem in self.damage])
+            raise SurveyError(self.damage.problems(self.name))
+        if self.parts.left_out:
+            raise SurveyError(self.parts.problem(self.name))
         if not self.pointings:
             raise SurveyError(
                 Problem(
@@ -163,6 +189,7 @@ class Gathering:
             corrected=corrected,
             skipped=tuple(sorted(self.skipped, key=lambda item: item.line)),
             warnings=tuple(self.warnings),
+            parts=self.parts.found(),
         )
 
     def _tell(self, form: str) -> None:
@@ -183,11 +210,6 @@ class Gathering:
             self.warn("ppm_zero", text)
 
 
-def _with_hint(problem: Problem) -> Problem:
-    hint = "--skip-damaged leaves such lines out and lists them"
-    return Problem(problem.what, problem.where, problem.found, problem.expected, hint)
-
-
 def gathering(path: Path, options: ReadOptions) -> Gathering:
     """An empty gathering for a file, with the foot that was told."""
     from surveyapp.errors import nearest_names
@@ -200,44 +222,3 @@ def gathering(path: Path, options: ReadOptions) -> Gathering:
         raise SurveyError(Problem("there is no such foot", "--unit foot", told, "", hint))
     foot = FootChoice() if told is None else FootChoice(kinds[told], told=True)
     return Gathering(path.name, options, foot)
-
-
-def file_lines(data: bytes, where: str, *, single_byte: bool = False) -> tuple[list[str], str]:
-    """Lines of a file without their ends, and the encoding they were read in.
-
-    Parameters
-    ----------
-    data : bytes
-    where : str
-        What messages call the file.
-    single_byte : bool
-        Columns are counted in bytes: never decode several bytes to one character.
-
-    Raises
-    ------
-    SurveyError
-        For a binary file.
-    """
-    encoding = "latin-1"
-    if single_byte or not data.isascii():
-        if b"\x00" in data:
-            decode(data, where=where)
-        if not single_byte:
-            try:
-                text, encoding = data.decode("utf-8-sig"), "utf-8"
-            except UnicodeDecodeError:
-                text = data.decode("latin-1")
-        else:
-            text = data.decode("latin-1")
-    else:
-        text = decode(data, where=where)
-    text = text.replace("\r\n", "\n").replace("\r", "\n")
-    lines = text.split("\n")
-    if lines and not lines[-1]:
-        lines.pop()
-    return lines, encoding
-
-
-def read_field_file(path: Path) -> bytes:
-    """Bytes of a field file; see ``surveyapp.io.files``."""
-    return read_bytes(path, where=path.name)

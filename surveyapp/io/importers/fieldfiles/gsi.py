@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 import re
+from array import array
 from collections import Counter
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -20,9 +21,7 @@ from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.importers.fieldfiles.gathering import (
     Gathering,
     ReadOptions,
-    file_lines,
     gathering,
-    read_field_file,
 )
 from surveyapp.io.importers.fieldfiles.gsi_words import (
     Layout,
@@ -31,9 +30,11 @@ from surveyapp.io.importers.fieldfiles.gsi_words import (
     block_width,
     blocks,
     cut_layouts,
+    last_opening,
     layout,
     words,
 )
+from surveyapp.io.importers.fieldfiles.lines import FieldText, look_through
 
 _READINGS: Final = ("21", "22", "31", "32")
 _STATION: Final = frozenset({"84", "85", "86", "88"})
@@ -42,9 +43,12 @@ _USED: Final = frozenset(
     | {str(i) for i in range(71, 80)}
     | {str(i) for i in range(81, 89)}
 )
+_REMARKS: Final = frozenset(str(i) for i in range(71, 80))
 _MEASURED = re.compile(r"\s(?:21|22|31|32)\.")
 _TWO_PI: Final = 2.0 * math.pi
 _TWO_TENTHS_M: Final = 2e-4
+_MOST_LAYOUTS: Final = 1000
+"""An instrument writes a handful of kinds of blocks; of garbage no more are kept."""
 
 
 @dataclass(slots=True)
@@ -63,8 +67,9 @@ class _State:
     widths: set[int] = field(default_factory=set)
     conventions: set[str] = field(default_factory=set)
     codes: Counter[str] = field(default_factory=Counter)
-    homeless: list[int] = field(default_factory=list)
+    homeless: array[int] = field(default_factory=lambda: array("Q"))
     cut: frozenset[Layout] = frozenset()
+    layouts: dict[Layout, int] = field(default_factory=dict)
 
 
 def read_gsi(path: Path, options: ReadOptions) -> FieldFile:
@@ -85,34 +90,47 @@ def read_gsi(path: Path, options: ReadOptions) -> FieldFile:
     SurveyError
         Every damaged line; no station in either convention (codes are listed).
     """
-    lines, encoding = file_lines(read_field_file(path), path.name)
     if options.station_code is not None:  # blocks pad codes with zeros
         options = replace(options, station_code=options.station_code.lstrip("0") or "0")
-    state = _State(gathering(path, options))
-    cleaned = [line.strip("\x1a\x00\t").lstrip() for line in lines]
-    state.cut = cut_layouts(Counter(layout(b) for line in cleaned if line for b in blocks(line)))
-    for number, line in state.gathered.numbered(cleaned):
-        if line.strip():
-            for block in blocks(line):
-                _block(state, number, block)
-    if encoding == "latin-1" and not all(line.isascii() for line in lines):
+    text = look_through(path)
+    state = _passed(text, _State(gathering(path, options)))
+    cut = cut_layouts(state.layouts)
+    if cut:
+        state.gathered.pointings.clear()
+        state = _passed(text, _State(gathering(path, options), cut=cut))
+    if text.encoding == "latin-1":
         state.gathered.warn("code_page", "names that are no ASCII were read as Latin-1")
     _check_stations(state)
     if state.gaps:
-        text = f"the running block numbers leap {state.gaps} times: were blocks deleted?"
-        state.gathered.warn("block_numbers", text)
+        told = f"the running block numbers leap {state.gaps} times: were blocks deleted?"
+        state.gathered.warn("block_numbers", told)
     widths = "/".join(str(width) for width in sorted(state.widths))
     names = " and ".join(sorted(state.conventions))
     return state.gathered.finish(form=("gsi", f"GSI-{widths}, {names}"), applied=(True, True))
 
 
-def _block(state: _State, line: int, block: str) -> None:
+def _passed(text: FieldText, state: _State) -> _State:
+    """Go through the file; which layouts are cut ones is known only behind its end."""
+    layouts = state.layouts
+    for number, raw in state.gathered.lines(text, cut=last_opening):
+        line = raw.strip("\x1a\t").lstrip()
+        if not line or line.isspace():
+            continue
+        for block in blocks(line):
+            kind = layout(block)
+            if kind in layouts or len(layouts) < _MOST_LAYOUTS:
+                layouts[kind] = layouts.get(kind, 0) + 1
+            _block(state, number, block, cut=kind in state.cut)
+    return state
+
+
+def _block(state: _State, line: int, block: str, *, cut: bool) -> None:
     gathered = state.gathered
     try:
         found = words(block)
         if found[0].word_index not in ("11", "41"):
             raise WordError(f"the block does not begin with a word 11 or 41: {found[0].word_index}")
-        if state.cut and layout(block) in state.cut:
+        if cut:
             raise WordError(f"the line is cut short behind {len(found)} words")
     except WordError as error:
         gathered.damaged(line, str(error), block, "words of 8 or 16 characters, parted by blanks")
@@ -157,19 +175,24 @@ def _lose(state: _State, line: int) -> None:
 
 def _meaning(state: _State, line: int, found: list[Word]) -> None:
     by_index = {word.word_index: word for word in reversed(found)}
-    for index in by_index:
-        if index not in _USED:
-            state.gathered.ignored[f"word {index}"] += 1
+    if not by_index.keys() <= _USED:
+        for index in by_index.keys() - _USED:
+            state.gathered.ignore(f"word {index}")
     if found[0].word_index == "41":
         _code(state, by_index)
-    elif any(index in by_index and not by_index[index].empty for index in _READINGS):
+    elif _is_read(by_index):
         _pointing(state, line, by_index)
     elif _STATION & by_index.keys():
         _station(state, line, by_index)
     elif {"81", "82", "83"} & by_index.keys():
         state.gathered.point(_coordinates(state, line, by_index, "81"))
     else:
-        state.gathered.ignored["block without a reading"] += 1
+        state.gathered.ignore("block without a reading")
+
+
+def _is_read(by_index: dict[str, Word]) -> bool:
+    """Whether a block holds a reading."""
+    return any(index in by_index and not by_index[index].empty for index in _READINGS)
 
 
 def _length(state: _State, word: Word | None) -> float | None:
@@ -208,8 +231,9 @@ def _station(state: _State, line: int, found: dict[str, Word]) -> None:
 def _code(state: _State, found: dict[str, Word]) -> None:
     code = found["41"].name
     if code != state.gathered.options.station_code:
-        state.codes[code] += 1
-        state.gathered.ignored[f"code {code}"] += 1
+        if code in state.codes or len(state.codes) < _MOST_LAYOUTS:
+            state.codes[code] += 1
+        state.gathered.ignore(f"code {code}")
         return
     if "42" not in found or found["42"].empty:
         raise WordError(f"code {code} names no station in word 42")
@@ -263,6 +287,8 @@ def _corrections(found: dict[str, Word]) -> tuple[float | None, float | None]:
 
 
 def _note(found: dict[str, Word]) -> str:
+    if _REMARKS.isdisjoint(found):
+        return ""
     texts = [found[key].name for key in sorted(found) if key[:1] == "7" and not found[key].empty]
     return " ".join(text for text in texts if text != "0")
 

@@ -24,10 +24,6 @@ _HEAD = re.compile(r"\d\d[\d.?]{4}[+-]")
 _PLACES: Final = {"0": 1e-3, "6": 1e-4, "8": 1e-5}
 _FEET: Final = {"1": 1e-3, "7": 1e-4}
 _CIRCLE: Final = {"2": (GON, 1e-5), "3": (DEGREE, 1e-5), "5": (MIL, 1e-4)}
-_WHOLE: Final = {
-    width: re.compile(rf"(\d\d[\d.?]{{4}})([+-])(.{{{width}}})( +|$)") for width in WIDTHS
-}
-"""Whole words one behind the other; what they leave over shows a damage."""
 _NOTHING = re.compile(r"0*-+")
 
 
@@ -97,13 +93,18 @@ class Word(NamedTuple):
 
     def pair(self) -> tuple[int, int]:
         """Two signed numbers in one word (51: ppm and prism), split at the second sign."""
-        match = re.fullmatch(r"(\d+)([+-])(\d+)", self.data.strip())
-        if match is None:
+        found = _two_numbers(self.data.strip())
+        if found is None:
             raise WordError(
                 f"word {self.word_index} holds no two signed numbers: {self.data.strip()}"
             )
-        first = int(match[1]) * (-1 if self.sign == "-" else 1)
-        return first, int(match[3]) * (-1 if match[2] == "-" else 1)
+        return found[0] * (-1 if self.sign == "-" else 1), found[1]
+
+
+@lru_cache(maxsize=1 << 10)
+def _two_numbers(text: str) -> tuple[int, int] | None:
+    match = re.fullmatch(r"(\d+)([+-])(\d+)", text)
+    return None if match is None else (int(match[1]), int(match[2] + match[3]))
 
 
 def blocks(line: str) -> Iterator[str]:
@@ -117,6 +118,11 @@ def blocks(line: str) -> Iterator[str]:
                 yield line[start:end]
             return
     yield line
+
+
+def last_opening(text: str) -> int:
+    """Place of the last block of a piece of a line, which goes on behind it; 0 without one."""
+    return max((match.start() for match in _OPENING.finditer(text)), default=0)
 
 
 def block_width(block: str) -> int:
@@ -137,10 +143,25 @@ def words(block: str) -> list[Word]:
     """
     width = block_width(block)
     text = block.removeprefix("*").rstrip()
-    whole = _WHOLE[width].findall(text)
-    if sum([len(gap) for _, _, _, gap in whole]) + len(whole) * (HEAD + width) == len(text):
-        return [Word(*_index(head), sign, data) for head, sign, data, _ in whole]
+    stride = HEAD + width + 1
+    if (len(text) + 1) % stride == 0 and not text[HEAD + width :: stride].strip(" "):
+        starts = range(0, len(text), stride)
+        kinds = [_kind(text[start : start + HEAD]) for start in starts]
+        if None not in kinds:
+            return [
+                Word(*kind, text[start + HEAD : start + HEAD + width])
+                for kind, start in zip(kinds, starts, strict=True)
+                if kind is not None
+            ]
     return _words_one_by_one(block, text, width)
+
+
+@lru_cache(maxsize=1 << 14)
+def _kind(head: str) -> tuple[str, str, str] | None:
+    """Index, information and sign of a word; None for what begins no word."""
+    if _HEAD.fullmatch(head) is None:
+        return None
+    return (*_index(head[:6]), head[6])
 
 
 def _words_one_by_one(block: str, text: str, width: int) -> list[Word]:
@@ -204,7 +225,6 @@ def _blank_tail(piece: str, block: str, place: int, width: int) -> bool:
     return len(piece) > HEAD and len(block) >= start + HEAD + width
 
 
-@lru_cache(maxsize=1 << 14)
 def _index(head: str) -> tuple[str, str]:
     """Index and information: two digits, three where the third position is a digit as well."""
     size = 2 if head[:2] in ("11", "41") or not head[2].isdigit() else 3

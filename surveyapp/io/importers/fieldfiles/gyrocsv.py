@@ -26,10 +26,9 @@ from surveyapp.io.importers.fieldfiles.columns import (
 from surveyapp.io.importers.fieldfiles.gathering import (
     Gathering,
     ReadOptions,
-    file_lines,
     gathering,
-    read_field_file,
 )
+from surveyapp.io.importers.fieldfiles.lines import look_through
 
 QUANTITIES: Final = Quantities(
     names=("station", "target", "azimuth", "time", "sigma", "temperature", "note"),
@@ -85,20 +84,24 @@ def read_gyro_csv(path: Path, options: ReadOptions) -> GyroFile:
         Everything wrong with map and units; every damaged row; no row at all.
     """
     gathered = gathering(path, options)
-    data = read_field_file(path)
-    lines, _ = file_lines(data, path.name)
-    columns = find_columns(lines, path.name, QUANTITIES, (options.columns, options.units))
+    table = look_through(path)
+    columns = find_columns(table, QUANTITIES, (options.columns, options.units))
     readings: list[GyroReading] = []
-    first = columns.header_line
-    usual = usual_decimals(lines[first:], columns)
-    for number, line in gathered.numbered(lines[first:], start=first + 1):
-        if not line.strip(" \t,;|") or line.lstrip().startswith("#"):
+    usual = usual_decimals(table, columns)
+    for number, line in gathered.lines(table):
+        if (
+            number <= columns.header_line
+            or not line.strip(" \t,;|")
+            or line.lstrip().startswith("#")
+        ):
             continue
         try:
             cells = cells_of(line, columns)
             if cut_short(cells, usual, columns):
                 raise CellError("the line is cut short: decimals of its last cell are missing")
-            readings.append(_reading(columns, number, cells))
+            reading = _reading(columns, number, cells)
+            if options.wants(number) and gathered.parts.takes(number, ""):
+                readings.append(reading)
         except CellError as error:
             gathered.damaged(number, str(error), line)
     _refuse(gathered, readings)
@@ -113,10 +116,9 @@ def read_gyro_csv(path: Path, options: ReadOptions) -> GyroFile:
 
 def _refuse(gathered: Gathering, readings: list[GyroReading]) -> None:
     if gathered.damage and not gathered.options.skip_damaged:
-        hint = "--skip-damaged leaves such lines out and lists them"
-        raise SurveyError(
-            [Problem(p.what, p.where, p.found, p.expected, hint) for p in gathered.damage]
-        )
+        raise SurveyError(gathered.damage.problems(gathered.name))
+    if gathered.parts.left_out:
+        raise SurveyError(gathered.parts.problem(gathered.name))
     if not readings:
         raise SurveyError(Problem("there is no azimuth in the file", gathered.name))
 

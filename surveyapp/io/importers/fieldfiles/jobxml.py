@@ -8,7 +8,9 @@ and reductions are results; deleted records are left out and told.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -17,7 +19,6 @@ from surveyapp.io.importers.fieldfiles.gathering import (
     Gathering,
     ReadOptions,
     gathering,
-    read_field_file,
 )
 from surveyapp.io.importers.fieldfiles.jobxml_records import Record, read_records
 
@@ -78,22 +79,10 @@ def read_jobxml(path: Path, options: ReadOptions) -> FieldFile:
     SurveyError
         Every damaged record with its line; entities, document types, a torn file.
     """
-    records = read_records(read_field_file(path), path.name)
     state = _State(gathering(path, options))
-    actions = {"PointRecord": _point, "StationRecord": _station, "TargetRecord": _target}
-    actions |= {"AtmosphereRecord": _atmosphere}
-    for record in records:
-        action = actions.get(record.kind)
-        if action is None:
-            state.gathered.ignored[record.kind] += 1
-            continue
-        try:
-            action(state, record)
-        except RecordError as error:
-            state.gathered.damaged(record.line, str(error), record.kind)
-            state.broken[record.attributes.get("ID", "")] = f"line {record.line}: {error}"
+    records = read_records(path, partial(_record, state), progress=options.progress)
     for kind, count in records.others.items():
-        state.gathered.ignored[kind] += count
+        state.gathered.ignore(kind, count)
     if records.torn is not None:
         line, why = records.torn
         state.gathered.damaged(line, f"the XML is torn: {why}", f"line {line}")
@@ -104,6 +93,18 @@ def read_jobxml(path: Path, options: ReadOptions) -> FieldFile:
     return state.gathered.finish(
         form=("jobxml", version), applied=(every_ppm, every_prism), corrected=True
     )
+
+
+def _record(state: _State, record: Record) -> None:
+    action = _ACTIONS.get(record.kind)
+    if action is None:
+        state.gathered.ignore(record.kind)
+        return
+    try:
+        action(state, record)
+    except RecordError as error:
+        state.gathered.damaged(record.line, str(error), record.kind)
+        state.broken[record.attributes.get("ID", "")] = f"line {record.line}: {error}"
 
 
 def _tell_corrections(state: _State) -> None:
@@ -181,7 +182,7 @@ def _point(state: _State, record: Record) -> None:
         state.gathered.point(KnownPoint(name, e, n, h, record.line))
         return
     if method == "MeanTurnedAngle" or not any(path.startswith("Circle/") for path in record.texts):
-        state.gathered.ignored[f"PointRecord {method or 'without readings'}"] += 1
+        state.gathered.ignore(f"PointRecord {method or 'without readings'}")
         return
     _pointing(state, record, name)
 
@@ -263,3 +264,11 @@ def _face_of(v: float | None) -> Face:
     if v is None:
         return ""
     return "R" if v > math.pi else "L"
+
+
+_ACTIONS: Final[dict[str, Callable[[_State, Record], None]]] = {
+    "PointRecord": _point,
+    "StationRecord": _station,
+    "TargetRecord": _target,
+    "AtmosphereRecord": _atmosphere,
+}

@@ -7,11 +7,14 @@ document types are refused, names lose their namespace, nesting is bounded.
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator
+import os
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO, Final
 
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.importers.fieldfiles.lines import open_field_file
 
 if TYPE_CHECKING:
     from xml.sax.handler import ContentHandler
@@ -21,6 +24,7 @@ RECORDS: Final = frozenset(
 )
 _DEEPEST: Final = 64
 _LONGEST_TEXT: Final = 10_000
+_MOST_TEXTS: Final = 1000
 
 
 @dataclass(slots=True)
@@ -39,9 +43,9 @@ class Record:
 
 @dataclass(slots=True)
 class Records:
-    """Everything up to the end or to the place where the file is torn."""
+    """Where the reading stands, and where the file is torn; each record is handed on at its end."""
 
-    found: list[Record] = field(default_factory=list)
+    take: Callable[[Record], None]
     others: dict[str, int] = field(default_factory=dict)
     root: str = ""
     version: str = ""
@@ -50,12 +54,13 @@ class Records:
     _current: Record | None = None
     _depth: int = 0
     _text: list[str] = field(default_factory=list)
+    _length: int = 0
 
     def start(self, name: str, attributes: dict[str, str], line: int, where: str) -> None:
         """Take the start of an element."""
         name = name.rpartition(":")[2]
         self._path.append(name)
-        self._text.clear()
+        self._clear()
         if len(self._path) > _DEEPEST:
             raise SurveyError(
                 Problem(
@@ -71,32 +76,34 @@ class Records:
             if name in RECORDS:
                 self._current = Record(name, line, attributes)
                 self._depth = len(self._path)
-            elif len(self._path) >= 2 and self._path[-2] == "FieldBook":
+            elif self._path[-2:-1] == ["FieldBook"] and len(self.others) < _MOST_TEXTS:
                 self.others[name] = self.others.get(name, 0) + 1
 
     def characters(self, content: str) -> None:
         """Take text between tags."""
-        if self._current is not None and len(self._text) < _LONGEST_TEXT:
-            self._text.append(content)
+        if self._current is not None and self._length < _LONGEST_TEXT:
+            self._text.append(content[:_LONGEST_TEXT])
+            self._length += len(content)
+
+    def _clear(self) -> None:
+        self._text.clear()
+        self._length = 0
 
     def end(self) -> None:
         """Take the end of an element."""
         if self._current is not None:
             if len(self._path) == self._depth:
-                self.found.append(self._current)
+                self.take(self._current)
                 self._current = None
-            else:
+            elif len(self._current.texts) < _MOST_TEXTS:
                 path = "/".join(self._path[self._depth :])
                 self._current.texts.setdefault(path, "".join(self._text).strip())
-        self._text.clear()
+        self._clear()
         self._path.pop()
 
     def unfinished(self) -> int | None:
         """Line of the record in which the file is torn."""
         return None if self._current is None else self._current.line
-
-    def __iter__(self) -> Iterator[Record]:
-        return iter(self.found)
 
 
 def _handler(records: Records, where: str) -> ContentHandler:
@@ -123,14 +130,35 @@ def _handler(records: Records, where: str) -> ContentHandler:
     return Handler()
 
 
-def read_records(data: bytes, where: str) -> Records:
-    """Records of a JobXML file.
+class _Watched(io.RawIOBase):
+    """A file that tells how much of it has been read."""
+
+    def __init__(self, stream: BinaryIO, progress: Callable[[float], None] | None) -> None:
+        super().__init__()
+        self._stream, self._progress, self._done = stream, progress, 0
+        self._size = max(os.fstat(stream.fileno()).st_size, 1)
+
+    def read(self, size: int = -1) -> bytes:
+        """Read, and tell."""
+        data = self._stream.read(size)
+        self._done += len(data)
+        if self._progress is not None:
+            self._progress(min(1.0, self._done / self._size))
+        return data
+
+
+def read_records(
+    file: Path, take: Callable[[Record], None], *, progress: Callable[[float], None] | None = None
+) -> Records:
+    """Hand on the records of a JobXML file one by one.
 
     Parameters
     ----------
-    data : bytes
-    where : str
-        What messages call the file.
+    file : Path
+    take : callable
+        Gets each record at its end.
+    progress : callable or None
+        Told which part of the file has been read, 0 to 1.
 
     Returns
     -------
@@ -148,13 +176,15 @@ def read_records(data: bytes, where: str) -> Records:
     from defusedxml.common import DefusedXmlException
     from defusedxml.sax import make_parser
 
-    records = Records()
+    where = file.name
+    records = Records(take)
     parser = make_parser()
     parser.forbid_dtd = True
     parser.setFeature(feature_external_ges, False)
     parser.setContentHandler(_handler(records, where))
     try:
-        parser.parse(io.BytesIO(data))
+        with open_field_file(file, where) as stream:
+            parser.parse(_Watched(stream, progress))
     except DefusedXmlException:
         raise SurveyError(
             Problem(

@@ -19,10 +19,9 @@ from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.importers.fieldfiles.gathering import (
     Gathering,
     ReadOptions,
-    file_lines,
     gathering,
-    read_field_file,
 )
+from surveyapp.io.importers.fieldfiles.lines import FieldText, look_through
 from surveyapp.io.importers.fieldfiles.units import DEGREE, GON, MIL
 
 _ANGLES: Final = {"1": DEGREE, "2": GON, "4": MIL}
@@ -30,9 +29,11 @@ _LENGTHS: Final = {"1": 1.0, "2": None}
 _ORDERS: Final = {"1": "NEZ", "2": "ENZ"}
 _FACES: Final[dict[str, Face]] = {"F1": "L", "F2": "R"}
 _FRAME: Final = "\x02\x03\x1a\x00"
+_MARK: Final = "\xef\xbb\xbf"
 _LAYOUT: Final = {"02": 5, "08": 4, "03": 1, "09": 3}
 """Values behind the names of a record, its text not counted."""
 _TWO_PI: Final = 2.0 * math.pi
+_SHOWN: Final = 6
 
 
 class RecordError(ValueError):
@@ -59,10 +60,12 @@ class _State:
     prism: float | None = None
     applied: bool | None = None
     time: str = ""
-    set: str = ""
     padded: frozenset[str] = frozenset()
     decimals: dict[str, int] = field(default_factory=dict)
+    opened: str = ""
+    faces: set[str] = field(default_factory=set)
     means: list[Pointing] = field(default_factory=list)
+    mean_only: list[str] = field(default_factory=list)
 
 
 def read_sdr(path: Path, options: ReadOptions) -> FieldFile:
@@ -77,21 +80,22 @@ def read_sdr(path: Path, options: ReadOptions) -> FieldFile:
     SurveyError
         Every damaged line; a file without a header 00, or with units that are not known.
     """
-    lines, _ = file_lines(read_field_file(path), path.name, single_byte=True)
+    text = look_through(path, single_byte=True)
     state = _State(gathering(path, options))
-    cleaned = [line.strip(_FRAME) for line in lines]
-    _begin(state, cleaned)
-    for number, line in state.gathered.numbered(cleaned):
-        if line.strip():
-            _record(state, number, line)
-    if not all(line.isascii() for line in cleaned):
+    _begin(state, text)
+    for number, line in state.gathered.lines(text):
+        record = _bare(line)
+        if record.strip():
+            _record(state, number, record)
+    if text.encoding != "ascii":
         state.gathered.warn("code_page", "names that are no ASCII were read as Latin-1")
     _keep_means(state)
+    _tell_means(state)
     if state.applied is None:
-        text = (
+        told = (
             "no note says whether the prism constant is in the distances: enter it in [[traverse]]"
         )
-        state.gathered.warn("constant_unknown", text)
+        state.gathered.warn("constant_unknown", told)
     state.gathered.warn(
         "atmosphere_unknown",
         "SDR files do not say whether distances hold the atmospheric correction: enter "
@@ -100,9 +104,14 @@ def read_sdr(path: Path, options: ReadOptions) -> FieldFile:
     return state.gathered.finish(form=("sdr", state.version), applied=(None, state.applied))
 
 
-def _begin(state: _State, lines: list[str]) -> None:
+def _bare(line: str) -> str:
+    """A line without what frames a transmission, or marks a text as UTF-8."""
+    return line.removeprefix(_MARK).strip(_FRAME)
+
+
+def _begin(state: _State, text: FieldText) -> None:
     """Version from the header; how complete lines look, so that a cut one is found."""
-    header = next((line for line in lines if line[:2] == "00"), "")
+    header = next((line for _, raw in text.lines() if (line := _bare(raw))[:2] == "00"), "")
     version = header[4:20].upper()
     if version.startswith("SDR33"):
         state.widths, state.version = (16, 16), "SDR33"
@@ -119,7 +128,8 @@ def _begin(state: _State, lines: list[str]) -> None:
         )
     full: set[str] = set()
     places: dict[str, Counter[int]] = {}
-    for line in lines:
+    for _, raw in text.lines():
+        line = _bare(raw)
         kind = line[:2]
         if kind not in _LAYOUT:
             continue
@@ -150,7 +160,7 @@ def _record(state: _State, number: int, line: str) -> None:
     action = actions.get(kind)
     if action is None:
         if kind not in ("06", "10", "07"):
-            state.gathered.ignored[f"record {kind}{origin.strip()}"] += 1
+            state.gathered.ignore(f"record {kind}{origin.strip()}")
         return
     try:
         if kind in _LAYOUT:
@@ -246,7 +256,7 @@ def _station(state: _State, number: int, line: str) -> None:
     point = _known_point(state, number, line)
     hi = _metres(state, _value(state, line, 1, 3, "the instrument height"))
     state.setup += 1
-    state.station, state.hi, state.lost, state.set = point.name, hi, "", ""
+    state.station, state.hi, state.lost = point.name, hi, ""
     if not (point.e == point.n == 0.0 and not point.h):
         state.gathered.point(point)
 
@@ -262,11 +272,11 @@ def _point(state: _State, number: int, line: str) -> None:
     if line[2:4] in ("KI", "TP", "  ", "NM"):
         state.gathered.point(_known_point(state, number, line))
     else:
-        state.gathered.ignored[f"record 08{line[2:4].strip()}"] += 1
+        state.gathered.ignore(f"record 08{line[2:4].strip()}")
 
 
 def _set(state: _State, number: int, line: str) -> None:
-    state.gathered.ignored["record 12"] += 1
+    state.gathered.ignore("record 12")
 
 
 def _note(state: _State, number: int, line: str) -> None:
@@ -281,7 +291,7 @@ def _note(state: _State, number: int, line: str) -> None:
     elif origin == "TS":
         state.time = text
     else:
-        state.gathered.ignored[f"note 13{origin.strip()}"] += 1
+        state.gathered.ignore(f"note 13{origin.strip()}")
 
 
 def _circle(state: _State, value: float | None, what: str) -> float | None:
@@ -304,7 +314,7 @@ def _zenith(state: _State, value: float | None) -> float | None:
 def _observation(state: _State, number: int, line: str) -> None:
     origin = line[2:4]
     if origin not in ("F1", "F2", "MC"):
-        state.gathered.ignored[f"record 09{origin.strip()}"] += 1
+        state.gathered.ignore(f"record 09{origin.strip()}")
         return
     at, to = _names(state, line, 2)
     if not at or not to or at == to:
@@ -347,22 +357,34 @@ def _observation(state: _State, number: int, line: str) -> None:
         time=state.time,
         code=line[4 + 2 * name + 3 * width :].strip(),
     )
+    if pointing.setup != state.opened:
+        _keep_means(state)
+        state.opened = pointing.setup
     if origin == "MC":
         state.means.append(pointing)
     else:
+        state.faces.add(pointing.to)
         state.gathered.add(pointing)
 
 
 def _keep_means(state: _State) -> None:
-    """Mean readings count only where a sight of their set-up has no face readings."""
-    seen = {(p.setup, p.to) for p in state.gathered.pointings}
-    kept = [p for p in state.means if (p.setup, p.to) not in seen]
+    """Mean readings of a set-up count only for sights of which it has no face readings."""
+    kept = [p for p in state.means if p.to not in state.faces]
     left = len(state.means) - len(kept)
     if left:
-        state.gathered.ignored["record 09MC beside face readings"] += left
-    if kept:
-        places = ", ".join(f"{p.at}-{p.to} (line {p.line})" for p in kept[:6])
-        text = f"only the mean of a sight is stored, its faces are gone: {places}"
+        state.gathered.ignore("record 09MC beside face readings", left)
+    for pointing in kept:
+        state.mean_only.append(f"{pointing.at}-{pointing.to} (line {pointing.line})")
+        state.gathered.add(pointing)
+    del state.mean_only[_SHOWN:]
+    state.means.clear()
+    state.faces.clear()
+
+
+def _tell_means(state: _State) -> None:
+    if state.mean_only:
+        text = (
+            f"only the mean of a sight is stored, its faces are gone: {', '.join(state.mean_only)}"
+        )
         state.gathered.warn("mean_only", text)
-        state.gathered.pointings.extend(kept)
         state.gathered.pointings.sort(key=lambda p: p.line)

@@ -23,10 +23,9 @@ from surveyapp.io.importers.fieldfiles.columns import (
 from surveyapp.io.importers.fieldfiles.gathering import (
     Gathering,
     ReadOptions,
-    file_lines,
     gathering,
-    read_field_file,
 )
+from surveyapp.io.importers.fieldfiles.lines import look_through
 from surveyapp.io.importers.fieldfiles.units import US_FOOT
 
 QUANTITIES: Final = Quantities(
@@ -61,21 +60,23 @@ def read_csv(path: Path, options: ReadOptions) -> FieldFile:
         Everything wrong with map and units; every damaged row.
     """
     gathered = gathering(path, options)
-    data = read_field_file(path)
-    lines, encoding = file_lines(data, path.name)
+    table = look_through(path)
     units = {name: unit for name, unit in options.units.items() if name != "foot"}
     if gathered.foot.metres == US_FOOT:
         units = {name: "usft" if unit == "ft" else unit for name, unit in units.items()}
-    columns = find_columns(lines, path.name, QUANTITIES, (options.columns, units))
+    columns = find_columns(table, QUANTITIES, (options.columns, units))
     gathered.feet = not {"ft", "usft"}.isdisjoint(columns.units.values())
-    rows = _Rows(gathered, columns, usual_decimals(lines[columns.header_line :], columns))
-    first = columns.header_line
-    for number, line in gathered.numbered(lines[first:], start=first + 1):
-        if not line.strip(" \t,;|") or line.lstrip().startswith("#"):
+    rows = _Rows(gathered, columns, usual_decimals(table, columns))
+    for number, line in gathered.lines(table):
+        if (
+            number <= columns.header_line
+            or not line.strip(" \t,;|")
+            or line.lstrip().startswith("#")
+        ):
             continue
         rows.take(number, line)
     gathered.warn("table_layout", columns.told)
-    if encoding == "latin-1" and not data.isascii():
+    if table.encoding == "latin-1":
         gathered.warn("code_page", "the table is no UTF-8: names were read as Latin-1")
     text = "a table does not say whether distances hold prism constant and ppm: enter "
     gathered.warn(
