@@ -101,6 +101,11 @@ def _seen(result: Diagnosis) -> str:
     error = _small(result, result.before.rms)
     if any(w.code == "block_means" for w in result.warnings):
         error = f"the block means, {error},"
+    if result.verdict == "adequate" and result.subject == "traverse":
+        return (
+            f"The misclosures, {error} on the average, are as large as the stated sigmas say: "
+            "nothing that this traverse controls is missing."
+        )
     if result.verdict == "adequate":
         return f"The residuals of {error} look like noise: the model that stands is adequate."
     low = min((t.p for t in result.battery), default=1.0)

@@ -159,6 +159,10 @@ class OrientationSession:
     levelling : LogLevelling or None
         Tilt of its standing axis from a calibrated log.
     pre_orientation : PreOrientation or None
+    pressure_hpa, humidity_percent : float or None
+        Of the air at the instrument.
+    hours_since_transport : float or None
+        Since the instrument was last carried or driven; None: from the sessions.
     override : tuple of (str, object)
         Further keys of the table, kept for those who know them.
     """
@@ -187,6 +191,9 @@ class OrientationSession:
     refraction_sigma: float | None = None
     levelling: LogLevelling | None = None
     pre_orientation: PreOrientation | None = None
+    pressure_hpa: float | None = None
+    humidity_percent: float | None = None
+    hours_since_transport: float | None = None
     override: tuple[tuple[str, object], ...] = ()
 
 

@@ -278,6 +278,9 @@ def read_session(table: Table, names: Names) -> OrientationSession:
         convergence=read_convergence(table, names.unit),
         recentred=table.boolean("recentred"),
         refraction_sigma=None if refraction is None else refraction * ARCSEC,
+        pressure_hpa=table.number("pressure_hpa", low=300.0, high=1200.0),
+        humidity_percent=table.number("humidity_percent", low=0.0, high=100.0),
+        hours_since_transport=table.number("hours_since_transport", low=0.0, high=1e6),
         override=_session_override(table),
     )
     table.warn_unknown("rounds", "sigma_arcsec", "level_division_arcsec")
