@@ -19,11 +19,12 @@ from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.project import OrientationSession, Station, grid_bearing
 from surveyapp.domain.results import Check
 from surveyapp.domain.subject import Subject
+from surveyapp.languages import said
 from surveyapp_models.angles import RHO_ARCSEC, wrap_pi
 
 PLAN_SIGMA_M: Final = 0.1
 """Of each coordinate of a station that is not fixed and states no sigma: read from a plan."""
-_CLAUSE: Final = "difference against its own sigma, level shared over the project"
+_CLAUSE: Final = said("difference against its own sigma, level shared over the project")
 
 
 def coordinate_checks(orientation: Orientation) -> list[Check]:
@@ -52,7 +53,7 @@ def _judged(pair: Pair, level: float) -> Check:
         passed=value <= limit if usable else None,
         unit="arcsec",
         where=subject.text,
-        text=f'{text}: {wrap_pi(difference.value) * RHO_ARCSEC:+.1f}"',
+        text=text + f': {wrap_pi(difference.value) * RHO_ARCSEC:+.1f}"',
         subject=subject,
     )
 
@@ -69,7 +70,7 @@ def _line_pairs(orientation: Orientation) -> list[Pair]:
             error = _plan_error(orientation, geometry)
             difference = line.grid - Uncertain(bearing, error.parts)
             fixed = geometry.start.fixed and geometry.end.fixed
-            text = "grid azimuth minus that of the coordinates"
+            text = said("grid azimuth minus that of the coordinates")
             pairs.append(("coordinates.line", result.subject, difference, fixed, text))
         pairs += _stated_pairs(orientation, line, geometry)
     return pairs
@@ -88,7 +89,7 @@ def _stated_pairs(
             continue
         error = known_error(orientation.project, session, geometry).error
         difference = line.grid - Uncertain(session.azimuth_known, error.parts)
-        text = f"grid azimuth minus the known azimuth of session {name}"
+        text = said("grid azimuth minus the known azimuth of session {name}", name=name)
         pairs.append(("known_azimuth.line", line.result.subject, difference, True, text))
     return pairs
 
@@ -111,7 +112,7 @@ def _known_pairs(orientation: Orientation) -> list[Pair]:
         difference = Uncertain(session.azimuth_known, stated.parts) - Uncertain(
             bearing, coordinates.parts
         )
-        text = "known azimuth minus that of the coordinates"
+        text = said("known azimuth minus that of the coordinates")
         subject = Subject.session(session.id)
         fixed = start.fixed and end.fixed
         pairs.append(("coordinates.known_azimuth", subject, difference, fixed, text))

@@ -30,12 +30,13 @@ from surveyapp.core.swing.session import ReducedSession, TargetReduction
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import AdoptedEffect, Instrument
 from surveyapp.domain.project import ResultWarning
+from surveyapp.languages import joined, listed, said
 from surveyapp_models.angles import RHO_ARCSEC
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Effect
 
-SOURCE = "adopted effect"
+SOURCE = said("adopted effect")
 STEPS = 25
 """Values of a missing column that are tried over its range for the largest effect."""
 
@@ -131,10 +132,14 @@ def _not_moved(
     if not told:
         return []
     size = ", ".join(f"{value:+.1f} {unit}" for _, value, _, unit in adopted.coefficients)
-    text = (
-        f"{', '.join(told)}: the line {line} stands off by {size} in its calibrations (adopted "
-        f"effect {adopted.id}): its known azimuth, centring or deflection; a survey of it is not "
-        "moved by that"
+    text = said(
+        "{told}: the line {line} stands off by {size} in its calibrations (adopted "
+        "effect {id}): its known azimuth, centring or deflection; a survey of it "
+        "is not moved by that",
+        told=joined(", ", told),
+        line=line,
+        size=size,
+        id=adopted.id,
     )
     return [ResultWarning("line_not_moved", text)]
 
@@ -187,7 +192,7 @@ def effect_shifts(
             for k, part in enumerate(rows.inside[i] @ root)
         }
         shift = Uncertain(float(rows.inside[i] @ values), parts)
-        beyond = f"{SOURCE} outside its range"
+        beyond = said("{source} outside its range", source=SOURCE)
         if rows.missing[i]:
             excess = _largest(effect, adopted, columns, (i, rows), values)
             shift = shift.with_part(Source(beyond, session, detail=name), excess)
@@ -338,11 +343,19 @@ def _missing_warning(
     session: str, adopted: AdoptedEffect, missing: Sequence[str], excess: float
 ) -> ResultWarning:
     known = {name for name, _ in adopted.reference}
-    where = "at its reference" if known.issuperset(missing) else "in the middle of its range"
-    text = (
-        f"session {session}: {' and '.join(missing)} missing: the adopted effect {adopted.id} is "
-        f'taken as {where}, and the most that it may differ, {excess * RHO_ARCSEC:.1f}", enters '
-        "the sigma"
+    where = (
+        said("at its reference")
+        if known.issuperset(missing)
+        else said("in the middle of its range")
+    )
+    text = said(
+        "session {session}: {missing} missing: the adopted effect {id} is taken as "
+        '{where}, and the most that it may differ, {excess:.1f}", enters the sigma',
+        session=session,
+        missing=listed(missing),
+        id=adopted.id,
+        where=where,
+        excess=excess * RHO_ARCSEC,
     )
     return ResultWarning("effect_outside_range", text)
 
@@ -351,14 +364,19 @@ def _outside_warning(
     session: str, adopted: AdoptedEffect, outside: Sequence[str], excess: float
 ) -> ResultWarning:
     ranges = {name: f"{name} {low:.6g} to {high:.6g}" for name, low, high in adopted.valid}
-    text = (
-        f"session {session} lies outside the range of the adopted effect {adopted.id} "
-        f"({', '.join(ranges[name] for name in outside)}): the correction is that of the edge, and "
+    text = said(
+        "session {session} lies outside the range of the adopted effect {id} "
+        "({join}): the correction is that of the edge, and ",
+        session=session,
+        id=adopted.id,
+        join=", ".join(ranges[name] for name in outside),
     )
     if excess > 0.0:
-        text += f'what lies beyond, {excess * RHO_ARCSEC:.1f}", enters the sigma'
+        text += said(
+            'what lies beyond, {excess:.1f}", enters the sigma', excess=excess * RHO_ARCSEC
+        )
     else:
-        text += "beyond it the effect does not change: the sigma stays"
+        text += said("beyond it the effect does not change: the sigma stays")
     return ResultWarning("effect_outside_range", text)
 
 
