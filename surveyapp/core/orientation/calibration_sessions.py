@@ -94,7 +94,7 @@ def _unusable(session: OrientationSession, target: str, why: str) -> ResultWarni
         target=target,
         why=why,
     )
-    return ResultWarning("calibration_unusable", text)
+    return ResultWarning("calibration_unusable", text, Subject.session(session.id, target))
 
 
 def _contradiction(
@@ -112,7 +112,7 @@ def _contradiction(
         apart=-apart * RHO_ARCSEC,
         distance_m=abs(apart) * line.distance_m,
     )
-    return [ResultWarning("azimuth_known_differs", text)]
+    return [ResultWarning("azimuth_known_differs", text, Subject.session(session.id))]
 
 
 def _assumed(session: OrientationSession, target: str, known: KnownError) -> list[ResultWarning]:

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from surveyapp.core.orientation.circumstances import Circumstances
 from surveyapp.core.uncertain import Uncertain
 from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.station_line import StationLine
+from surveyapp.domain.subject import Subject
 from surveyapp.languages import joined, listed, said
 from surveyapp_models.angles import RHO_ARCSEC
 
@@ -21,13 +23,12 @@ class Wanted:
 
     Parameters
     ----------
-    name : str
-        For messages.
+    line : StationLine
     visits : tuple of (float, Circumstances)
         Weight (sum 1) and circumstances of each session.
     """
 
-    name: str
+    line: StationLine
     visits: tuple[tuple[float, Circumstances], ...]
 
 
@@ -40,27 +41,28 @@ def told_of(
     """What the reader of a predicted constant must know."""
     warnings = []
     for line in wanted:
+        subject = Subject.line(line.line.station, line.line.target, instrument)
         missing = sorted(
             name for name in gaps if any(_lacks(visit, name) for _, visit in line.visits)
         )
         if missing:
             text = said(
-                "line {name}: {missing} not told: the constant is predicted for all that "
+                "line {line}: {missing} not told: the constant is predicted for all that "
                 "it may have been, and its interval is wider for it",
-                name=line.name,
+                line=line.line,
                 missing=joined(", ", missing),
             )
-            warnings.append(ResultWarning("covariate_missing", text))
+            warnings.append(ResultWarning("covariate_missing", text, subject))
         beyond = _beyond(line, known)
         if beyond:
             text = said(
-                "line {name}: {beyond}: the constant of {instrument} is extrapolated, and "
+                "line {line}: {beyond}: the constant of {instrument} is extrapolated, and "
                 "its interval is wider for it",
-                name=line.name,
+                line=line.line,
                 beyond=listed(beyond),
                 instrument=instrument,
             )
-            warnings.append(ResultWarning("prediction_extrapolated", text))
+            warnings.append(ResultWarning("prediction_extrapolated", text, subject))
     return warnings
 
 
