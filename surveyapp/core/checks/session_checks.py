@@ -84,9 +84,8 @@ def _point_name(item: ReducedSession, test: FitTest) -> str:
     points = item.reduction.points
     if test.point >= len(points):
         return said(", passage {point}", point=test.point - len(points) + 1)
-    return said(
-        ", turning point {point} (seq {seq})", point=test.point + 1, seq=points[test.point].seq
-    )
+    point = points[test.point]  # counted as in alarm, diagnosis and record: with missed ones
+    return said(", turning point {index} (seq {seq})", index=point.index + 1, seq=point.seq)
 
 
 def _fit_summary(item: ReducedSession) -> list[Check]:

@@ -376,19 +376,18 @@ def _outside_warning(
     session: str, adopted: AdoptedEffect, outside: Sequence[str], excess: float
 ) -> ResultWarning:
     ranges = {name: f"{name} {low:.6g} to {high:.6g}" for name, low, high in adopted.valid}
+    beyond = said("beyond it the effect does not change: the sigma stays")
+    if excess > 0.0:
+        size = excess * RHO_ARCSEC
+        beyond = said('what lies beyond, {size:.1f}", enters the sigma', size=size)
     text = said(
-        "session {session} lies outside the range of the adopted effect {id} "
-        "({join}): the correction is that of the edge, and ",
+        "session {session} lies outside the range of the adopted effect {id} ({ranges}): the "
+        "correction is that of the edge, and {beyond}",
         session=session,
         id=adopted.id,
-        join=", ".join(ranges[name] for name in outside),
+        ranges=", ".join(ranges[name] for name in outside),
+        beyond=beyond,
     )
-    if excess > 0.0:
-        text += said(
-            'what lies beyond, {excess:.1f}", enters the sigma', excess=excess * RHO_ARCSEC
-        )
-    else:
-        text += said("beyond it the effect does not change: the sigma stays")
     return ResultWarning("effect_outside_range", text, Subject.session(session))
 
 
