@@ -110,7 +110,8 @@ def _turned(
     force = np.column_stack([log.columns[c] for c in ACCELEROMETERS])
     rests = model.corrected(np.array([s.force for s in stops]))
     found = []
-    for k, turn in enumerate(turns):
+    for turn in turns:
+        k = turn.leaves
         first, last = stops[k].stop, stops[k + 1].start
         rows = turn_rows(
             turn,

@@ -209,12 +209,15 @@ class Turn:
     before, after : ndarray, shape (3,)
         Directions of up in the body at the two stops.
     interval_s : float
+    leaves : int
+        Number of the stop before it, from 0.
     """
 
     rates: Floats
     before: Floats
     after: Floats
     interval_s: float
+    leaves: int = 0
 
     def carried(self, inverse: Floats) -> Floats:
         """Direction of up after the turn, by gyros whose true rate is ``inverse`` output."""

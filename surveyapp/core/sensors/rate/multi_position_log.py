@@ -62,6 +62,8 @@ LEAST_FOR_FORCES = 8
 """Stops from which the sensitivity to gravity is carried through the turns: twice its elements."""
 WORST_CONDITION = 1e3
 """Of the attitudes of the stops, for the same [forces in m/s2 beside 1]."""
+LONGEST_STEP = 1.5
+"""Samples between two neighbours from which one is missing."""
 GUARD_S = 0.1
 FEW_DOF = 3
 
@@ -148,7 +150,11 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
         models=tuple(
             CalibrationModel(m.level, m.rms, held[m.level], m.level == chosen.level) for m in models
         ),
-        warnings=(*log.warnings, *_warnings(log, chosen, gyro, options)),
+        warnings=(
+            *log.warnings,
+            *_warnings(log, chosen, gyro, options),
+            *_left_out(len(stops) - 1 - len(turns)),
+        ),
         met=not missing,
         n=log.size,
         sha256=log.sha256,
@@ -172,7 +178,7 @@ def _fitted(stops: Sequence[HeldStop], model: ForceModel, turns: Sequence[Turn])
     for other in shifted_forces(model):
         ups = other.corrected(forces)
         ups = ups / np.linalg.norm(ups, axis=1)[:, None]
-        shifted.append([replace(t, before=ups[k], after=ups[k + 1]) for k, t in enumerate(turns)])
+        shifted.append([replace(t, before=ups[t.leaves], after=ups[t.leaves + 1]) for t in turns])
     spread = np.sqrt(np.maximum(np.diag(model.covariance), 1e-300))
     return with_frame(gyro, turns, shifted, model.covariance / np.outer(spread, spread))
 
@@ -208,7 +214,8 @@ def with_g_sensitivity(
     pull = np.linalg.lstsq(design, means, rcond=None)[0][1:]
     force = np.column_stack([log.columns[c] for c in ACCELEROMETERS])
     found = []
-    for k, turn in enumerate(turns):
+    for turn in turns:
+        k = turn.leaves
         inside = model.corrected(force[stops[k].stop : stops[k + 1].start])
         rest = 0.5 * (rests[k] + rests[k + 1])
         found.append(replace(turn, rates=turn.rates - (inside - rest) @ pull))
@@ -253,6 +260,7 @@ def turns_between(
 ) -> list[Turn]:
     """Turns between the stops, their rates less the mean of the two rests about them.
 
+    A turn with a gap in it, or with a gyro at the end of its range, tells nothing and is left out.
     The vertical earth rate turns nothing that the accelerometers feel and stays in the turn.
     """
     rate = np.column_stack([log.columns[c] for c in GYROS])
@@ -262,9 +270,27 @@ def turns_between(
     turns = []
     for k, (one, other) in enumerate(pairwise(stops)):
         inside = slice(one.stop, other.start)
+        if other.start - one.stop < 2 or _broken(log, rate, one.stop, other.start):
+            continue
         local = 0.5 * (rests[k] + rests[k + 1])  # a slow bias as the two rests show it
-        turns.append(Turn(rate[inside] - local, ups[k], ups[k + 1], interval))
+        turns.append(Turn(rate[inside] - local, ups[k], ups[k + 1], interval, k))
     return turns
+
+
+def _broken(log: SensorLog, rate: Floats, first: int, last: int) -> bool:
+    """Whether samples are missing in a turn, or a gyro stands at the end of its range."""
+    time = log.columns["time_s"]
+    interval = 1.0 / (log.rate_hz or 100.0)
+    if float(np.diff(time[first - 1 : last + 1]).max()) > LONGEST_STEP * interval:
+        return True
+    for i, name in enumerate(GYROS):
+        if name in log.clipped:
+            ends = rate[:, i].max(), rate[:, i].min()
+            part = rate[first:last, i]
+            # one sample alone may be the largest of the record
+            if max(int((part == end).sum()) for end in ends) > 1:
+                return True
+    return False
 
 
 def _ups(stops: Sequence[HeldStop], model: ForceModel) -> Floats:
@@ -351,6 +377,13 @@ def _stop_dict(log: SensorLog, stop: HeldStop, model: ForceModel) -> dict[str, A
         "rate_deg_s": np.degrees(stop.rate).tolist(),
         "gravity_m_s2": size,
     }
+
+
+def _left_out(count: int) -> list[ResultWarning]:
+    if not count:
+        return []
+    text = f"{count} of the turns held a gap or a saturated gyro and took no part"
+    return [ResultWarning("turns_left_out", text)]
 
 
 def _warnings(
