@@ -18,11 +18,12 @@ from scipy.stats import beta
 
 from bench._records import CampaignTruth, Truth, campaign_problem, problems
 from surveyapp.diagnosis import Case, Diagnosis, diagnose
-from surveyapp.diagnosis.candidates import all_candidates, project
+from surveyapp.diagnosis.candidates import all_candidates
 from surveyapp.diagnosis.compare import orthonormal_design
 from surveyapp.diagnosis.fits import fit_members
 from surveyapp.diagnosis.gate import GATE, statistic
 from surveyapp.diagnosis.nulls import Noise, null_of
+from surveyapp.diagnosis.projection import project
 
 PAGE = Path(__file__).resolve().parent.parent / "docs/reference/operating-characteristics.md"
 RUNS = 144

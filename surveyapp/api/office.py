@@ -18,6 +18,7 @@ from surveyapp.api.orientation import Source, compute, orient
 from surveyapp.api.project import SOFTWARE, Folder
 from surveyapp.domain.advance import Advance, silent
 from surveyapp.errors import SurveyError
+from surveyapp.languages import in_language
 
 if TYPE_CHECKING:
     from surveyapp.core.differences import Snapshot
@@ -40,6 +41,7 @@ def report(
     font: Folder | None = None,
     extras: tuple[Extra, ...] = (),
     diagnosis: bool = False,
+    language: str = "en",
     advance: Advance = silent,
 ) -> ReportResult:
     """Write the survey record as PDF; the same input gives the same bytes.
@@ -56,6 +58,8 @@ def report(
         Sections from elsewhere, before the checks.
     diagnosis : bool
         Diagnose every run and campaign of the project and show what was found.
+    language : str
+        Of the record: en | de | ru | zh.
     advance : callable
         Told how far it is.
 
@@ -68,7 +72,8 @@ def report(
     if diagnosis:
         extras = (*extras, *_diagnoses(found, advance))
     document, sections = _record(found, extras)
-    return _write_document(document, sections, Path(output), font, advance)
+    with in_language(language):
+        return _write_document(document, sections, Path(output), font, advance)
 
 
 def _traverses(found: Computed) -> tuple[Extra, ...]:
@@ -176,14 +181,18 @@ def _diagnoses(found: Computed, advance: Advance) -> tuple[Extra, ...]:
     return tuple(extras)
 
 
-def report_text(source: Source) -> str:
-    """The survey record as text for a terminal."""
+def report_text(source: Source, *, language: str = "en") -> str:
+    """The survey record as text for a terminal, in one of the languages en, de, ru, zh."""
     from surveyapp.report.text import document_text
 
-    return document_text(_record(compute(source), ())[0])
+    document = _record(compute(source), ())[0]
+    with in_language(language):
+        return document_text(document)
 
 
-def blank_form(method: str, output: Folder, *, font: Folder | None = None) -> ReportResult:
+def blank_form(
+    method: str, output: Folder, *, font: Folder | None = None, language: str = "en"
+) -> ReportResult:
     """Write a blank field-book form (tracking, amplitude, transit, automatic) as PDF.
 
     Raises
@@ -193,7 +202,9 @@ def blank_form(method: str, output: Folder, *, font: Folder | None = None) -> Re
     """
     from surveyapp.report.forms import blank_form as form
 
-    return _write_document(form(method, software=SOFTWARE), (method,), Path(output), font)
+    document = form(method, software=SOFTWARE)
+    with in_language(language):
+        return _write_document(document, (method,), Path(output), font)
 
 
 def _record(found: Computed, extras: tuple[Extra, ...]) -> tuple[Document, tuple[str, ...]]:

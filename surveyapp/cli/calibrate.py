@@ -18,6 +18,7 @@ KINDS: Final = {
     "tilt": "calibrate_tilt",
     "rate": "calibrate_rate",
     "fog-station": "calibrate_fog_station",
+    "edm": "calibrate_edm",
 }
 """Kind to the module of its options."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 
+from surveyapp.cli.languages import run_screens
 from surveyapp.cli.terminal import need_terminal
 
 
@@ -15,16 +16,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Open the screens on one project; bad input is told before the screen is taken."""
     from surveyapp import api
-    from surveyapp.tui.app import run_app
 
     api.open_project(options.folder)
     need_terminal()
-    return run_app(options.folder)
+    return run_screens(lambda app: int(app.run_app(options.folder)))
 
 
 def run_home() -> int:
     """Open the screens without a project."""
     need_terminal()
-    from surveyapp.tui.app import run_app
-
-    return run_app(None)
+    return run_screens(lambda app: int(app.run_app(None)))

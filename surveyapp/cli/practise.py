@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 
+from surveyapp.cli.languages import run_screens
 from surveyapp.cli.terminal import need_terminal
 
 
@@ -25,7 +26,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Open the session screen on a simulated instrument; bad input is told before that."""
     from surveyapp.observation import practice as api_practice
-    from surveyapp.tui.app import run_practice
 
     need_terminal()
     practice = api_practice.begin(
@@ -35,4 +35,4 @@ def run(options: argparse.Namespace) -> int:
         disturbed=None if options.perhaps else options.hidden,
         seed=options.seed,
     )
-    return run_practice(practice)
+    return run_screens(lambda app: int(app.run_practice(practice)))

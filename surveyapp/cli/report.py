@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
+from surveyapp.cli.languages import add_language, wished
 from surveyapp.cli.output import print_json
 from surveyapp.errors import Problem, SurveyError
 
@@ -14,7 +15,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folder", metavar="DIR", nargs="?", help="project folder")
     parser.add_argument("-o", "--output", metavar="FILE.pdf", help="PDF to be written")
     parser.add_argument("--blank", metavar="METHOD", help="a blank form instead of a record")
-    parser.add_argument("--font", metavar="FILE.ttf", help="face for Chinese, Japanese, Korean")
+    parser.add_argument(
+        "--font", metavar="FILE.ttf", help="face, or folder of faces, for further letters"
+    )
+    add_language(parser)
     parser.add_argument(
         "--diagnosis", action="store_true", help="diagnose every run and campaign in it"
     )
@@ -31,19 +35,23 @@ def run(options: argparse.Namespace) -> int:
 
     if (options.folder is None) == (options.blank is None):
         raise _usage("either a project folder or --blank METHOD")
+    language = wished(options.language)
     if options.text and options.folder is not None:
-        print(api.report_text(options.folder), end="")
+        print(api.report_text(options.folder, language=language), end="")
         return 0
     if options.output is None:
         raise _usage("-o FILE.pdf")
     if options.blank is not None:
-        written = api.blank_form(options.blank, options.output, font=options.font)
+        written = api.blank_form(
+            options.blank, options.output, font=options.font, language=language
+        )
     else:
         written = api.report(
             options.folder,
             options.output,
             font=options.font,
             diagnosis=options.diagnosis,
+            language=language,
             advance=options.advance,
         )
     for warning in written.warnings:

@@ -181,6 +181,28 @@ def _places(readings: Sequence[EdmReading], names: Sequence[str]) -> Floats:
     return np.array([place[name] for name in names])
 
 
+def baseline_design(
+    readings: Sequence[EdmReading],
+    *,
+    constant: bool = False,
+    cyclic_unit_m: float | None = None,
+) -> Floats:
+    """Design of a line of pillars: their places but the first, constant, cyclic sine and cosine.
+
+    Returns
+    -------
+    ndarray, shape (n, u)
+    """
+    names = sorted({name for r in readings for name in (r.start, r.end)})
+    columns = [_design(readings, names, _places(readings, names))]
+    if constant:
+        columns.append(np.ones((len(readings), 1)))
+    if cyclic_unit_m is not None:
+        phase = 2.0 * math.pi * np.array([r.slope_m for r in readings]) / cyclic_unit_m
+        columns.append(np.stack((np.sin(phase), np.cos(phase)), axis=1))
+    return np.hstack(columns)
+
+
 def fit_baseline(
     readings: Sequence[EdmReading],
     lengths: Floats,
@@ -209,17 +231,9 @@ def fit_baseline(
     ValueError
         If the readings do not determine all terms.
     """
-    names = sorted({name for r in readings for name in (r.start, r.end)})
-    columns = [_design(readings, names, _places(readings, names))]
-    labels = []
-    if constant:
-        columns.append(np.ones((len(readings), 1)))
-        labels.append("constant")
-    if cyclic_unit_m is not None:
-        phase = 2.0 * math.pi * np.array([r.slope_m for r in readings]) / cyclic_unit_m
-        columns.append(np.stack((np.sin(phase), np.cos(phase)), axis=1))
-        labels += ["cyclic_sin", "cyclic_cos"]
-    matrix = np.hstack(columns)
+    matrix = baseline_design(readings, constant=constant, cyclic_unit_m=cyclic_unit_m)
+    labels = ["constant"] * constant
+    labels += ["cyclic_sin", "cyclic_cos"] * (cyclic_unit_m is not None)
     if np.linalg.matrix_rank(matrix) < matrix.shape[1] or len(matrix) <= matrix.shape[1]:
         raise ValueError("the readings do not determine all pillars and terms")
     q, r = np.linalg.qr(matrix)
@@ -239,16 +253,32 @@ def fit_baseline(
 def sight_means(
     readings: Sequence[EdmReading], lengths: Floats
 ) -> tuple[tuple[EdmReading, ...], Floats]:
-    """Mean length of every sight (start, end): what counts as one independent measurement."""
-    groups: dict[tuple[str, str], list[int]] = {}
+    """Mean length of every pointing: what counts as one independent measurement.
+
+    Readings of one sight that follow each other are one pointing; the same sight observed again
+    later is another.
+    """
+    groups: list[list[int]] = []
     for i, reading in enumerate(readings):
-        groups.setdefault((reading.start, reading.end), []).append(i)
-    means = np.array([lengths[rows].mean() for rows in groups.values()])
-    return tuple(readings[rows[0]] for rows in groups.values()), means
+        last = readings[groups[-1][0]] if groups else None
+        if last is not None and _sight(last) == _sight(reading):
+            groups[-1].append(i)
+        else:
+            groups.append([i])
+    means = np.array([lengths[rows].mean() for rows in groups])
+    return tuple(readings[rows[0]] for rows in groups), means
+
+
+def _sight(reading: EdmReading) -> tuple[object, ...]:
+    return reading.start, reading.end, reading.start_height_m, reading.end_height_m
 
 
 def judge_terms(
-    readings: Sequence[EdmReading], lengths: Floats, *, cyclic_unit_m: float | None = None
+    readings: Sequence[EdmReading],
+    lengths: Floats,
+    *,
+    cyclic_unit_m: float | None = None,
+    tried: int = 1,
 ) -> TermVerdict:
     """Judge the additive constant, or a cyclic term beside it, on the means of the sights.
 
@@ -258,6 +288,9 @@ def judge_terms(
         As for ``fit_baseline``.
     cyclic_unit_m : float or None
         None: the constant is judged.
+    tried : int
+        Unit lengths among which this one was chosen: the probability is multiplied by their number
+        (Bonferroni), so that a search pays for itself.
 
     Returns
     -------
@@ -272,7 +305,7 @@ def judge_terms(
     count = 2 if cyclic else 1
     squares = without.sigma0_m**2 * without.dof - with_it.sigma0_m**2 * with_it.dof
     statistic = squares / count / with_it.sigma0_m**2
-    probability = float(fdtrc(count, with_it.dof, max(statistic, 0.0)))
+    probability = min(1.0, tried * float(fdtrc(count, with_it.dof, max(statistic, 0.0))))
     if cyclic:
         (a, sa), (b, sb) = with_it.term("cyclic_sin"), with_it.term("cyclic_cos")
         size = math.hypot(a, b)

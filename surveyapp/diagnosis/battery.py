@@ -97,8 +97,10 @@ def run_battery(problem: Case, fit: Fit, seed: int) -> tuple[BatteryTest, ...]:
     generator = np.random.default_rng(seed)
     q = orthonormal_design(fit)
     noise = Noise(DRAWS, rounding_of(problem, fit), problem.root_weights)
-    draws = channels(problem, residual_draws(q, noise, generator))
     order = np.argsort(problem.position, kind="stable")
+    if problem.series is not None:
+        order = np.lexsort((problem.position, problem.series))
+    draws = channels(problem, residual_draws(q, noise, generator)[:, order])
     seen = channels(problem, fit.residual[None, order])
     found = []
     for channel, values in seen.items():

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.shifts import shift
@@ -41,6 +40,8 @@ SINGLE_SHARE = 0.75
 PULSE_PHASES = (0.0, 0.25, 0.5, 0.75)
 SHORTEST_PULSE, LONGEST_PULSE = 2, 6
 """Places for which a pulse lasts; a quarter of the record at most."""
+SLOWEST_CYCLES = 1.5
+"""Cycles over the record of the slowest wave."""
 AMPLITUDE_SHAPES = frozenset({"amplitude_step", "amplitude_smooth"})
 """Generic shapes of the amplitude of a swing."""
 
@@ -216,6 +217,8 @@ def _shapes(problem: Case, columns: Mapping[str, Floats], root: Floats) -> list[
         return []
     span = float(np.ptp(position))
     x = 2.0 * (position - position.min()) / span - 1.0
+    if problem.series is not None:
+        return _shapes_of_each(problem, x, root)
     shapes = [
         _shape("quadratic", [np.column_stack([x, x**2])], 2, root),
         _shape("smooth", [np.column_stack([x, x**2, x**3])], 3, root),
@@ -239,10 +242,40 @@ def _shapes(problem: Case, columns: Mapping[str, Floats], root: Floats) -> list[
             steps = [(position > p).astype(np.float64)[:, None] for p in inner]
             if steps:
                 shapes.append(_shape("step", steps, 2, root))
-        shapes.append(_periodic("periodic", x, (1.5, 0.25 * problem.size), root, n=problem.size))
+        shapes.append(
+            _periodic("periodic", x, (SLOWEST_CYCLES, 0.25 * problem.size), root, n=problem.size)
+        )
     if "gross_error" not in taken:
         single = [np.eye(problem.size)[:, i : i + 1] for i in range(problem.size)]
         shapes.append(_shape("outlier", single, 2, root))
+    return shapes
+
+
+def _shapes_of_each(problem: Case, x: Floats, root: Floats) -> list[Candidate]:
+    """Generic shapes of several channels side by side: each channel has coefficients of its own."""
+    series = np.zeros(problem.size) if problem.series is None else problem.series
+    channels = np.unique(series[np.isfinite(series)])
+    masks = (series[:, None] == channels[None, :]).astype(np.float64)
+    count = masks.shape[1]
+
+    def each(columns: Floats) -> Floats:
+        return np.hstack([masks * column[:, None] for column in columns.T])
+
+    shapes = [
+        _shape("quadratic", [each(np.column_stack([x, x**2]))], 2 * count, root),
+        _shape("smooth", [each(np.column_stack([x, x**2, x**3]))], 3 * count, root),
+    ]
+    places = np.unique(problem.position)[1:-2]
+    steps = [each((problem.position > p)[:, None].astype(np.float64)) for p in places]
+    if steps:
+        shapes.append(_shape("step", steps, count + 1, root))
+    longest = 0.25 * problem.size / count
+    if longest > SLOWEST_CYCLES:
+        waves = [
+            each(np.column_stack([np.cos(np.pi * c * x), np.sin(np.pi * c * x)]))
+            for c in np.arange(SLOWEST_CYCLES, longest, 0.25)
+        ]
+        shapes.append(_shape("periodic", waves, 2 * count + 1, root))
     return shapes
 
 
@@ -309,65 +342,3 @@ def _periodic(
         for c in np.linspace(low, max(high, low + 0.1), count)
     ]
     return _shape(name, columns, 3, root)
-
-
-def orthonormal(columns: Floats, share: float) -> tuple[Floats, Floats]:
-    """Orthonormalise the columns of each grid point.
-
-    Parameters
-    ----------
-    columns : ndarray, shape (g, n, q)
-        Already projected on what the model leaves.
-    share : float
-        Norms below this (absolute, per grid point and column) count as nothing.
-
-    Returns
-    -------
-    ndarray, shape (g, n, q)
-    ndarray of bool, shape (g,)
-        Where all q columns are independent.
-    """
-    result = columns.copy()
-    good = np.ones(columns.shape[0], dtype=bool)
-    for j in range(columns.shape[2]):
-        for i in range(j):
-            along = np.einsum("gn,gn->g", result[:, :, i], result[:, :, j])
-            result[:, :, j] -= along[:, None] * result[:, :, i]
-        norms = np.sqrt(np.einsum("gn,gn->g", result[:, :, j], result[:, :, j]))
-        good &= norms > share
-        result[:, :, j] /= np.where(norms > 0.0, norms, 1.0)[:, None]
-    return result, good
-
-
-@dataclass(frozen=True, slots=True)
-class Projected:
-    """A candidate beside a model: orthonormal columns of its separable grid points.
-
-    Parameters
-    ----------
-    candidate : Candidate
-    columns : ndarray, shape (g, n, q)
-    index : ndarray of int, shape (g,)
-        Grid points of the candidate that are separable.
-    left : float
-        Largest share of its norm that is left beside the model.
-    """
-
-    candidate: Candidate
-    columns: Floats
-    index: NDArray[np.intp]
-    left: float
-
-
-def project(candidate: Candidate, q: Floats) -> Projected:
-    """Project a candidate on what an orthonormal basis ``q`` of the model leaves."""
-    raw = candidate.columns
-    if raw.shape[0] == 0:
-        return Projected(candidate, raw, np.zeros(0, dtype=np.intp), 0.0)
-    norms = np.sqrt(np.einsum("gnq,gnq->gq", raw, raw))
-    unit = raw / np.where(norms > 0.0, norms, 1.0)[:, None, :]
-    left = unit - q @ (q.T @ unit)
-    share = np.sqrt(np.einsum("gnq,gnq->gq", left, left)).min(axis=1)
-    columns, good = orthonormal(left, candidate.separable_share)
-    index = np.flatnonzero(good & (norms.min(axis=1) > 0.0))
-    return Projected(candidate, columns[index], index, float(share.max()))

@@ -94,6 +94,12 @@ class Case:
     groups : ndarray or None, shape (n,)
         What is left out together when a model is proved: the rows of one stop; None = each row by
         itself.
+    series : ndarray or None, shape (n,)
+        Which of several channels that were observed side by side an observation belongs to; what
+        wanders at random wanders in each by itself. NaN = what does not wander; None = one channel.
+    reported : ndarray or None, shape (n,)
+        1 where an observation counts in the errors that are printed, else 0; None = all. Others
+        take part in everything else.
     base_of : callable or None
         The base design of other rows; None = the mean of the record's own rows.
     """
@@ -129,6 +135,8 @@ class Case:
     members: tuple[Subject, ...] = ()
     base_of: Callable[[Columns], Floats] | None = None
     groups: Floats | None = None
+    series: Floats | None = None
+    reported: Floats | None = None
 
     def __post_init__(self) -> None:
         """Hand out what effects may read so that they cannot write into it."""
@@ -185,7 +193,9 @@ class Case:
             repr(self.weighted).encode(),
         ]
         arrays = [self.observations, self.base, self.position, self.value_weights]
-        arrays += [a for a in (self.side, self.half_swing, self.sigma) if a is not None]
+        arrays += [
+            a for a in (self.side, self.half_swing, self.sigma, self.series) if a is not None
+        ]
         for name in sorted(self.columns):
             parts.append(name.encode())
             arrays.append(self.columns[name])

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surveyapp.diagnosis.candidates import Candidate, project
+from surveyapp.diagnosis.candidates import Candidate
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.fits import (
     Fit,
@@ -27,6 +27,7 @@ from surveyapp.diagnosis.fits import (
     with_noise,
 )
 from surveyapp.diagnosis.nulls import reductions
+from surveyapp.diagnosis.projection import project
 from surveyapp_models.arrays import Floats
 
 MARGIN = 4.0

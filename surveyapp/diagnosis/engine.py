@@ -42,6 +42,7 @@ from surveyapp.diagnosis.run_value import (
     Value,
     averaged_value,
     datum_values,
+    out_of_range,
     rms,
     value_of,
 )
@@ -190,7 +191,9 @@ def _model(problem: Case, fit: Fit, confirm: Case | None) -> ModelResult:
         rms=error,
         sigma0=sigma0,
         dof=dof,
-        loo_rms=leave_one_out(problem, fit),
+        loo_rms=leave_one_out(
+            problem, fit, None if problem.reported is None else 1.0 - problem.reported
+        ),
         confirm_rms=None if confirm is None else confirm_rms(confirm, fit),
         forecast_rms=None if fit.noise is not None else forecast(problem, fit),
         value=_quantity(problem, value_of(problem, fit)),
@@ -242,6 +245,8 @@ def _candidates(problem: Case, found: Search) -> tuple[CandidateResult, ...]:
             verdict = "candidate"
         elif identity in found.implausible and identity not in near:
             verdict, reason = "implausible", "the coefficient lies outside its physical range"
+            if not out_of_range(problem, found.implausible[identity], identity):
+                verdict, reason = "not_separable", "not determinable: its sigma exceeds its range"
         elif identity in near or p is None:
             verdict = "not_separable"
         elif family is not None and family <= 0.05:

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surveyapp.diagnosis.candidates import Candidate, Projected, project
+from surveyapp.diagnosis.candidates import Candidate
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.compare import may_join, orthonormal_design, slip_bends
 from surveyapp.diagnosis.fits import Fit, scan_exact, scan_law, unit_variance
 from surveyapp.diagnosis.nulls import Noise, null_of, ratio, reductions
+from surveyapp.diagnosis.projection import Projected, project
 from surveyapp_models.arrays import Floats
 
 GATE = 0.05

@@ -166,6 +166,8 @@ def _subset(problem: Case, rows: NDArray[np.intp]) -> Case:
         side=cut(problem.side),
         half_swing=cut(problem.half_swing),
         sigma=cut(problem.sigma),
+        series=cut(problem.series),
+        reported=cut(problem.reported),
     )
 
 

@@ -8,7 +8,7 @@ diagnosing returns a new value, the model that stands is not touched.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -69,7 +69,8 @@ class Search:
         Names.
     refused : tuple of (str, str)
         Names that were in every set but failed a proof, and which.
-    implausible : frozenset of str
+    implausible : mapping of str to Fit
+        Effects whose coefficients lay outside their physical range, and the fit in which.
     after : Fit
         The base model with the adopted effects.
     best : Fit
@@ -83,7 +84,7 @@ class Search:
     near: tuple[Fit, ...]
     adopted: tuple[str, ...]
     refused: tuple[tuple[str, str], ...]
-    implausible: frozenset[str]
+    implausible: Mapping[str, Fit]
     after: Fit
     best: Fit
     pool: tuple[Candidate, ...]
@@ -105,7 +106,7 @@ def search(problem: Case, *, draws: int, confirm: Case | None) -> Search:
     base = levels[0].fits[0]
     pool = all_candidates(problem, base.theta)
     gates: list[Gate] = []
-    implausible: set[str] = set()
+    implausible: dict[str, Fit] = {}
     current = pool
     while True:
         fit = levels[-1].preferred or base
@@ -115,16 +116,14 @@ def search(problem: Case, *, draws: int, confirm: Case | None) -> Search:
         if not gates[-1].fired or done or wandering:
             break
         level, dropped = _possible(problem, next_level(problem, levels[-1], current))
-        implausible |= dropped
+        implausible |= {name: fit for name, fit in dropped.items() if name not in implausible}
         if not level.fits:
             break
         levels.append(level)
         current = all_candidates(problem, (level.preferred or base).theta)
     last = levels[-1]
     if last.depth == 0:
-        return Search(
-            tuple(levels), tuple(gates), (), (), (), frozenset(implausible), base, base, pool
-        )
+        return Search(tuple(levels), tuple(gates), (), (), (), implausible, base, base, pool)
     near = within_margin(last)
     chosen = _chosen(last, near) or base
     names = _names(problem, levels, near, confirmed=confirm is not None)
@@ -136,7 +135,7 @@ def search(problem: Case, *, draws: int, confirm: Case | None) -> Search:
         near,
         adopted,
         refused,
-        frozenset(implausible),
+        implausible,
         after,
         chosen,
         pool,
@@ -150,18 +149,18 @@ def _chosen(level: Level, near: tuple[Fit, ...]) -> Fit | None:
     return next((fit for fit in near if fit.noise is None), near[0] if near else None)
 
 
-def _possible(problem: Case, level: Level) -> tuple[Level, set[str]]:
+def _possible(problem: Case, level: Level) -> tuple[Level, dict[str, Fit]]:
     """Drop sets with too many parameters or coefficients outside their physical range."""
-    kept, dropped = [], set()
+    kept: list[Fit] = []
+    dropped: dict[str, Fit] = {}
     for fit in level.fits:
         if fit.parameters > most_parameters(problem.size):
             continue
         outside = set(plausible(problem, fit))
-        dropped |= outside if len(fit.members) == 1 else set()
         if not outside:
             kept.append(fit)
-        elif level.depth > 1:
-            dropped |= outside
+        elif len(fit.members) == 1 or level.depth > 1:
+            dropped |= {name: fit for name in outside if name not in dropped}
     allowed = [f for f in level.noises if f.parameters <= most_parameters(problem.size)]
     return Level(level.depth, tuple(kept), tuple(allowed)), dropped
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surveyapp.diagnosis.candidates import Projected
+from surveyapp.diagnosis.projection import Projected
 from surveyapp_models.arrays import Floats
 
 CHUNK = 500_000

@@ -3,15 +3,25 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
+from surveyapp.core.sensors.rate.hand_held import (
+    ForceModel,
+    HeldStop,
+    fit_rates,
+    turn_rows,
+)
 from surveyapp.core.sensors.rate.multi_position_log import (
+    ACCELEROMETERS,
     LEAST_STOPS,
+    LEAST_TURNS,
     MultiPositionOptions,
     force_model,
     held_stops,
     rest_rates,
+    turns_between,
 )
 from surveyapp.core.sensors.rate.position_log import (
     GYROS,
@@ -21,7 +31,7 @@ from surveyapp.core.sensors.rate.position_log import (
     sense_of,
 )
 from surveyapp.core.sensors.rate.table_log import label, motion_of
-from surveyapp.diagnosis.subjects.rate import RateStop
+from surveyapp.diagnosis.subjects.rate import RateStop, RateTurn
 from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2, SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.arrays import Floats
@@ -32,8 +42,10 @@ FIELDS = ("mag_x_uT", "mag_y_uT", "mag_z_uT")
 TESLA = 1e-6
 
 
-def stops_of(log: SensorLog, *, latitude: float | None) -> tuple[list[RateStop], str]:
-    """Stops of a log, and what is not known of them.
+def stops_of(
+    log: SensorLog, *, latitude: float | None
+) -> tuple[list[RateStop], list[RateTurn], str]:
+    """Stops of a log, the turns between them, and what is not known of them.
 
     Parameters
     ----------
@@ -52,11 +64,11 @@ def stops_of(log: SensorLog, *, latitude: float | None) -> tuple[list[RateStop],
             "a sensitivity to gravity"
         )
     if "position" in log.texts:
-        return _table_stops(log, latitude), told
-    return _held_stops(log, latitude), told
+        return _table_stops(log, latitude), [], told
+    return *_held_stops(log, latitude), told
 
 
-def _held_stops(log: SensorLog, latitude: float | None) -> list[RateStop]:
+def _held_stops(log: SensorLog, latitude: float | None) -> tuple[list[RateStop], list[RateTurn]]:
     stops = held_stops(log)
     if len(stops) < LEAST_STOPS:
         raise SurveyError(
@@ -72,7 +84,7 @@ def _held_stops(log: SensorLog, latitude: float | None) -> list[RateStop]:
     true = model.corrected(forces)
     ups = true / np.linalg.norm(true, axis=1)[:, None]
     rates = rest_rates(stops, ups, latitude)
-    return [
+    found = [
         RateStop(
             output=rates[k],
             elapsed_s=stop.time_s,
@@ -83,6 +95,33 @@ def _held_stops(log: SensorLog, latitude: float | None) -> list[RateStop]:
         )
         for k, stop in enumerate(stops)
     ]
+    return found, _turned(log, stops, model, latitude)
+
+
+def _turned(
+    log: SensorLog, stops: Sequence[HeldStop], model: ForceModel, latitude: float | None
+) -> list[RateTurn]:
+    """The turns between the stops, where there are enough for the gyros' own elements."""
+    turns = turns_between(log, stops, model, MultiPositionOptions(latitude))
+    if len(turns) < LEAST_TURNS:
+        return []
+    inverse = fit_rates(turns).matrix
+    force = np.column_stack([log.columns[c] for c in ACCELEROMETERS])
+    rests = model.corrected(np.array([s.force for s in stops]))
+    found = []
+    for k, turn in enumerate(turns):
+        first, last = stops[k].stop, stops[k + 1].start
+        rows = turn_rows(
+            turn,
+            inverse,
+            forces=model.corrected(force[first:last]),
+            rest=0.5 * (rests[k] + rests[k + 1]),
+        )
+        middle = float(log.columns["time_s"][(first + last) // 2])
+        warmth = _mean(log, "temperature_c", first, last)
+        lasts = turn.rates.shape[0] * turn.interval_s
+        found.append(RateTurn(rows, middle, lasts, warmth, f"turn {k + 1}"))
+    return found
 
 
 def _table_stops(log: SensorLog, latitude: float | None) -> list[RateStop]:

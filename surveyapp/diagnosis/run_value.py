@@ -271,7 +271,10 @@ def datum_values(problem: Case, fit: Fit) -> tuple[tuple[str, str, Value], ...]:
 
 def rms(problem: Case, fit: Fit) -> float:
     """Root mean square of the unweighted residuals [SI]."""
-    return float(np.sqrt(np.mean((fit.residual / problem.root_weights) ** 2)))
+    errors = fit.residual / problem.root_weights
+    if problem.reported is not None:
+        errors = errors[problem.reported > 0.0]
+    return float(np.sqrt(np.mean(errors**2)))
 
 
 def coefficients(problem: Case, fit: Fit) -> dict[str, tuple[Floats, Floats]]:
@@ -313,3 +316,21 @@ def plausible(problem: Case, fit: Fit) -> Iterable[str]:
             if not c.low - 1e-12 <= value / c.scale <= c.high + 1e-12:
                 yield member.candidate.id
                 break
+
+
+def out_of_range(problem: Case, fit: Fit, name: str) -> bool:
+    """Whether a coefficient is known to lie outside its physical range: by two of its sigmas.
+
+    Where the record does not determine it that well, its value says nothing of the cause.
+    """
+    effect = next(m.candidate.effect for m in fit.members if m.candidate.id == name)
+    found = coefficients(problem, fit).get(name)
+    if effect is None or found is None:
+        return True
+    values, covariance = found
+    sigmas = np.sqrt(np.maximum(np.diagonal(covariance), 0.0))
+    for i, (value, sigma) in enumerate(zip(values, sigmas, strict=True)):
+        c = effect.coefficients[i % len(effect.coefficients)]
+        if value - 2.0 * sigma > c.high * c.scale or value + 2.0 * sigma < c.low * c.scale:
+            return True
+    return False

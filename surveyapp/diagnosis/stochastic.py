@@ -64,6 +64,7 @@ def noise_models(problem: Case) -> tuple[NoiseModel, ...]:
     for part in (problem.position, problem.root_weights):
         key.update(np.ascontiguousarray(part).tobytes())
     key.update(b"swing" if problem.side is None else problem.side.tobytes())
+    key.update(b"one" if problem.series is None else problem.series.tobytes())
     found = _CACHE.get(key.digest())
     if found is None:
         found = _build(problem)
@@ -76,12 +77,15 @@ def noise_models(problem: Case) -> tuple[NoiseModel, ...]:
 def _build(problem: Case) -> tuple[NoiseModel, ...]:
     n, root = problem.size, problem.root_weights
     rank = _scaled_position(problem.position)
-    walk = np.minimum.outer(rank, rank) + 1.0
+    series = np.zeros(n) if problem.series is None else problem.series
+    own = (series[:, None] == series[None, :]).astype(np.float64)
+    walk = own * (np.minimum.outer(rank, rank) + 1.0)
     lag = np.abs(np.subtract.outer(rank, rank))
-    order = np.argsort(np.argsort(rank, kind="stable"), kind="stable").astype(np.float64)
+    order = _order_within(rank, series)
     step = np.abs(np.subtract.outer(order, order))
-    if np.unique(rank).size < n:  # equal moments are no knowledge of equal noise
-        lag = step
+    channels = [rank[series == one] for one in np.unique(series[np.isfinite(series)])]
+    if any(np.unique(places).size < places.size for places in channels):
+        lag = step  # equal moments are no knowledge of equal noise
     thin = slice(None, None, 2) if n >= LARGE else slice(None)
     models: list[tuple[NoiseKind, tuple[float, ...], Floats]] = []
     for ratio in RATIOS[thin]:
@@ -98,6 +102,7 @@ def _build(problem: Case) -> tuple[NoiseModel, ...]:
         decay: Floats = np.asarray(abs(correlation) ** (lag if correlation > 0.0 else step))
         if correlation < 0.0:
             decay = decay * np.where(step % 2.0 == 0.0, 1.0, -1.0)
+        decay = decay * own
         models += [("ar1", (correlation, share), share * decay) for share in SHARES]
     outer = np.outer(root, root)
     stack = np.stack([np.eye(n) + process * outer for _, _, process in models])
@@ -108,6 +113,15 @@ def _build(problem: Case) -> tuple[NoiseModel, ...]:
         NoiseModel(kind, point, process, w, float(log))
         for (kind, point, process), w, log in zip(models, whiteners, logs, strict=True)
     )
+
+
+def _order_within(rank: Floats, series: Floats) -> Floats:
+    """Number of each observation within its own channel, by its position."""
+    order = np.zeros(rank.size)
+    for one in np.unique(series[np.isfinite(series)]):
+        rows = np.flatnonzero(series == one)
+        order[rows[np.argsort(rank[rows], kind="stable")]] = np.arange(rows.size)
+    return order
 
 
 def _scaled_position(position: Floats) -> Floats:

@@ -111,6 +111,8 @@ class Record:
         The user's own.
     groups : ndarray or None, shape (n,)
         What is left out together, such as the rows of one stop.
+    series : ndarray or None, shape (n,)
+        The channel of each row where several were observed side by side.
     """
 
     observations: Sequence[float] | Floats
@@ -125,6 +127,7 @@ class Record:
     warnings: tuple[ResultWarning, ...] = ()
     extra: tuple[Effect, ...] = ()
     groups: Floats | None = None
+    series: Floats | None = None
 
 
 def case_of(subject: Subject, record: Record) -> Case:
@@ -172,6 +175,7 @@ def case_of(subject: Subject, record: Record) -> Case:
         actions=subject.actions,
         base_of=subject.base,
         groups=record.groups,
+        series=record.series,
     )
 
 

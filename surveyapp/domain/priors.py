@@ -29,6 +29,7 @@ UNITS = (
     "circle",
     "line",
     "day",
+    "covariate",
     "excess",
     "walk",
     "slow",
@@ -38,9 +39,12 @@ UNITS = (
 )
 NU0 = 8.0
 """Degrees of freedom with which the stated sigma of a determination counts."""
-DEFAULT_SHARES: Mapping[str, float] = MappingProxyType(
+CLEAN_SHARE = 0.60
+"""Share of campaigns at which nothing is at work: the dial between narrow intervals on clean data
+and honest ones on the others, set on programmes of another make than those that judge it
+(``bench/_programmes.py``, docs/explanation/prediction.md)."""
+LEARNED: Mapping[str, float] = MappingProxyType(
     {
-        BASE: 0.50,
         "drift": 0.05,
         "bend": 0.015,
         "temperature": 0.03,
@@ -50,6 +54,7 @@ DEFAULT_SHARES: Mapping[str, float] = MappingProxyType(
         "circle": 0.015,
         "line": 0.02,
         "day": 0.05,
+        "covariate": 0.02,
         "excess": 0.01,
         "walk": 0.03,
         "slow": 0.13,
@@ -58,7 +63,16 @@ DEFAULT_SHARES: Mapping[str, float] = MappingProxyType(
         PAIRS: 0.08,
     }
 )
-"""Learned by expectation and maximization; those below .03 each share what is left."""
+"""The causes beside each other, learned by expectation and maximization; those below .03 share what
+is left. ``covariate`` is whatever else a project tells of its determinations (pressure, humidity,
+supply voltage): no archive told it, and it counts as much as the latitude does."""
+DEFAULT_SHARES: Mapping[str, float] = MappingProxyType(
+    {
+        BASE: CLEAN_SHARE,
+        **{name: (1.0 - CLEAN_SHARE) * v / sum(LEARNED.values()) for name, v in LEARNED.items()},
+    }
+)
+"""Prior share of every unit; sum 1."""
 DEFAULT_SIZES = (0.33, 0.28, 0.36, 0.04)
 """Shares of ``AMPLITUDES``."""
 

@@ -6,11 +6,12 @@ Read from a folder by ``surveyapp.io.project``; nothing here touches a file.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import date
 from typing import Any, Literal
 
 from surveyapp.domain.closing import Filing
+from surveyapp.domain.constant_choice import ConstantChoice
 from surveyapp.domain.instrument import AdoptedEffect, Instrument
 from surveyapp.domain.mine_grid import MineGrid, StatedConvergence
 from surveyapp.domain.penetration import PenetrationTable
@@ -137,7 +138,7 @@ class OrientationSession:
         Known grid azimuth of the line [rad].
     azimuth_known_sigma : float or None
         Its standard deviation [rad]; None: from the coordinates' sigma.
-    constant_choice : str or None
+    constant_choice : ConstantChoice or None
         Overrides the instrument's.
     date : datetime.date or None
     order : float or None
@@ -159,6 +160,10 @@ class OrientationSession:
     levelling : LogLevelling or None
         Tilt of its standing axis from a calibrated log.
     pre_orientation : PreOrientation or None
+    pressure_hpa, humidity_percent : float or None
+        Of the air at the instrument.
+    hours_since_transport : float or None
+        Since the instrument was last carried or driven; None: from the sessions.
     override : tuple of (str, object)
         Further keys of the table, kept for those who know them.
     """
@@ -173,7 +178,7 @@ class OrientationSession:
     target: str | None = None
     azimuth_known: float | None = None
     azimuth_known_sigma: float | None = None
-    constant_choice: str | None = None
+    constant_choice: ConstantChoice | None = None
     date: date | None = None
     order: float | None = None
     circle_shift: float | None = None
@@ -187,6 +192,9 @@ class OrientationSession:
     refraction_sigma: float | None = None
     levelling: LogLevelling | None = None
     pre_orientation: PreOrientation | None = None
+    pressure_hpa: float | None = None
+    humidity_percent: float | None = None
+    hours_since_transport: float | None = None
     override: tuple[tuple[str, object], ...] = ()
 
 
@@ -213,6 +221,10 @@ class ResultWarning:
     code: str
     text: str
     subject: Subject | None = None
+
+    def about(self, subject: Subject) -> ResultWarning:
+        """The same warning about this subject, where it does not say what it is about."""
+        return self if self.subject is not None else replace(self, subject=subject)
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""

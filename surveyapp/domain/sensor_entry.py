@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from datetime import date
 from typing import Final, Literal
 
-SensorKind = Literal["compass", "tilt", "rate", "fog-station"]
-SENSOR_KINDS: Final[tuple[SensorKind, ...]] = ("compass", "tilt", "rate", "fog-station")
+SensorKind = Literal["compass", "tilt", "rate", "fog-station", "edm"]
+SENSOR_KINDS: Final[tuple[SensorKind, ...]] = ("compass", "tilt", "rate", "fog-station", "edm")
 
 
 @dataclass(frozen=True, slots=True)

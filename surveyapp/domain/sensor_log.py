@@ -49,10 +49,17 @@ NUMBER_COLUMNS: Final[dict[str, str]] = {
     "horizontal_circle_deg": "deg",
     "odometer_m": "m",
     "power_cycle": "1",
+    "slope_distance_m": "m",
+    "height_of_instrument_m": "m",
+    "height_of_target_m": "m",
+    "from_height_m": "m",
+    "to_height_m": "m",
+    "pressure_hpa": "hPa",
+    "humidity_percent": "%",
 }
 """Canonical columns of numbers and the unit in which they are held."""
 
-TEXT_COLUMNS: Final = ("test", "position", "face", "phase")
+TEXT_COLUMNS: Final = ("test", "position", "face", "phase", "from_pillar", "to_pillar")
 """Canonical columns that hold a word in each row."""
 
 SENSOR_COLUMNS: Final = tuple(

@@ -32,12 +32,15 @@ class Settings:
         Whether the countdown may be heard.
     instrument : str
         Total station on the cable, ``protocol:port``; empty where there is none.
+    language : str
+        Code of the language of screens and record; empty: that of the locale.
     """
 
     recent: tuple[str, ...] = ()
     theme: str = ""
     sound: bool = True
     instrument: str = ""
+    language: str = ""
 
     def with_recent(self, folder: str) -> Settings:
         """The same with a project at the top of the recent ones."""
@@ -54,7 +57,7 @@ def read_settings(folder: Path | None = None) -> Settings:
         return Settings()
     recent = data.get("recent", [])
     theme, sound = data.get("theme", ""), data.get("sound", True)
-    instrument = data.get("instrument", "")
+    instrument, language = data.get("instrument", ""), data.get("language", "")
     return Settings(
         recent=tuple(item for item in recent if isinstance(item, str))
         if isinstance(recent, list)
@@ -62,6 +65,7 @@ def read_settings(folder: Path | None = None) -> Settings:
         theme=theme if isinstance(theme, str) else "",
         sound=sound if isinstance(sound, bool) else True,
         instrument=instrument if isinstance(instrument, str) else "",
+        language=language if isinstance(language, str) else "",
     )
 
 
@@ -71,6 +75,7 @@ def write_settings(settings: Settings, folder: Path | None = None) -> bool:
     text = "# surveyapp: settings of the screens\n"
     text += f"theme = {toml_value(settings.theme)}\n"
     text += f"sound = {toml_value(settings.sound)}\n"
+    text += f"language = {toml_value(settings.language)}\n"
     text += f"instrument = {toml_value(settings.instrument)}\n"
     text += f"recent = {toml_value(list(settings.recent))}\n"
     try:

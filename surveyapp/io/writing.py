@@ -30,6 +30,7 @@ __all__ = [
     "comments",
     "create_project",
     "set_value",
+    "set_values",
     "toml_value",
 ]
 
@@ -211,6 +212,11 @@ def set_value(project_toml: Path, path: Sequence[Key], value: object) -> None:
         If the place does not exist, or if data or comments would not survive; the file is
         untouched then.
     """
+    set_values(project_toml, [(path, value)])
+
+
+def set_values(project_toml: Path, changes: Sequence[tuple[Sequence[Key], object]]) -> None:
+    """Set several values in place in one writing, each as ``set_value`` does; all or none."""
     import tomlkit
     from tomlkit.exceptions import TOMLKitError
 
@@ -218,15 +224,28 @@ def set_value(project_toml: Path, path: Sequence[Key], value: object) -> None:
     expected = copy.deepcopy(data)
     try:
         document = tomlkit.parse(text)
-        for root in (expected, document):
-            holder: object = root
-            for key in path[:-1]:
-                holder = _step(project_toml, holder, key)
-            _assign(project_toml, holder, path[-1], value)
+        for path, value in changes:
+            for root in (expected, document):
+                holder: object = root
+                for key in path[:-1]:
+                    holder = _step(project_toml, holder, key)
+                new_value = _inline(value) if root is document else value
+                _assign(project_toml, holder, path[-1], new_value)
         new = tomlkit.dumps(document)
     except (TOMLKitError, ValueError, TypeError) as error:
         raise _refused(project_toml, shown(str(error))) from None
     _write_checked(project_toml, text, new, expected)
+
+
+def _inline(value: object) -> object:
+    """A mapping as ``{ key = value }``, as surveyors write it."""
+    import tomlkit
+
+    if not isinstance(value, Mapping):
+        return value
+    table = tomlkit.inline_table()
+    table.update(present(value))
+    return table
 
 
 def _step(path: Path, holder: object, key: Key) -> object:
@@ -253,7 +272,7 @@ def _assign(path: Path, holder: object, key: Key, value: object) -> None:
         holder.pop(key, None)
     else:
         toml_value(value)
-        holder[key] = plain(value)
+        holder[key] = value if hasattr(value, "as_string") else plain(value)
 
 
 def _read(path: Path) -> tuple[str, dict[str, object]]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import csv
 import io
+import os
 from collections import Counter
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -120,6 +121,11 @@ def keep_sound(*, sound: bool) -> Settings:
     settings = replace(read_settings(), sound=sound)
     write_settings(settings)
     return settings
+
+
+def keep_language(language: str) -> bool:
+    """Remember the language of screens and record; False where that is not possible."""
+    return write_settings(replace(read_settings(), language=language))
 
 
 def samples() -> tuple[str, ...]:
@@ -351,11 +357,15 @@ def _book_name(identity: str) -> str:
 
 
 def _new_book(path: Path) -> None:
-    """An empty book with its header; an existing one is never touched."""
+    """An empty book with its header; one with anything in it is never touched."""
     from surveyapp.io.fieldbook import COLUMNS
+    from surveyapp.io.guarded import is_regular
     from surveyapp.io.tomltext import atomic_write
 
-    if path.exists():
+    header = (",".join(COLUMNS) + "\n").encode("utf-8")
+    if is_regular(path) and path.stat().st_size == len(header) and path.read_bytes() == header:
+        return  # left by a program that ended before the session stood in project.toml
+    if os.path.lexists(path):
         raise SurveyError(
             Problem(
                 "a book of this name exists already",
@@ -366,4 +376,4 @@ def _new_book(path: Path) -> None:
             )
         )
     path.parent.mkdir(parents=True, exist_ok=True)
-    atomic_write(path, (",".join(COLUMNS) + "\n").encode("utf-8"))
+    atomic_write(path, header)

@@ -23,6 +23,7 @@ from surveyapp.report.blocks import (
     Signature,
     Table,
 )
+from surveyapp.report.in_words import in_words
 
 WIDTH: Final = 100
 _NARROWEST: Final = 8
@@ -36,6 +37,7 @@ _MARK: Final = {"circle": "o", "dot": "*", "cross": "x", "square": "#"}
 
 def document_text(document: Document) -> str:
     """The whole document as text."""
+    document = in_words(document)
     parts = [document.title, "=" * display_width(document.title), *document.foot]
     return "\n".join(parts) + "\n\n" + blocks_text(document.blocks) + "\n"
 
@@ -49,7 +51,8 @@ def blocks_text(blocks: Iterable[Block], width: int = WIDTH) -> str:
     width : int
         Columns of the terminal: texts are wrapped, and texts of tables where they must be.
     """
-    return "\n\n".join(part for block in blocks if (part := block_text(block, width)))
+    told = in_words(tuple(blocks))
+    return "\n\n".join(part for block in told if (part := block_text(block, width)))
 
 
 def block_text(block: Block, width: int = WIDTH) -> str:

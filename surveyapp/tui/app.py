@@ -18,6 +18,7 @@ from textual.screen import Screen
 from surveyapp.errors import SurveyError
 from surveyapp.io.fieldbook.clock import local_now, steady_seconds
 from surveyapp.io.settings import read_settings
+from surveyapp.languages import LANGUAGES, current
 from surveyapp.observation import home as api_home
 from surveyapp.observation import practice as api_practice
 from surveyapp.observation.practice import Practice
@@ -33,6 +34,8 @@ from surveyapp.tui.screens.session import SessionScreen
 from surveyapp.tui.texts import help_texts
 from surveyapp.tui.themes import THEMES
 
+OTHER_LANGUAGE = -2
+"""What ``run_app`` returns when another language was chosen: run again, in that one."""
 UNLISTED = ("command_palette", "app.focus_previous", "app.focus_next", "screen.copy_text")
 """Actions of the keyboard as such, which nobody looks for in the palette."""
 
@@ -53,7 +56,7 @@ class SurveyApp(App[int]):
     CSS_PATH = "app.tcss"
     TITLE = texts.APP_TITLE
     ENABLE_COMMAND_PALETTE = True
-    HORIZONTAL_BREAKPOINTS = [(0, "-tiny"), (60, "-narrow"), (110, "-wide")]  # noqa: RUF012
+    HORIZONTAL_BREAKPOINTS = [(0, "-tiny"), (70, "-narrow"), (110, "-wide")]  # noqa: RUF012
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("f1", "help", texts.KEY_HELP),
         Binding("f9", "next_theme", texts.KEY_THEME, show=False),
@@ -115,7 +118,7 @@ class SurveyApp(App[int]):
 
     def action_help(self) -> None:
         """Explain the screen that is open; a session explains its step itself."""
-        page = help_texts.PAGES.get(type(self.screen).__name__)
+        page = help_texts.page_of(type(self.screen).__name__)
         if page is not None:
             self.push_screen(HelpScreen(*page))
 
@@ -129,6 +132,15 @@ class SurveyApp(App[int]):
         """Let the countdown be heard, or not; remembered."""
         self.settings = api_home.keep_sound(sound=not self.settings.sound)
         self.notify(texts.SOUND_ON if self.settings.sound else texts.SOUND_OFF, markup=False)
+
+    def action_language(self) -> None:
+        """The next language; remembered, and the screens begin again in it."""
+        codes = list(LANGUAGES)
+        wanted = codes[(codes.index(current()) + 1) % len(codes)]
+        if api_home.keep_language(wanted):
+            self.exit(OTHER_LANGUAGE)
+        else:
+            self.notify(texts.LANGUAGE_NOT_KEPT, severity="warning", markup=False)
 
     def open_folder(self, folder: str) -> None:
         """Open a project and remember it."""

@@ -6,7 +6,7 @@ One line of ``CASES`` a kind of sensor; the module behind it makes the case of a
 from __future__ import annotations
 
 import importlib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from typing import Any, Final
@@ -14,6 +14,7 @@ from typing import Any, Final
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.engine import diagnose as run_engine
 from surveyapp.diagnosis.plain_words import words_of
+from surveyapp.diagnosis.result import Diagnosis
 from surveyapp.domain.project import Project, ResultWarning
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.errors import Problem, SurveyError
@@ -30,11 +31,15 @@ CASES: Final = {
 
 @dataclass(frozen=True, slots=True)
 class SensorCase:
-    """A case, what a reader must know of it, and further keys of the JSON."""
+    """A case, what a reader must know of it, and further keys of the JSON.
+
+    ``told`` makes keys of what was found.
+    """
 
     case: Case
     warnings: tuple[ResultWarning, ...] = ()
     extra: dict[str, Any] = field(default_factory=dict)
+    told: Callable[[Diagnosis], dict[str, Any]] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,4 +115,5 @@ def diagnose_sensor(
         notes += more
     words = [note.text for note in notes] + list(words_of(diagnosis, made.case))
     told = replace(diagnosis, warnings=(*diagnosis.warnings, *notes))
-    return SensorDiagnosed(Diagnosed(told, words=tuple(words)), made.extra)
+    extra = made.extra | ({} if made.told is None else made.told(diagnosis))
+    return SensorDiagnosed(Diagnosed(told, words=tuple(words)), extra)

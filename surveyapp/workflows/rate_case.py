@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import math
+from functools import partial
+from typing import Any
+
+import numpy as np
 
 from surveyapp.core.sensors.rate.position_log import ACCELEROMETERS, GYROS
 from surveyapp.diagnosis.rate_stops import stops_of
-from surveyapp.diagnosis.subjects.rate import rate_case
+from surveyapp.diagnosis.result import Diagnosis
+from surveyapp.diagnosis.subjects.rate import RateTurn, rate_case
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.io.sensor_logs.reading import LogFile, Need
@@ -31,12 +36,30 @@ def case(file: LogFile, entry: SensorLogEntry, own: tuple[Effect, ...]) -> Senso
     optional = (*OPTIONAL, *ACCELEROMETERS)
     log = file.read(Need(columns=columns, varying=GYROS, optional=optional, biased=True))
     latitude = None if entry.latitude_deg is None else math.radians(entry.latitude_deg)
-    stops, told = stops_of(log, latitude=latitude)
+    stops, turns, told = stops_of(log, latitude=latitude)
     warnings = list(log.warnings)
     if told:
         warnings.append(ResultWarning("latitude_unknown", told))
     return SensorCase(
-        rate_case(stops, identity=entry.id, extra=own),
+        rate_case(stops, turns, identity=entry.id, extra=own),
         tuple(warnings),
-        {"stops": len(stops)},
+        {"stops": len(stops), "turns": len(turns)},
+        partial(_directions, turns=turns) if turns else None,
     )
+
+
+def _directions(diagnosis: Diagnosis, *, turns: list[RateTurn]) -> dict[str, Any]:
+    """How far gravity is missed after a turn, by the base model and by the best one, rms."""
+    times = np.repeat([turn.duration_s for turn in turns], 2)
+
+    def missed(residuals: tuple[float, ...]) -> float:
+        angles = np.array(residuals[-times.size :]) * times
+        return math.degrees(math.sqrt(float(np.sum(angles**2)) / len(turns)))
+
+    return {
+        "gravity_direction": {
+            "before_deg": missed(diagnosis.residuals_before),
+            "after_deg": missed(diagnosis.residuals_best),
+            "turns": len(turns),
+        }
+    }

@@ -405,3 +405,12 @@ def test_every_effect_kind_can_be_simulated_in_every_method() -> None:
                 temperature_span_c=1.0,
             )
             assert len(simulate_session(spec, rng).rows) > 12
+
+
+def test_an_event_comes_at_another_point_of_the_second_run() -> None:
+    spec = dataclasses.replace(SessionSpec(), effects=(parse_effect("midpoint_step=25,at=0.5"),))
+    made = simulate_reversal_project(spec, np.random.default_rng(4))
+    runs = [s.simulated.truth for s in made.sessions if s.purpose == "survey"]
+    places = [truth["drawn"]["midpoint_step.at"] for truth in runs]
+    assert places[0] == 0.5
+    assert places[1] != 0.5

@@ -9,11 +9,12 @@ import pytest
 from scipy import optimize, stats
 
 from surveyapp.diagnosis import Case, Determination, TurningPoints
-from surveyapp.diagnosis.candidates import Candidate, all_candidates, project
+from surveyapp.diagnosis.candidates import Candidate, all_candidates
 from surveyapp.diagnosis.compare import orthonormal_design, spans
 from surveyapp.diagnosis.fits import Fit, Member, fit_members, with_noise
 from surveyapp.diagnosis.held_out import leave_one_out
 from surveyapp.diagnosis.nulls import Noise, null_of, reductions
+from surveyapp.diagnosis.projection import project
 from surveyapp.diagnosis.run_value import plain_value, value_of
 from surveyapp.diagnosis.stochastic import noise_models
 from surveyapp.diagnosis.subjects.campaign import campaign

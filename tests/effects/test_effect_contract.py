@@ -40,6 +40,20 @@ def columns_of(subject: str) -> Columns:
             "gyro_group": gyro,
             "observation": np.arange(1.0, 31.0),
             "own_sigma": np.where(kind == 0, 0.002, 3e-5),
+            "distance_temperature_c": np.where(kind == 0, generator.normal(15.0, 5.0, 30), 0.0),
+            "prism": np.where(kind == 0, generator.integers(1, 4, 30), 0.0),
+            **{
+                f"by_{role}_{axis}": generator.normal(size=30)
+                for role in ("station", "target", "backsight")
+                for axis in ("east", "north")
+            },
+            "station": np.repeat(np.arange(1.0, 11.0), 3),
+            "target": np.repeat(np.arange(2.0, 12.0), 3),
+            "backsight": np.where(kind == 1, np.repeat(np.arange(0.0, 10.0), 3), 0.0),
+            **{
+                f"{role}_fixed": (np.arange(30) < 4).astype(float)
+                for role in ("station", "target", "backsight")
+            },
         }
     return {
         "elapsed_days": np.cumsum(generator.uniform(1.0, 20.0, 30)),
@@ -50,6 +64,11 @@ def columns_of(subject: str) -> Columns:
         "line_reading": generator.uniform(0.0, 6.28, 30),
         "north_reading": generator.uniform(0.0, 6.28, 30),
         "running_s": generator.uniform(60.0, 3600.0, 30),
+        "observer": generator.integers(0, 3, 30).astype(float),
+        "pressure_hpa": generator.uniform(950.0, 1030.0, 30),
+        "humidity_percent": generator.uniform(20.0, 95.0, 30),
+        "supply_v": generator.uniform(22.0, 28.0, 30),
+        "transport_h": generator.uniform(0.5, 72.0, 30),
     }
 
 

@@ -10,16 +10,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from surveyapp.core.sensors.rate.hand_held import Turn, turn_rows
 from surveyapp.core.simulate.rate.log import SimulatedLog
 from surveyapp.core.simulate.rate.recipes import hand_run
 from surveyapp.core.simulate.rate.vehicle import hand_held_log
 from surveyapp.diagnosis.engine import diagnose
 from surveyapp.diagnosis.rate_stops import stops_of
 from surveyapp.diagnosis.result import Diagnosis
+from surveyapp.diagnosis.stochastic import noise_models
 from surveyapp.diagnosis.subjects.rate import RateStop, rate_case
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
+from surveyapp_models.rate import quaternions
 from tests.cli.command import run as surveyapp
 from tests.rate.logs import as_read
 
@@ -30,9 +33,9 @@ DEG = math.radians(1.0)
 def diagnosed(seed: int, stops: int, **sizes: float) -> Diagnosis:
     rng = np.random.default_rng(seed)
     run = replace(hand_run({**sizes, "stops": float(stops)}, rng), interval_s=0.04, warmth=0.0)
-    found, _ = stops_of(as_read(hand_held_log(run, rng)), latitude=run.latitude)
-    assert len(found) == stops
-    return diagnose(rate_case(found, identity="unit"))
+    found, turns, _ = stops_of(as_read(hand_held_log(run, rng)), latitude=run.latitude)
+    assert (len(found), len(turns)) == (stops, stops - 1)
+    return diagnose(rate_case(found, turns, identity="unit"))
 
 
 def named(found: Diagnosis) -> list[str]:
@@ -54,6 +57,66 @@ def test_g_sensitivity_is_named_and_left_out_stops_are_predicted_better() -> Non
             assert found.before.loo_rms is not None
             assert found.after.loo_rms < 0.7 * found.before.loo_rms
     assert right >= 3
+
+
+def test_an_asymmetric_scale_shows_in_the_turns_by_hand() -> None:
+    """rate.md: 4e-3 named .97 at 12 stops."""
+    found = [diagnosed(seed, 12, scale_asymmetry=4e-3) for seed in range(4)]
+    assert sum(named(one) == ["scale_asymmetry"] for one in found) >= 3
+
+
+def test_a_ramp_is_named_and_a_walk_is_seldom_taken_for_one() -> None:
+    """rate.md: a ramp of .02 deg/s per minute; a walk wrongly named in .15 at most.
+
+    Bounds: 3 and more of 8 at .15 have p = .1, 5 and more p = .003.
+    """
+    ramps = [diagnosed(seed, 18, bias_ramp=0.02 * DEG * 106.0 / 60.0) for seed in range(4)]
+    assert sum(named(one) == ["bias_ramp"] for one in ramps) >= 2
+    walks = [diagnosed(seed, 18, random_walk=0.006 * DEG) for seed in range(8)]
+    assert sum(bool(named(one)) for one in walks) <= 4
+
+
+def test_the_rows_of_a_turn_are_derivatives_of_what_the_gyros_carry() -> None:
+    """Against central differences of the integrated attitude itself."""
+    rng = np.random.default_rng(4)
+    rates = rng.normal(0.0, 1.0, 3) * np.sin(np.linspace(0.0, math.pi, 400))[:, None]
+    rates = rates + 0.2 * np.cos(np.linspace(0.0, 3.0, 400))[:, None] * rng.normal(0.0, 1.0, 3)
+    before = np.array([0.1, -0.3, 0.9]) / math.sqrt(0.91)
+    after = quaternions.rotate_back(quaternions.integrate(rates, interval_s=0.01)[-1], before)
+    forces, rest, step = rng.normal(0.0, 5.0, (400, 3)), rng.normal(0.0, 5.0, 3), 1e-5
+
+    def error(added: Floats) -> Floats:
+        turn = Turn(rates + step * added, before, after, 0.01)
+        back = Turn(rates - step * added, before, after, 0.01)
+        rows = [turn_rows(one, np.eye(3)).error for one in (turn, back)]
+        return np.asarray((rows[0] - rows[1]) / (2.0 * step))
+
+    found = turn_rows(Turn(rates, before, after, 0.01), np.eye(3), forces=forces, rest=rest)
+    assert np.abs(found.error).max() < 1e-12
+    for i in range(3):
+        one = np.zeros(3)
+        one[i] = 1.0
+        size = 0.5 * np.abs(rates[:, i : i + 1]) * one
+        assert found.size[:, i] == pytest.approx(error(size), rel=1e-3, abs=1e-5)
+        for j in range(3):
+            turned = error(rates[:, j : j + 1] * one)
+            assert found.rate[:, i, j] == pytest.approx(turned, rel=1e-3, abs=1e-5)
+            pulled = error((forces - rest)[:, j : j + 1] * one)
+            assert found.force[:, i, j] == pytest.approx(pulled, rel=1e-3, abs=1e-4)
+
+
+def test_noise_of_one_gyro_knows_nothing_of_another() -> None:
+    case = rate_case(table_stops(np.random.default_rng(1)), identity="table")
+    axis = case.columns["axis"]
+    apart = axis[:, None] != axis[None, :]
+    for model in noise_models(case):
+        assert np.all(model.process[apart] == 0.0)
+        own = model.process[np.ix_(axis == 0.0, axis == 0.0)]
+        assert np.linalg.eigvalsh(own)[0] > -1e-9 * np.trace(own)
+        if model.kind == "random_walk":
+            # each stop adds the variance of one step: the walk knows the time, not the row
+            steps = np.diff(np.diag(own))
+            assert steps == pytest.approx(np.full(steps.size, model.point[0]), rel=1e-9)
 
 
 def test_one_bumped_stop_is_a_gross_error() -> None:
@@ -109,6 +172,7 @@ def test_every_effect_of_a_rate_sensor_is_zero_where_its_coefficient_is_and_fini
     case = rate_case(table_stops(np.random.default_rng(1)), identity="table")
     columns = {
         **case.columns,
+        **{f"half_size_{a}": np.full(case.size, 0.1) for a in "xyz"},
         "temperature_c": np.linspace(20.0, 25.0, case.size),
         **{f"field_{a}": np.full(case.size, 5e-5) for a in "xyz"},
     }
@@ -146,9 +210,9 @@ def test_the_measured_unit_lacks_its_g_sensitivity_and_the_engine_names_it() -> 
     columns: dict[str, Floats] = {"time_s": raw[:, 0]}
     columns |= {f"acc_{a}_m_s2": (raw[:, 1 + i] - 32768.0) / 415.0 for i, a in enumerate("xyz")}
     columns |= {f"gyr_{a}_rad_s": (raw[:, 4 + i] - 32768.0) / 4778.0 for i, a in enumerate("xyz")}
-    stops, told = stops_of(as_read(SimulatedLog(columns)), latitude=None)
+    stops, turns, told = stops_of(as_read(SimulatedLog(columns)), latitude=None)
     assert told
-    found = diagnose(rate_case(stops, identity="imu_tk"))
+    found = diagnose(rate_case(stops, turns, identity="imu_tk"))
     assert named(found) == ["g_sensitivity"]
     before, after = found.to_dict()["before"], found.to_dict()["after"]
     assert before["loo_rms"] == pytest.approx(0.070, abs=0.005)

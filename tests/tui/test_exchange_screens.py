@@ -82,7 +82,7 @@ async def test_an_export_is_written_and_never_over_a_file(tmp_path: Path) -> Non
     app = SurveyApp(str(folder))
     async with app.run_test(size=SMALL) as pilot:
         await settle(pilot)
-        await pilot.press("e")
+        await pilot.press("x")
         await settle(pilot)
         screen = app.screen
         assert isinstance(screen, ExportScreen)

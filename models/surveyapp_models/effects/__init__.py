@@ -7,10 +7,15 @@ or handed over by the user does not exist.
 from __future__ import annotations
 
 from surveyapp_models.effects import campaign, rate, reversal_run, traverse
+from surveyapp_models.effects.campaign import after_transport as _c_after_transport
 from surveyapp_models.effects.campaign import circle_eccentricity as _c_circle_eccentricity
 from surveyapp_models.effects.campaign import gyro_block as _c_gyro_block
+from surveyapp_models.effects.campaign import humidity as _c_humidity
 from surveyapp_models.effects.campaign import latitude as _c_latitude
 from surveyapp_models.effects.campaign import line_offset as _c_line_offset
+from surveyapp_models.effects.campaign import observer as _c_observer
+from surveyapp_models.effects.campaign import pressure as _c_pressure
+from surveyapp_models.effects.campaign import supply_voltage as _c_supply_voltage
 from surveyapp_models.effects.campaign import temperature as _c_temperature
 from surveyapp_models.effects.campaign import time_drift as _c_time_drift
 from surveyapp_models.effects.campaign import transport_step as _c_transport_step
@@ -37,9 +42,13 @@ from surveyapp_models.effects.traverse import angle_bias as _t_angle_bias
 from surveyapp_models.effects.traverse import distance_constant as _t_distance_constant
 from surveyapp_models.effects.traverse import distance_cyclic as _t_distance_cyclic
 from surveyapp_models.effects.traverse import distance_scale as _t_distance_scale
+from surveyapp_models.effects.traverse import distance_temperature as _t_distance_temperature
+from surveyapp_models.effects.traverse import fixed_point as _t_fixed_point
 from surveyapp_models.effects.traverse import gross_error as _t_gross_error
 from surveyapp_models.effects.traverse import gyro_constant_shift as _t_gyro_constant_shift
 from surveyapp_models.effects.traverse import lateral_refraction as _t_lateral_refraction
+from surveyapp_models.effects.traverse import prism_constant as _t_prism_constant
+from surveyapp_models.effects.traverse import station_centring as _t_station_centring
 
 CATALOGUE: tuple[Effect, ...] = (
     _r_damping_break.EFFECT,
@@ -60,12 +69,21 @@ CATALOGUE: tuple[Effect, ...] = (
     _c_line_offset.EFFECT,
     _c_gyro_block.EFFECT,
     _c_warm_up.EFFECT,
+    _c_observer.EFFECT,
+    _c_pressure.EFFECT,
+    _c_humidity.EFFECT,
+    _c_supply_voltage.EFFECT,
+    _c_after_transport.EFFECT,
     _t_distance_scale.EFFECT,
     _t_distance_constant.EFFECT,
     _t_distance_cyclic.EFFECT,
     _t_angle_bias.EFFECT,
     _t_lateral_refraction.EFFECT,
     _t_gyro_constant_shift.EFFECT,
+    _t_distance_temperature.EFFECT,
+    _t_prism_constant.EFFECT,
+    _t_station_centring.EFFECT,
+    _t_fixed_point.EFFECT,
     _t_gross_error.EFFECT,
     _s_g_sensitivity.EFFECT,
     _s_temperature.EFFECT,

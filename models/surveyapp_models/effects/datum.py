@@ -10,7 +10,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from surveyapp_models.effects.effect import Columns
+from surveyapp_models.arrays import Floats
+from surveyapp_models.effects.effect import Basis, Columns, ReferenceState
 
 Rows = tuple[tuple[str, tuple[float, ...]], ...]
 
@@ -69,3 +70,26 @@ def at_last_date(
     """The last date [d]: after a step, where the later plateau counts."""
     del references, grid
     return {"elapsed_days": float(columns["elapsed_days"].max())}
+
+
+def centred(column: str) -> Basis:
+    """A basis that is a column less its mean."""
+
+    def basis(columns: Columns, /, **grid: float) -> Floats:
+        del grid
+        values = columns[column]
+        return np.asarray(values - values.mean())[:, None]
+
+    return basis
+
+
+def at_mean_of(column: str) -> ReferenceState:
+    """The mean of a column: where ``centred`` corrects nothing."""
+
+    def state(
+        columns: Columns, references: Mapping[str, float], /, **grid: float
+    ) -> dict[str, float]:
+        del grid
+        return {column: references.get(column, float(columns[column].mean()))}
+
+    return state

@@ -20,6 +20,7 @@ from surveyapp.core.orientation.sequence import session_timestamp
 from surveyapp.core.swing.session import ReducedSession, TargetReduction
 from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import SWING_KINDS, ReadingKind
+from surveyapp.domain.station_line import StationLine
 from surveyapp_models.arrays import Floats
 
 SECONDS_PER_DAY = 86400.0
@@ -55,7 +56,9 @@ class Place:
         return self.item.session
 
 
-Told = float | str | None
+Name = str | StationLine
+"""A name: a line is its two stations, never the text that people read."""
+Told = float | Name | None
 """What a project tells of one determination: a number, a name, or nothing."""
 Example = Callable[[np.random.Generator, int], Floats]
 """Made-up values of a column: generator, how many."""
@@ -120,9 +123,9 @@ def day_of(place: Place) -> float | None:
     return None if stamp is None else stamp / SECONDS_PER_DAY
 
 
-def line_of(place: Place) -> str:
-    """``station-target``."""
-    return f"{place.session.station}-{place.target.target}"
+def line_of(place: Place) -> StationLine:
+    """The line that was observed."""
+    return StationLine(place.session.station, place.target.target)
 
 
 def block_names(days: Sequence[float | None]) -> list[str]:
@@ -175,6 +178,30 @@ def _running(place: Place) -> float | None:
     rows = [row for row in place.session.book.live if row.kind in SWING_KINDS]
     values = [row.elapsed_s for row in rows if row.elapsed_s is not None]
     return sum(values) / len(values) if values and len(values) == len(rows) else None
+
+
+def _supply(place: Place) -> float | None:
+    rows = [r for r in place.session.book.of_kind(ReadingKind.SUPPLY) if r.unit == "V"]
+    values = [row.value for row in rows if row.value is not None]
+    return sum(values) / len(values) if values else None
+
+
+def hours_since_transport(places: Sequence[Place]) -> list[Told]:
+    """As stated, else hours since the latest determination at another station."""
+    found: list[Told] = []
+    for place in places:
+        stated, day = place.session.hours_since_transport, day_of(place)
+        if stated is not None or day is None:
+            found.append(stated)
+            continue
+        days = [(day_of(p), p.session.station) for p in places]
+        elsewhere = [
+            other
+            for other, station in days
+            if other is not None and other < day and station != place.session.station
+        ]
+        found.append(24.0 * (day - max(elsewhere)) if elsewhere else None)
+    return found
 
 
 COLUMNS: tuple[CampaignColumn, ...] = (
@@ -246,6 +273,45 @@ COLUMNS: tuple[CampaignColumn, ...] = (
         lambda generator, n: np.asarray(np.arange(n) // 3, dtype=np.float64),
         named=True,
         later="new",
+    ),
+    CampaignColumn(
+        "observer",
+        "number of the observer",
+        "`observer` of the session",
+        each(lambda place: place.session.observer),
+        lambda generator, n: np.asarray(np.arange(n) % 3, dtype=np.float64),
+        named=True,
+        later="last",
+    ),
+    CampaignColumn(
+        "pressure_hpa",
+        "hPa",
+        "`pressure_hpa` of the session",
+        each(lambda place: place.session.pressure_hpa),
+        _within(940.0, 1030.0),
+    ),
+    CampaignColumn(
+        "humidity_percent",
+        "%",
+        "`humidity_percent` of the session",
+        each(lambda place: place.session.humidity_percent),
+        _within(20.0, 95.0),
+    ),
+    CampaignColumn(
+        "supply_v",
+        "V",
+        "mean of the `supply` rows in volts",
+        each(_supply),
+        _within(22.0, 28.0),
+        later="last",
+    ),
+    CampaignColumn(
+        "transport_h",
+        "h since transport",
+        "`hours_since_transport` of the session, else hours since the latest determination at "
+        "another station",
+        hours_since_transport,
+        _within(0.5, 72.0),
     ),
 )
 """Every column, in the order in which they are handed over. A new one goes to the end."""

@@ -46,6 +46,9 @@ UNIT_OF_EFFECT: Mapping[str, str] = {
     "line_offset": "line",
     "gyro_block": "day",
     "warm_up": "warm_up",
+    "pressure": "covariate",
+    "humidity": "covariate",
+    "supply_voltage": "covariate",
 }
 """A named effect is taken out of the azimuths and out of the average."""
 SCENARIOS = (-1.2816, -0.5244, 0.0, 0.5244, 1.2816)

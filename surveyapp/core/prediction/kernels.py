@@ -30,6 +30,9 @@ SLOW_LENGTHS = (0.15, 0.5, 1.5)
 ROUGH_LENGTH = 0.2
 CURVATURE = 0.7
 STEP_PAIRED = ("drift", "temperature", "curve", "latitude", "warm_up", "line", "day", "walk")
+COVARIATE_UNITS = {"pressure_hpa": 10.0, "humidity_percent": 15.0}
+"""What moves the constant by its size; the supply voltage by a twentieth of itself."""
+SUPPLY_SHARE = 0.05
 PAIRED = (*STEP_PAIRED, "slow", "excess")
 """Causes that are tried two at a time."""
 COLUMNS_READ = (
@@ -42,6 +45,9 @@ COLUMNS_READ = (
     "line_reading",
     "north_reading",
     "running_s",
+    "pressure_hpa",
+    "humidity_percent",
+    "supply_v",
 )
 """Columns of a campaign that a cause here reads; others change no prediction."""
 
@@ -95,6 +101,7 @@ def kernels(columns: Mapping[str, Floats], n: int) -> tuple[Kernel, ...]:
     found += _of_places(columns, n)
     found += _of_temperature(columns, n)
     found += _of_running(columns)
+    found += _of_covariates(columns, n)
     return tuple(found)
 
 
@@ -176,6 +183,18 @@ def _of_running(columns: Mapping[str, Floats]) -> list[Kernel]:
     if running is None or not _varies(running):
         return []
     return [Kernel("warm_up", WARM_UP_UNIT * _outer(np.exp(-running / tau))) for tau in TAUS_S]
+
+
+def _of_covariates(columns: Mapping[str, Floats], n: int) -> list[Kernel]:
+    found = []
+    for name in (*COVARIATE_UNITS, "supply_v"):
+        values = columns.get(name)
+        if values is None or not _varies(values):
+            continue
+        mean = float(values[:n].mean())
+        size = COVARIATE_UNITS.get(name, SUPPLY_SHARE * max(abs(mean), 1e-9))
+        found.append(Kernel("covariate", _outer((values - mean) / size)))
+    return found
 
 
 def step_columns(columns: Mapping[str, Floats], n: int) -> Floats:

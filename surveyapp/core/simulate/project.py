@@ -78,7 +78,8 @@ def simulate_reversal_project(
     Parameters
     ----------
     survey : SessionSpec
-        The survey sessions, with their effects; a second one can confirm what the first shows.
+        The survey sessions, with their effects; a second one can confirm what the first shows. A
+        moment that is given holds for the first of them: in the others the event comes at another.
     rng : numpy.random.Generator
     name : str
     calibrations, surveys : int
@@ -106,6 +107,8 @@ def simulate_reversal_project(
     for index in range(surveys):
         moved = _moved(survey, calibrations + index, rng)
         spec = dataclasses.replace(moved, line_azimuth=unknown_azimuth)
+        if index > 0:
+            spec = dataclasses.replace(spec, effects=tuple(_elsewhen(e) for e in spec.effects))
         sessions.append(
             ProjectSession(f"run-{index + 1}", "survey", "U1", "U2", simulate_session(spec, rng))
         )
@@ -119,6 +122,13 @@ def _moved(spec: SessionSpec, index: int, rng: np.random.Generator) -> SessionSp
         start=spec.start + timedelta(hours=3 * index),
         circle_of_north=wrap_two_pi(spec.circle_of_north + float(rng.uniform(-0.5, 0.5))),
         first_east=bool(rng.random() < 0.5),
+    )
+
+
+def _elsewhen(effect: Effect) -> Effect:
+    """The effect with its moment left to chance: no event comes twice at one place of a run."""
+    return dataclasses.replace(
+        effect, options=tuple((name, v) for name, v in effect.options if name != "at")
     )
 
 

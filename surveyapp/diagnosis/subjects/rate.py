@@ -1,16 +1,19 @@
-"""A rate sensor as a subject: the outputs of its stops, a row for each gyro.
+"""A rate sensor as a subject: the outputs of its stops, and of the turns between them.
 
-A stop is a rest in some attitude, or whole turns of a table at a known rate. The base model is
-bias, scale factor and misalignment; of rests alone it is the bias.
+A stop is a rest in some attitude, or whole turns of a table at a known rate: a row for each gyro. A
+turn by hand from one rest to the next gives two rows, the angles by which the gyros missed the
+direction of gravity. The base model is bias, scale factor and misalignment; of rests alone it is
+the bias.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from surveyapp.core.sensors.rate.hand_held import TurnRows
 from surveyapp.diagnosis.action import Action, last_rows
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.subject import Record, Subject, case_of
@@ -24,6 +27,9 @@ from surveyapp_models.effects.rate import (
     ELAPSED,
     FIELDS,
     FORCES,
+    GYRO_FORCES,
+    GYRO_RATES,
+    GYRO_SIZES,
     INPUTS,
     PLACE,
     STOP,
@@ -65,21 +71,42 @@ class RateStop:
     label: str = ""
 
 
+@dataclass(frozen=True, slots=True)
+class RateTurn:
+    """A turn between two rests.
+
+    Parameters
+    ----------
+    rows : TurnRows
+    elapsed_s : float
+        Of its middle.
+    duration_s : float
+    temperature_c : float or None
+    label : str
+    """
+
+    rows: TurnRows
+    elapsed_s: float
+    duration_s: float
+    temperature_c: float | None = None
+    label: str = ""
+
+
 def rest_base(columns: Columns, /) -> Floats:
     """A bias for each gyro, shape (n, 3)."""
     return by_axis(columns, np.ones(columns["axis"].size))
 
 
 def turned_base(columns: Columns, /) -> Floats:
-    """Bias and response to the known rates of each gyro, shape (n, 12)."""
-    rates = [by_axis(columns, columns[f"input_{a}"]) for a in "xyz"]
-    return np.column_stack([rest_base(columns), *rates])
+    """Bias and response to the rates of each gyro, shape (n, 12)."""
+    return np.column_stack([rest_base(columns), *(columns[need.name] for need in GYRO_RATES)])
 
 
 def _repeated(columns: Columns) -> dict[str, Floats]:
     """Rows of one more stop as the last one was."""
-    rows = last_rows(columns, 3)
-    return {**rows, "axis": np.arange(3.0)}
+    stop = columns["stop"][columns["axis"] < 3.0].max()
+    here = columns["stop"] == stop
+    return {**last_rows({name: values[here] for name, values in columns.items()}, 3)}
 
 
 def _upside_down(columns: Columns, /) -> dict[str, Floats] | None:
@@ -87,7 +114,8 @@ def _upside_down(columns: Columns, /) -> dict[str, Floats] | None:
     if "force_x" not in columns:
         return None
     rows = _repeated(columns)
-    return {**rows, **{f"force_{a}": -rows[f"force_{a}"] for a in "xyz"}}
+    forces = [need.name for need in (*FORCES, *GYRO_FORCES)]
+    return {**rows, **{name: -rows[name] for name in forces}}
 
 
 def _warmer(columns: Columns, /) -> dict[str, Floats] | None:
@@ -102,13 +130,17 @@ ACTIONS = (
     Action("upside_down", "repeat the last stop upside down", _upside_down),
     Action("warmer", "repeat the last stop 5 K warmer", _warmer),
 )
-COLUMNS = (AXIS, STOP, ELAPSED, TEMPERATURE, *FORCES, *INPUTS, *FIELDS, PLACE)
+COLUMNS = (
+    *(AXIS, STOP, ELAPSED, TEMPERATURE, PLACE),
+    *(*FORCES, *INPUTS, *FIELDS),
+    *(*GYRO_FORCES, *GYRO_RATES, *GYRO_SIZES),
+)
 
 
 def rate_subject(*, turned: bool) -> Subject:
     """The subject of stops at rest, or of stops on a table that turned."""
     biases = tuple(f"bias_{a}" for a in "xyz")
-    matrix = tuple(f"response_{a}{b}" for b in "xyz" for a in "xyz")
+    matrix = tuple(f"response_{a}{b}" for a in "xyz" for b in "xyz")
     names = (*biases, *matrix) if turned else biases
     return Subject(
         id="rate",
@@ -126,8 +158,14 @@ def rate_subject(*, turned: bool) -> Subject:
     )
 
 
-def rate_case(stops: Sequence[RateStop], *, identity: str, extra: tuple[Effect, ...] = ()) -> Case:
-    """The case of the stops of a record.
+def rate_case(
+    stops: Sequence[RateStop],
+    turns: Sequence[RateTurn] = (),
+    *,
+    identity: str,
+    extra: tuple[Effect, ...] = (),
+) -> Case:
+    """The case of the stops of a record and of the turns between them.
 
     Raises
     ------
@@ -140,6 +178,36 @@ def rate_case(stops: Sequence[RateStop], *, identity: str, extra: tuple[Effect, 
                 "too few stops to diagnose", identity, str(len(stops)), f"{LEAST_STOPS} or more"
             )
         )
+    columns = _stop_columns(stops)
+    observed = np.concatenate([s.output for s in stops])
+    labels = [f"{s.label or f'stop {k + 1}'}, gyro {a}" for k, s in enumerate(stops) for a in "xyz"]
+    series, rests = columns["axis"], observed.size
+    sigma = None
+    if turns:
+        columns = _with_turns(columns, turns, start=stops[0].elapsed_s)
+        observed = np.concatenate([observed, *(t.rows.error for t in turns)])
+        labels += [f"{t.label}, {which} angle" for t in turns for which in ("first", "second")]
+        series = np.append(series, np.full(2 * len(turns), np.nan))
+        sigma = _sigmas(columns, observed, rests)
+    record = Record(
+        observed,
+        columns,
+        sigma=sigma,
+        identity=identity,
+        labels=tuple(labels),
+        groups=columns["stop"],
+        series=series,
+        extra=extra,
+    )
+    turned = bool(turns) or any(s.known is not None for s in stops)
+    case = case_of(rate_subject(turned=turned), record)
+    told = np.arange(observed.size) < rests
+    weights = np.where(told, 1.0 / rests, 0.0)
+    return replace(case, value_weights=weights, reported=told.astype(np.float64))
+
+
+def _stop_columns(stops: Sequence[RateStop]) -> dict[str, Floats]:
+    """What is known at each stop, three rows each."""
     turned = any(s.known is not None for s in stops)
     count = len(stops)
 
@@ -166,14 +234,83 @@ def rate_case(stops: Sequence[RateStop], *, identity: str, extra: tuple[Effect, 
     places = [float(s.place) for s in stops if s.place is not None]
     if len(places) == count:
         columns["place"] = each(places)
-    record = Record(
-        np.concatenate([s.output for s in stops]),
-        columns,
-        identity=identity,
-        labels=tuple(
-            f"{s.label or f'stop {k + 1}'}, gyro {a}" for k, s in enumerate(stops) for a in "xyz"
-        ),
-        groups=columns["stop"],
-        extra=extra,
+    return columns | _through_gyros(columns)
+
+
+def _through_gyros(columns: Columns) -> dict[str, Floats]:
+    """Force, rate and half its size as each row has them through each gyro: a stop, its own."""
+    found: dict[str, Floats] = {}
+    for j, b in enumerate("xyz"):
+        for name, given in (("force", f"force_{b}"), ("rate", f"input_{b}")):
+            if given in columns:
+                own = by_axis(columns, columns[given])
+                found |= {f"{name}_{a}{b}": own[:, i] for i, a in enumerate("xyz")}
+        if f"input_{b}" in columns:
+            half = 0.5 * np.abs(columns[f"input_{b}"])
+            found[f"half_size_{b}"] = by_axis(columns, half)[:, j]
+    return found
+
+
+def _with_turns(columns: Columns, turns: Sequence[RateTurn], *, start: float) -> dict[str, Floats]:
+    """The columns with two rows of each turn below."""
+    rest = columns["axis"].size
+    last = float(columns["stop"].max())
+    rows = {
+        "axis": np.tile([3.0, 4.0], len(turns)),
+        "stop": np.repeat(last + 1.0 + np.arange(len(turns)), 2),
+        "elapsed_s": np.repeat([t.elapsed_s - start for t in turns], 2),
+    }
+    if "temperature_c" in columns:
+        between = np.interp(
+            rows["elapsed_s"], columns["elapsed_s"][::3], columns["temperature_c"][::3]
+        )
+        known = np.repeat(
+            [np.nan if t.temperature_c is None else t.temperature_c for t in turns], 2
+        )
+        rows["temperature_c"] = np.where(np.isfinite(known), known, between)
+    for i, a in enumerate("xyz"):
+        rows[f"half_size_{a}"] = np.concatenate([t.rows.size[:, i] for t in turns])
+        for j, b in enumerate("xyz"):
+            rows[f"force_{a}{b}"] = np.concatenate([t.rows.force[:, i, j] for t in turns])
+            rows[f"rate_{a}{b}"] = np.concatenate([t.rows.rate[:, i, j] for t in turns])
+    size = 2 * len(turns)
+    return {
+        name: np.append(columns.get(name, np.zeros(rest)), rows.get(name, np.zeros(size)))
+        for name in dict.fromkeys((*columns, *rows))
+    }
+
+
+LEAST_DOF = 6
+"""Degrees of freedom from which a standard deviation is good to a third."""
+
+
+def _sigma_about(values: Floats, designs: Sequence[Floats]) -> float:
+    """Standard deviation about the first of several models that leaves enough freedom."""
+    for design in designs:
+        left = values.size - int(np.linalg.matrix_rank(design))
+        if left >= LEAST_DOF:
+            solution = np.linalg.lstsq(design, values, rcond=None)[0]
+            found = float(np.sqrt(np.sum((values - design @ solution) ** 2) / left))
+            if found > 0.0:
+                return found
+    return float(np.sqrt(np.mean(values**2))) or 1.0
+
+
+def _sigmas(columns: Columns, observed: Floats, rests: int) -> Floats:
+    """How well rests and turns are known against each other: each about its widest own model.
+
+    Only their ratio matters; a model that lacks an effect would take its traces for noise.
+    """
+    rest = {name: values[:rests] for name, values in columns.items()}
+    turn = {name: values[rests:] for name, values in columns.items()}
+    minutes = rest["elapsed_s"] - rest["elapsed_s"].mean()
+    plain, ramp = rest_base(rest), by_axis(rest, minutes)
+    force = np.column_stack([rest[need.name] for need in GYRO_FORCES])
+    rate = np.column_stack([turn[need.name] for need in GYRO_RATES])
+    size = np.column_stack([turn[need.name] for need in GYRO_SIZES])
+    pull = np.column_stack([turn[need.name] for need in GYRO_FORCES])
+    of_rests = _sigma_about(observed[:rests], [np.hstack([plain, force, ramp]), plain])
+    of_turns = _sigma_about(
+        observed[rests:], [np.hstack([rate, size, pull]), np.hstack([rate, size]), rate]
     )
-    return case_of(rate_subject(turned=turned), record)
+    return np.where(np.arange(observed.size) < rests, of_rests, of_turns)

@@ -14,8 +14,7 @@ atmosphere the instrument has corrected is taken as it stands.
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -24,7 +23,9 @@ from surveyapp.core.network.model import Model, compile_network
 from surveyapp.core.network.observation_equations import equations, linearised, misclosures
 from surveyapp.core.network.solving import solve_network
 from surveyapp.diagnosis.case import Case
-from surveyapp.domain.observations import Observation, ObservationKind
+from surveyapp.diagnosis.subjects.pointings import one_a_pointing
+from surveyapp.diagnosis.subjects.traverse_columns import gyro_sides, observation_columns
+from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network
 from surveyapp.errors import Problem, SurveyError
@@ -41,9 +42,6 @@ MOST_OBSERVATIONS = 2000
 RANK = 1e-9
 """Singular values below this share of the largest are a free datum."""
 TRANSFORM = "conditions_of_observations"
-_LENGTHS = frozenset({K.DISTANCE, K.SLOPE_DISTANCE})
-_SIGHTS = frozenset({K.DIRECTION, K.AZIMUTH, K.GYRO})
-_WALL = re.compile(r"\bwall\s*[=: ]\s*(left|right)\b", re.IGNORECASE)
 
 
 def traverse(
@@ -87,6 +85,7 @@ def traverse(
                 "Diagnose one traverse at a time.",
             )
         )
+    network, repeated = one_a_pointing(network)
     model = compile_network(network)
     values = solve_network(network, model).values
     whitener, design, right = _whitened(model, values)
@@ -104,7 +103,8 @@ def traverse(
     size = transform.shape[0]
     base = np.zeros((size, 1))
     base[0, 0] = 1.0
-    columns = {**observation_columns(network, model, values), TRANSFORM: transform @ whitener}
+    told = observation_columns(network, model, values)
+    columns = {**told.columns, TRANSFORM: transform @ whitener}
     columns["own_sigma"] = _controlled(columns)
     return Case(
         subject="traverse",
@@ -123,8 +123,8 @@ def traverse(
         scale=1.0,
         identity=identity,
         labels=(f"place of {weakest}", *[f"condition {i}" for i in range(1, size)]),
-        grid_labels=_labels(model),
-        warnings=_warnings(atmosphere_applied, columns, weakest),
+        grid_labels={**_labels(model), **told.labels},
+        warnings=(*repeated, *_warnings(atmosphere_applied, columns, weakest)),
     )
 
 
@@ -188,84 +188,9 @@ def _conditions(design: Floats, towards: Floats) -> Floats:
     return np.vstack([towards[None, :], left[:, rank:].T])
 
 
-def _positions(network: Network, values: Floats) -> dict[str, Floats]:
-    places = values[: 3 * len(network.points)].reshape(-1, 3)
-    return {point.name: places[i, :2] for i, point in enumerate(network.points)}
-
-
-def _walls(observations: Sequence[Observation]) -> dict[tuple[str, str], float]:
-    """Side of the wall of every sight whose note names it, + right; the other way round -."""
-    found: dict[tuple[str, str], float] = {}
-    for obs in observations:
-        told = _WALL.search(obs.note)
-        if told is not None and obs.to:
-            side = 1.0 if told.group(1).lower() == "right" else -1.0
-            found[obs.at, obs.to] = side
-            found.setdefault((obs.to, obs.at), -side)
-    return found
-
-
-def observation_columns(network: Network, model: Model, values: Floats) -> dict[str, Floats]:
-    """Columns of the observations, each of shape (n,); 0 where the kind has no such thing.
-
-    Lengths are adjusted ones: where the sides are multiples of the unit length of a cyclic error,
-    its sine at the observed length is the error of the observation itself, and noise would explain
-    noise; what the adjusted length errs is in the unknowns and drops out.
-
-    Parameters
-    ----------
-    network : Network
-    model : Model
-        Of the network.
-    values : float array
-        Adjusted values of all slots.
-    """
-    rows, n = model.observations, len(model.observations)
-    computed, _ = linearised(model, values)
-    number = {point.name: float(i) for i, point in enumerate(network.points, start=1)}
-    columns = {name: np.zeros(n) for name in ("distance_m", "sights_turned", "wall_length_m")}
-    turned: dict[tuple[str, str], int] = {}
-    places, walls = _positions(network, values), _walls(rows)
-
-    def bent(at: str, to: str) -> float:
-        side = walls.get((at, to), 0.0)
-        return side * float(np.hypot(*(places[to] - places[at]))) if side else 0.0
-
-    for i, obs in enumerate(rows):
-        if obs.kind in _LENGTHS:
-            columns["distance_m"][i] = computed[i]
-        elif obs.kind is K.ANGLE:
-            columns["sights_turned"][i] = 1.0
-            columns["wall_length_m"][i] = bent(obs.at, obs.to) - bent(obs.at, obs.back)
-        elif obs.kind in _SIGHTS:
-            columns["wall_length_m"][i] = bent(obs.at, obs.to)
-        if obs.kind is K.DIRECTION:
-            columns["sights_turned"][i] = float(turned.get((obs.at, obs.set), 0))
-            turned[obs.at, obs.set] = turned.get((obs.at, obs.set), 0) + 1
-    known = np.array([obs.kind is K.GYRO_CONSTANT for obs in rows])
-    columns["gyro_side"], columns["gyro_group"] = _gyro_sides(model)
-    columns["station"] = np.array([number.get(obs.at, 0.0) for obs in rows])
-    columns["target"] = np.array([number.get(obs.to, 0.0) for obs in rows])
-    columns["observation"] = np.arange(1.0, n + 1.0)
-    columns["own_sigma"] = np.where(known, 0.0, model.sigma)
-    return columns
-
-
-def _gyro_sides(model: Model) -> tuple[Floats, Floats]:
-    """Number of each gyro side, constants one after the other, and of its constant."""
-    side, group = np.zeros(len(model.observations)), np.zeros(len(model.observations))
-    count = 0
-    for place, name in enumerate(model.constants, start=1):
-        for i, obs in enumerate(model.observations):
-            if obs.kind is K.GYRO and obs.constant == name:
-                count += 1
-                side[i], group[i] = count, place
-    return side, group
-
-
 def _labels(model: Model) -> dict[str, dict[float, str]]:
     """What the numbers of the scanned parameters stand for."""
-    side, _ = _gyro_sides(model)
+    side, _ = gyro_sides(model)
     return {
         "observation": {float(i): obs.where for i, obs in enumerate(model.observations, start=1)},
         "first_side": {

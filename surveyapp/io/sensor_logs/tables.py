@@ -40,6 +40,8 @@ OPTIONS: Final = (
     "initial_reference",
     "gravity_m_s2",
     "method",
+    "unit_length_m",
+    "heights",
 )
 """Further keys that a subject may read; they are passed on as they stand."""
 

@@ -40,6 +40,9 @@ UNITS: Final[dict[str, tuple[str, float]]] = {
     "Hz": ("frequency", 1.0),
     "ohm": ("impedance", 1.0),
     "m": ("length", 1.0),
+    "hPa": ("pressure", 1.0),
+    "kPa": ("pressure", 10.0),
+    "%": ("share", 1.0),
     COUNTS: ("counts", 1.0),
     DIMENSIONLESS: ("number", 1.0),
 }

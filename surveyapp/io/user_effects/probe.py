@@ -64,6 +64,9 @@ def _rate_columns(generator: np.random.Generator) -> dict[str, Floats]:
         **{f"input_{a}": rates[:, i] for i, a in enumerate("xyz")},
         **{f"force_{a}": generator.uniform(-9.8, 9.8, SIZE) for a in "xyz"},
         **{f"field_{a}": generator.uniform(-5e-5, 5e-5, SIZE) for a in "xyz"},
+        **{f"half_size_{a}": generator.uniform(-0.5, 0.5, SIZE) for a in "xyz"},
+        **{f"force_{a}{b}": generator.uniform(-9.8, 9.8, SIZE) for a in "xyz" for b in "xyz"},
+        **{f"rate_{a}{b}": generator.uniform(-1.0, 1.0, SIZE) for a in "xyz" for b in "xyz"},
     }
 
 

@@ -43,6 +43,7 @@ from surveyapp.report.blocks import (
     Signature,
     Table,
 )
+from surveyapp.report.in_words import in_words
 from surveyapp.report.pdf.figures import figure_flowables
 from surveyapp.report.pdf.fonts import Faces, register_faces
 from surveyapp.report.pdf.style import (
@@ -90,6 +91,7 @@ def write_pdf(
     rl_config.useA85 = 0  # binary streams: a quarter smaller, and nothing spent on writing text
     rl_config.shapeChecking = 0
     faces = register_faces(face)
+    document = in_words(document)
     stream = io.BytesIO()
     template = _Template(
         stream,
@@ -101,6 +103,7 @@ def write_pdf(
         title=document.title,
         author="",
         creator="surveyapp",
+        keywords=[document.stamp],
         invariant=1,
         pageCompression=1,
     )

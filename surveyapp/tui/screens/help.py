@@ -31,7 +31,7 @@ class HelpScreen(ModalScreen[None]):
         with VerticalScroll(id="dialog"):
             yield Static(self.heading, classes="heading", markup=False)
             yield Static(self.words, classes="picture", markup=False)
-            yield Static(help_texts.CLOSE_HINT, classes="hint", markup=False)
+            yield Static(help_texts.close_hint(), classes="hint", markup=False)
 
     def action_leave(self) -> None:
         """Close."""

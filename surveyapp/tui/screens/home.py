@@ -32,6 +32,7 @@ class HomeScreen(Screen[None]):
         Binding("n", "new", texts.KEY_NEW_PROJECT),
         Binding("o", "folder", texts.KEY_FOLDER),
         Binding("p", "practise", texts.KEY_PRACTISE),
+        Binding("l", "app.language", texts.KEY_LANGUAGE),
         Binding("q", "app.quit", texts.KEY_QUIT),
     ]
 
@@ -88,6 +89,7 @@ class HomeScreen(Screen[None]):
         options.append(Option(f"  {texts.HOME_NEW}", id="new:"))
         options.append(Option(f"  {texts.HOME_OPEN}", id="folder:"))
         options.append(Option(f"  {texts.HOME_PRACTISE}", id="practise:"))
+        options.append(Option(f"  {texts.HOME_LANGUAGE}", id="language:"))
         places.add_options(options)
         places.focus()
         places.action_first()
@@ -101,6 +103,8 @@ class HomeScreen(Screen[None]):
             self.action_folder()
         elif kind == "practise":
             self.action_practise()
+        elif kind == "language":
+            self.app.action_language()  # type: ignore[attr-defined]
         elif kind == "sample":
             try:
                 self.post_message(self.FolderChosen(api_home.sample_copy(value)))

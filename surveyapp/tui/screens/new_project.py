@@ -9,6 +9,7 @@ from textual import work
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import VerticalScroll
+from textual.events import Key
 from textual.message import Message
 from textual.screen import Screen
 from textual.widgets import Footer, Input, OptionList, Select, Static, TextArea
@@ -129,6 +130,28 @@ class NewProjectScreen(Screen[str | None]):
         options.display = bool(message.grids) and not exact
         told = message.grids[0].name if exact else grids_told(message.grids, here=message.here)
         self.query_one("#grids-told", Static).update(told)
+
+    def on_key(self, event: Key) -> None:
+        """Down and Up go through the grids while the field keeps the cursor."""
+        options = self.query_one("#grids", OptionList)
+        at_grid = self.focused is not None and self.focused.id == "grid"
+        if at_grid and options.display and event.key in ("down", "up"):
+            event.stop()
+            event.prevent_default()
+            if event.key == "down":
+                options.action_cursor_down()
+            else:
+                options.action_cursor_up()
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        """Enter takes the grid that was gone to, or the only one."""
+        options = self.query_one("#grids", OptionList)
+        if event.input.id != "grid" or not options.display:
+            return
+        if options.highlighted is None and options.option_count == 1:
+            options.action_first()
+        if options.highlighted is not None:
+            options.action_select()
 
     def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
         """Take a grid."""

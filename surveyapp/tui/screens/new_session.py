@@ -14,6 +14,7 @@ from surveyapp.domain.project import Method, Project, Purpose
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.observation import home as api_home
 from surveyapp.observation.home import NewSession
+from surveyapp.observation.proposal import propose_session
 from surveyapp.tui import texts
 from surveyapp.tui.drafts import Draft, keep, put_back
 from surveyapp.tui.widgets.field import ChoiceField, TextField, chosen, typed
@@ -58,8 +59,20 @@ class NewSessionScreen(Screen[str | None]):
     def on_mount(self) -> None:
         """Begin at the id."""
         self.query_one(TitleBar).state = texts.NEW_STATE
-        put_back(self, self.draft)
+        put_back(self, self.draft or self.proposed())
         self.query_one("#id").focus()
+
+    def proposed(self) -> Draft:
+        """A free id, and what the last session had."""
+        proposal = propose_session(self.project)
+        return {
+            "id": proposal.id,
+            "station": proposal.station,
+            "target": proposal.target,
+            "instrument": proposal.instrument,
+            "method": proposal.method,
+            "purpose": proposal.purpose,
+        }
 
     def form(self) -> NewSession:
         """What stands in the fields.

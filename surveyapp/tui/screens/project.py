@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, cast
 
 from rich.text import Text
 from textual import work
-from textual.app import ComposeResult
+from textual.app import App, ComposeResult
 from textual.binding import Binding, BindingType
 from textual.message import Message
 from textual.screen import Screen
@@ -23,8 +23,10 @@ from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import SurveyError
 from surveyapp.observation import session as api_session
+from surveyapp.observation.by_hand import PROJECT_FILE, file_of
 from surveyapp.tui import texts
 from surveyapp.tui.drafts import Draft
+from surveyapp.tui.hand_editor import edit_by_hand, first_problem
 from surveyapp.tui.page_keys import page_bindings
 from surveyapp.tui.screens.new_session import NewSessionScreen
 from surveyapp.tui.views.checks import summary
@@ -51,14 +53,20 @@ class ProjectScreen(Screen[None]):
         Binding("o", "observe", texts.KEY_OBSERVE, tooltip=texts.LONG_OBSERVE),
         Binding("n", "new", texts.KEY_NEW, tooltip=texts.LONG_NEW),
         Binding("d", "diagnose", texts.KEY_DIAGNOSE, tooltip=texts.LONG_DIAGNOSE),
-        Binding("t", "traverses", texts.KEY_TRAVERSE, tooltip=texts.LONG_TRAVERSES, show=False),
+        Binding("e", "edit", texts.KEY_EDIT, tooltip=texts.LONG_EDIT),
+        Binding(
+            "E", "edit('project')", texts.KEY_EDIT, tooltip=texts.LONG_EDIT_PROJECT, show=False
+        ),
+        Binding("t", "traverses", texts.KEY_TRAVERSE, tooltip=texts.LONG_TRAVERSES),
+        Binding("c", "correct", texts.KEY_CORRECT, tooltip=texts.LONG_CORRECT, show=False),
         Binding("i", "import", texts.KEY_IMPORT, tooltip=texts.LONG_IMPORT, show=False),
-        Binding("e", "export", texts.KEY_EXPORT, tooltip=texts.LONG_EXPORT, show=False),
+        Binding("x", "export", texts.KEY_EXPORT, tooltip=texts.LONG_EXPORT, show=False),
         Binding(
             "p", "breakthrough", texts.KEY_PENETRATION, tooltip=texts.LONG_PENETRATION, show=False
         ),
+        Binding("l", "sensors", texts.KEY_SENSORS, tooltip=texts.LONG_SENSORS),
         Binding("s", "shafts", texts.KEY_SHAFTS, tooltip=texts.LONG_SHAFTS, show=False),
-        Binding("f5", "reload", texts.KEY_RELOAD, tooltip=texts.LONG_RELOAD),
+        Binding("f5", "reload", texts.KEY_RELOAD, tooltip=texts.LONG_RELOAD, show=False),
         Binding("escape", "back", texts.KEY_BACK, tooltip=texts.LONG_BACK),
     ]
 
@@ -91,6 +99,7 @@ class ProjectScreen(Screen[None]):
         self.project: Project | None = None
         self.left = False
         self.result: OrientationResult | None = None
+        self.error: SurveyError | None = None
         self.resumed = False
         self.draft: Draft = {}
 
@@ -106,7 +115,7 @@ class ProjectScreen(Screen[None]):
                         columns, empty = LISTS[page]
                         details = partial(self.details, page)
                         yield Records(columns, empty=empty, details=details)
-        yield Footer(show_command_palette=False)
+        yield Footer(show_command_palette=False, compact=True)
 
     def on_mount(self) -> None:
         """Begin to compute."""
@@ -141,7 +150,7 @@ class ProjectScreen(Screen[None]):
         """Fill the pages."""
         self.query(Problems).remove()
         self.query_one(TabbedContent).display = True
-        self.project, self.result = message.project, message.result
+        self.project, self.result, self.error = message.project, message.result, None
         result = message.result
         self.query_one(TitleBar).state = summary(result)
         for page, rows in page_rows(message.project, result).items():
@@ -156,6 +165,7 @@ class ProjectScreen(Screen[None]):
 
     async def on_project_screen_failed(self, message: Failed) -> None:
         """Say in words what is wrong."""
+        self.error = message.error
         await self.query(Problems).remove()
         self.query_one(TitleBar).state = ""
         self.query_one(TabbedContent).display = False
@@ -174,10 +184,35 @@ class ProjectScreen(Screen[None]):
 
     def action_observe(self) -> None:
         """Observe the session under the cursor."""
+        session = self.chosen_session()
+        if session is not None:
+            self.post_message(self.SessionChosen(session))
+
+    def chosen_session(self) -> str | None:
+        """Id of the session under the cursor, None on the other pages."""
         row = self.query_one("#sessions DataTable", DataTable).cursor_row
         on_sessions = self.query_one(TabbedContent).active == "sessions"
-        if on_sessions and self.project is not None and self.project.sessions:
-            self.post_message(self.SessionChosen(self.project.sessions[row].id))
+        if not on_sessions or self.project is None or not self.project.sessions:
+            return None
+        return self.project.sessions[row].id
+
+    def action_edit(self, which: str = "") -> None:
+        """Edit the book under the cursor, what a problem names, or the project file by hand."""
+        session = None if which or self.error is not None else self.chosen_session()
+        try:
+            name = PROJECT_FILE if which else file_of(self.project, session, self.error)
+            told = edit_by_hand(cast("App[int]", self.app), self.folder, name, session)
+        except SurveyError as error:
+            self.notify(first_problem(error), severity="error", markup=False)
+            return
+        self.notify(told, markup=False)
+        self.action_reload()
+
+    def action_correct(self) -> None:
+        """Correct a station, an instrument or a session in a form."""
+        from surveyapp.tui.screens.correct import ChooseTableScreen
+
+        self.app.push_screen(ChooseTableScreen(self.folder))
 
     def action_new(self) -> None:
         """Begin another session."""
@@ -238,6 +273,13 @@ class ProjectScreen(Screen[None]):
             self.app.push_screen(ShaftScreen(self.folder, self.project.angle_unit))
         else:
             self.notify(texts.NO_SHAFT, severity="warning", markup=False)
+
+    def action_sensors(self) -> None:
+        """Logs, calibrations, cards and guided programmes."""
+        from surveyapp.tui.screens.sensors import SensorsScreen
+
+        if self.project is not None:
+            self.app.push_screen(SensorsScreen(self.folder))
 
     def _diagnosed(self, _: None) -> None:
         self.action_reload()

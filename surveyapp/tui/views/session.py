@@ -25,18 +25,21 @@ def session_rows(project: Project, result: OrientationResult) -> list[tuple[str,
     """Each session of the project in one row, also those without a result yet."""
     unit = project.angle_unit
     results = {session.id: session for session in result.sessions}
+    whole = project.filing.project_closing is not None
+    closed = {item.session for item in project.filing.closings}
     rows: list[tuple[str, ...]] = []
     for item in project.sessions:
         session = results.get(item.id)
+        name = texts.CLOSED_MARK.format(id=item.id) if whole or item.id in closed else item.id
         if session is None:
             step = current_step(item.book, item.method)
-            rows.append((item.id, item.method, "", texts.STEP_NAMES[step], "", ""))
+            rows.append((name, item.method, "", texts.STEP_NAMES[step], "", ""))
             continue
         main = session.main
         azimuth = None if main is None else main.gyro_azimuth
         rows.append(
             (
-                session.id,
+                name,
                 session.method,
                 str(session.points_used),
                 angle_text(session.gyro_north, unit),

@@ -9,8 +9,10 @@ from textual import work
 from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.message import Message
+from textual.widgets import Static
 
 from surveyapp.core.observing.progress import Progress
+from surveyapp.core.observing.step_values import step_values
 from surveyapp.core.observing.steps import Step, kinds_of
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.errors import SurveyError
@@ -18,6 +20,7 @@ from surveyapp.observation import session as api_session
 from surveyapp.tui import texts
 from surveyapp.tui.entry_desk import Desk
 from surveyapp.tui.views.ledger import QUIET, book_rows, ledger_rows
+from surveyapp.tui.views.step_values import care_text, value_lines
 from surveyapp.tui.widgets.forecast import Forecast
 from surveyapp.tui.widgets.ledger import Ledger
 from surveyapp.tui.widgets.swing import SwingPlot
@@ -51,6 +54,8 @@ class RunPane(Vertical):
         yield SwingPlot()
         observation = self.desk.observation
         yield Forecast(self.desk.unit, observation.session.method, observation.aim())
+        yield Static(id="care", markup=False)
+        yield Static(id="values", markup=False)
         yield Ledger()
 
     def on_mount(self) -> None:
@@ -69,8 +74,23 @@ class RunPane(Vertical):
         self.query_one("#countdown").display = swings
         self.query_one(Forecast).display = swinging
         self.show_rows()
+        self.show_values()
         if swinging:
             self.judge()
+
+    def show_values(self) -> None:
+        """Show means and differences of the step, and what is to be done with clamp and brake."""
+        observation = self.desk.observation
+        session = observation.session
+        progress, target = self.desk.progress, observation.aim().target
+        enough = progress is not None and target is not None and progress.enough(target.interval95)
+        care = care_text(self.desk.step, session.method, enough=enough)
+        values = step_values(observation.book, self.desk.step, target=session.target)
+        lines = value_lines(values, self.desk.unit)
+        for name, text in (("#care", care), ("#values", "\n".join(lines))):
+            shown = self.query_one(name, Static)
+            shown.update(text)
+            shown.display = bool(text)
 
     def show_rows(self) -> None:
         """Show the readings of the step."""
@@ -104,6 +124,7 @@ class RunPane(Vertical):
         self.query_one(SwingPlot).show(message.progress)
         self.query_one(Forecast).show(message.progress)
         self.show_rows()
+        self.show_values()
         self.tick()
 
     def tick(self) -> None:

@@ -28,6 +28,7 @@ SUBJECTS: Final = (
     CalibrationSubject("tilt", "tilt", "tilt sensor: two axes, or one on a dividing head"),
     CalibrationSubject("rate", "rate", "gyros and accelerometers on a table or by hand"),
     CalibrationSubject("fog-station", "fog_station", "fibre-optic gyro on a total station"),
+    CalibrationSubject("edm", "edm", "distance meter on a line of pillars"),
 )
 """Every kind that can be calibrated."""
 

@@ -15,9 +15,10 @@ from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_cards import write_sensor_card
 from surveyapp.workflows.calibrating.request import CalibrationRequest
 
-HOLDS_DAYS: Final = {"compass": 365, "tilt": 365, "rate": 122, "fog-station": 122}
-"""Days that a card holds unless its owner writes another day into it: a year for compass and tilt
-(the usual recalibration interval of measuring instruments), four months for a gyro (source 003)."""
+HOLDS_DAYS: Final = {"compass": 365, "tilt": 365, "rate": 122, "fog-station": 122, "edm": 365}
+"""Days that a card holds unless its owner writes another day into it: a year for compass, tilt and
+distance meter (the usual recalibration interval of measuring instruments), four months for a gyro
+(source 003)."""
 
 
 def card_of(

@@ -1,6 +1,8 @@
 """Effects of a rate sensor: what the outputs of its stops hold beside bias, scale and misalignment.
 
-A row is one gyro at one stop; the columns that all effects read stand here once.
+A row is one gyro at one stop, or one of two angles of a turn between stops: what the gyros carried
+less what the accelerometers found, per time of the turn. A turn takes its rates from its two rests,
+so a bias, a ramp or a temperature is not in it. The columns that all effects read stand here once.
 """
 
 from __future__ import annotations
@@ -10,11 +12,25 @@ import numpy as np
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Column, Columns
 
-AXIS = Column("axis", "gyro of the row: 0, 1, 2 = x, y, z")
-STOP = Column("stop", "number of the stop, from 1")
+AXIS = Column("axis", "gyro of the row: 0, 1, 2 = x, y, z; 3, 4 = the two angles of a turn")
+STOP = Column("stop", "number of the stop, from 1; turns follow")
 ELAPSED = Column("elapsed_s", "seconds since the first stop")
 TEMPERATURE = Column("temperature_c", "degree Celsius")
 FORCES = tuple(Column(f"force_{a}", "specific force in the body, m/s2") for a in "xyz")
+GYRO_FORCES = tuple(
+    Column(f"force_{a}{b}", f"force along {b} as the row has it through gyro {a}, m/s2")
+    for a in "xyz"
+    for b in "xyz"
+)
+GYRO_RATES = tuple(
+    Column(f"rate_{a}{b}", f"rate about {b} as the row has it through gyro {a}, rad/s")
+    for a in "xyz"
+    for b in "xyz"
+)
+GYRO_SIZES = tuple(
+    Column(f"half_size_{a}", f"half the size of gyro {a}'s own rate, as the row has it, rad/s")
+    for a in "xyz"
+)
 INPUTS = tuple(Column(f"input_{a}", "known rate of the body, rad/s") for a in "xyz")
 FIELDS = tuple(Column(f"field_{a}", "magnetic flux density in the body, T") for a in "xyz")
 PLACE = Column("place", "number of the position on the table, from 1")

@@ -6,21 +6,20 @@ import numpy as np
 
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Coefficient, Columns, Effect
-from surveyapp_models.effects.rate import AXIS, DEG_S, FORCES, by_axis
+from surveyapp_models.effects.rate import DEG_S, GYRO_FORCES
 
 
 def basis(columns: Columns, /, **grid: float) -> Floats:
-    """Force along x, y, z in the rows of each gyro, shape (n, 9) [m/s2]."""
+    """Force along x, y, z as the row has it through each gyro, shape (n, 9) [m/s2]."""
     del grid
-    parts = [by_axis(columns, columns[f"force_{a}"]) for a in "xyz"]
-    return np.column_stack([parts[j][:, i] for i in range(3) for j in range(3)])
+    return np.column_stack([columns[need.name] for need in GYRO_FORCES])
 
 
 EFFECT = Effect(
     id="g_sensitivity",
     title="Sensitivity of the gyro bias to gravity",
     subject="rate",
-    needs=(AXIS, *FORCES),
+    needs=GYRO_FORCES,
     coefficients=tuple(
         Coefficient(
             f"{a}{b}", "deg/s per m/s2", DEG_S, -0.1, 0.1, f"bias of gyro {a} per force along {b}"

@@ -6,20 +6,20 @@ import numpy as np
 
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Coefficient, Columns, Effect
-from surveyapp_models.effects.rate import AXIS, INPUTS, by_axis, own
+from surveyapp_models.effects.rate import GYRO_SIZES
 
 
 def basis(columns: Columns, /, **grid: float) -> Floats:
-    """Half the size of the gyro's own input rate, shape (n, 3) [rad/s]."""
+    """Half the size of each gyro's own rate as the row has it, shape (n, 3) [rad/s]."""
     del grid
-    return by_axis(columns, 0.5 * np.abs(own(columns, "input")))
+    return np.column_stack([columns[need.name] for need in GYRO_SIZES])
 
 
 EFFECT = Effect(
     id="scale_asymmetry",
     title="Asymmetry of the scale factor",
     subject="rate",
-    needs=(AXIS, *INPUTS),
+    needs=GYRO_SIZES,
     coefficients=tuple(
         Coefficient(a, "ppm", 1e-6, -1e5, 1e5, f"excess of gyro {a} for positive rates")
         for a in "xyz"

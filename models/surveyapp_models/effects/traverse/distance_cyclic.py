@@ -11,6 +11,8 @@ from surveyapp_models.effects.effect import Coefficient, Column, Columns, Effect
 
 UNIT_LENGTHS_M = (1.5, 10.0, 20.0)
 """Half the modulation wavelength: 100, 15 and 7.5 MHz."""
+LARGEST_AMPLITUDE_M = 5e-3
+"""No distance meter in order errs by more: 5 mm of 10 m were large in the first generation."""
 
 
 def basis(columns: Columns, /, **grid: float) -> Floats:
@@ -33,8 +35,8 @@ EFFECT = Effect(
     subject="traverse",
     needs=(Column("distance_m", "m, 0 where no distance was observed"),),
     coefficients=(
-        Coefficient("sine", "mm", 1e-3, -20.0, 20.0, "too long by this times sin(2 pi D / U)"),
-        Coefficient("cosine", "mm", 1e-3, -20.0, 20.0, "too long by this times cos(2 pi D / U)"),
+        Coefficient("sine", "mm", 1e-3, -5.0, 5.0, "too long by this times sin(2 pi D / U)"),
+        Coefficient("cosine", "mm", 1e-3, -5.0, 5.0, "too long by this times cos(2 pi D / U)"),
     ),
     grid=(GridParameter("unit_length", "m", unit_lengths, "half the modulation wavelength"),),
     basis=basis,

@@ -89,8 +89,10 @@ def _parts(level: str, vector: Floats) -> tuple[Floats, Floats]:
     return bias, out
 
 
-def fit_forces(forces: Floats, *, level: str, gravity: float) -> ForceModel:
-    """Fit one model to the stops' outputs.
+def fit_forces(
+    forces: Floats, *, level: str, gravity: float, start: Floats | None = None
+) -> ForceModel:
+    """Fit one model to the stops' outputs, by Levenberg and Marquardt.
 
     Parameters
     ----------
@@ -99,31 +101,22 @@ def fit_forces(forces: Floats, *, level: str, gravity: float) -> ForceModel:
     level : str
     gravity : float
         [m/s2]
+    start : ndarray, shape (p,), optional
+        Parameters to begin with.
     """
-    vector = _first_guess(forces, level, gravity)
+    vector = _first_guess(forces, level, gravity) if start is None else start
     count = PARAMETERS[level]
-    steps = np.where(np.arange(count) < 3, 1e-5, 1e-7)
-
-    def residual(v: Floats) -> Floats:
-        bias, out = _parts(level, v)
-        true = np.linalg.solve(out, (forces - bias).T).T
-        return np.asarray(np.linalg.norm(true, axis=1) - gravity)
-
-    jacobian = np.zeros((forces.shape[0], count))
     damping = 1e-6
-    rest = residual(vector)
+    rest, jacobian = _misfit(forces, level, vector, gravity)
     for _ in range(_ITERATIONS):
-        for k in range(count):
-            shift = np.zeros(count)
-            shift[k] = steps[k]
-            jacobian[:, k] = (residual(vector + shift) - residual(vector - shift)) / (2 * steps[k])
         size = np.maximum(np.linalg.norm(jacobian, axis=0), 1e-12)
         rows = np.vstack([jacobian / size, math.sqrt(damping) * np.eye(count)])
         step = np.linalg.lstsq(rows, np.append(-rest, np.zeros(count)), rcond=None)[0] / size
-        after = residual(vector + step)
+        after, slope = _misfit(forces, level, vector + step, gravity)
         if float(after @ after) <= float(rest @ rest) + 1e-18:
             done = float(np.abs(step).max()) < 1e-12
-            vector, rest, damping = vector + step, after, max(damping * 0.1, 1e-12)
+            vector, rest, jacobian = vector + step, after, slope
+            damping = max(damping * 0.1, 1e-12)
             if done:
                 break
         else:
@@ -135,6 +128,35 @@ def fit_forces(forces: Floats, *, level: str, gravity: float) -> ForceModel:
     rms = math.sqrt(float(np.mean(rest**2)))
     inverse = np.asarray(np.linalg.inv(out), dtype=np.float64)
     return ForceModel(level, bias, inverse, vector, covariance, rms, dof)
+
+
+def _misfit(forces: Floats, level: str, vector: Floats, gravity: float) -> tuple[Floats, Floats]:
+    """Size of the true force less gravity (n,), and its derivatives (n, p)."""
+    bias, out = _parts(level, vector)
+    inverse = np.linalg.inv(out)
+    true = (forces - bias) @ inverse.T
+    size = np.linalg.norm(true, axis=1)
+    # d|true| = -(K^-T true / |true|) . (d bias + dK true)
+    along = -(true / np.maximum(size, 1e-12)[:, None]) @ inverse
+    scales = along * true
+    if level == "bias_scale":
+        columns = [along, scales.sum(axis=1)[:, None]]
+    elif level == "three_scales":
+        columns = [along, scales]
+    else:
+        yx, zx, zy = vector[6:]
+        scales = scales.copy()
+        scales[:, 1] += yx * along[:, 1] * true[:, 0]
+        scales[:, 2] += along[:, 2] * (zx * true[:, 0] + zy * true[:, 1])
+        tilts = np.column_stack(
+            [
+                vector[4] * along[:, 1] * true[:, 0],
+                vector[5] * along[:, 2] * true[:, 0],
+                vector[5] * along[:, 2] * true[:, 1],
+            ]
+        )
+        columns = [along, scales, tilts]
+    return size - gravity, np.hstack(columns)
 
 
 def _first_guess(forces: Floats, level: str, gravity: float) -> Floats:
@@ -156,9 +178,10 @@ def left_out(forces: Floats, *, level: str, gravity: float) -> float | None:
     if count <= PARAMETERS[level] + 1:
         return None
     rest = []
+    start = fit_forces(forces, level=level, gravity=gravity).vector
     for k in range(count):
         keep = np.arange(count) != k
-        model = fit_forces(forces[keep], level=level, gravity=gravity)
+        model = fit_forces(forces[keep], level=level, gravity=gravity, start=start)
         rest.append(float(np.linalg.norm(model.corrected(forces[k]))) - gravity)
     return math.sqrt(float(np.mean(np.square(rest))))
 
@@ -216,6 +239,73 @@ def direction_errors(turns: Sequence[Turn], inverse: Floats) -> Floats:
     return np.array([np.cross(t.carried(inverse), t.after) for t in turns])
 
 
+@dataclass(frozen=True, slots=True)
+class TurnRows:
+    """Two rows of one turn: its error, and what causes contribute to it.
+
+    Parameters
+    ----------
+    error : ndarray, shape (2,)
+        Carried less felt direction, per time of the turn [rad/s].
+    rate : ndarray, shape (2, 3, 3)
+        What gyro i's error per rate about j contributes [rad/s].
+    size : ndarray, shape (2, 3)
+        What half the size of gyro i's own rate contributes [rad/s].
+    force : ndarray, shape (2, 3, 3)
+        What gyro i's error per force along j contributes, less what its two rests show [m/s2].
+    """
+
+    error: Floats
+    rate: Floats
+    size: Floats
+    force: Floats
+
+
+def turn_rows(
+    turn: Turn, inverse: Floats, *, forces: Floats | None = None, rest: Floats | None = None
+) -> TurnRows:
+    """Error of one turn and its derivatives.
+
+    Up in the body moves by du/dt = u x w. An error e(t) of the rate so moves the carried direction
+    by the integral of R(T, t) (u(t) x e(t)), R turning from the body at t into the body at the end;
+    divided by the time of the turn it is a mean rate.
+
+    Parameters
+    ----------
+    turn : Turn
+        Its rates less the mean of its two rests.
+    inverse : ndarray, shape (3, 3)
+        True rate per output.
+    forces : ndarray, shape (k, 3), optional
+        Specific force at its samples [m/s2].
+    rest : ndarray, shape (3,), optional
+        Mean force of the two rests [m/s2].
+    """
+    rates = turn.rates @ inverse.T
+    attitude = quaternions.integrate(rates, interval_s=turn.interval_s)
+    middle = quaternions.to_matrix(0.5 * (attitude[1:] + attitude[:-1]))
+    last = quaternions.to_matrix(attitude[-1])
+    up = middle.transpose(0, 2, 1) @ turn.before
+    across = _level(turn.after)
+    # rows of R(T, t): across the felt direction, in the body at t
+    lead = np.einsum("aj,kjl->kal", across @ last.T, middle)
+    weights = np.cross(lead, up[:, None, :]) / rates.shape[0]
+    pull = np.zeros_like(rates) if forces is None or rest is None else forces - rest
+    return TurnRows(
+        error=across @ (last.T @ turn.before - turn.after) / (rates.shape[0] * turn.interval_s),
+        rate=np.einsum("kai,kj->aij", weights, rates),
+        size=0.5 * np.einsum("kai,ki->ai", weights, np.abs(rates)),
+        force=np.einsum("kai,kj->aij", weights, pull),
+    )
+
+
+def _level(up: Floats) -> Floats:
+    """Two unit vectors at right angles to ``up`` and to each other, shape (2, 3)."""
+    first = np.cross(up, np.eye(3)[int(np.argmin(np.abs(up)))])
+    first /= np.linalg.norm(first)
+    return np.array([first, np.cross(up, first)])
+
+
 def fit_rates(turns: Sequence[Turn]) -> RateModel:
     """Fit nine elements to the turns; each turn tells two angles.
 
@@ -225,31 +315,25 @@ def fit_rates(turns: Sequence[Turn]) -> RateModel:
     """
     inverse = np.eye(3)
     before = direction_errors(turns, inverse)
-    rest = before
-    step = 1e-6
-    jacobian = np.zeros((rest.size, 9))
+    times = np.repeat([t.rates.shape[0] * t.interval_s for t in turns], 2)
     for _ in range(12):
-        for k in range(9):
-            shift = np.zeros(9)
-            shift[k] = step
-            high = direction_errors(turns, inverse + shift.reshape(3, 3))
-            low = direction_errors(turns, inverse - shift.reshape(3, 3))
-            jacobian[:, k] = ((high - low) / (2.0 * step)).ravel()
-        change = np.linalg.lstsq(jacobian, -rest.ravel(), rcond=1e-10)[0]
-        inverse = inverse + change.reshape(3, 3)
-        rest = direction_errors(turns, inverse)
+        rows = [turn_rows(turn, inverse) for turn in turns]
+        angles = times * np.concatenate([r.error for r in rows])
+        jacobian = times[:, None] * np.concatenate([r.rate.reshape(2, 9) for r in rows])
+        change = np.linalg.lstsq(jacobian, -angles, rcond=1e-10)[0].reshape(3, 3)
+        inverse = inverse + change @ inverse
         if float(np.abs(change).max()) < 1e-10:
             break
+    rest = direction_errors(turns, inverse)
     dof = 2 * len(turns) - 9
     scale = float(np.sum(rest**2)) / max(dof, 1)
-    of_inverse = np.linalg.pinv(jacobian.T @ jacobian) * scale
+    of_change = np.linalg.pinv(jacobian.T @ jacobian) * scale
     output = np.asarray(np.linalg.inv(inverse), dtype=np.float64)
-    # d(output) = -output d(inverse) output
-    chain = -np.kron(output, output.T)
+    chain = -np.kron(output, np.eye(3))  # d(output) = -output change
     return RateModel(
         inverse,
         output,
-        chain @ of_inverse @ chain.T,
+        chain @ of_change @ chain.T,
         _rms(before),
         _rms(rest),
         dof,

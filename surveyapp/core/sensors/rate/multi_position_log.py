@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
@@ -55,6 +55,10 @@ LEAST_STOPS = 5
 """Stops below which no model is determined: one more than bias and scale need."""
 LEAST_TURNS = 6
 """Turns below which the nine elements of the gyros are not determined."""
+LEAST_FOR_FORCES = 8
+"""Stops from which the sensitivity to gravity is carried through the turns: twice its elements."""
+WORST_CONDITION = 1e3
+"""Of the attitudes of the stops, for the same [forces in m/s2 beside 1]."""
 GUARD_S = 0.1
 FEW_DOF = 3
 
@@ -119,7 +123,8 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
     models = _force_models(forces, options.gravity)
     held = {m.level: left_out(forces, level=m.level, gravity=options.gravity) for m in models}
     chosen = _chosen(models, held)
-    turns, bias, sigma_bias = _turns(log, stops, chosen, options)
+    turns = turns_between(log, stops, chosen, options)
+    bias, sigma_bias = _bias(stops, chosen, options)
     gyro = fit_rates(turns) if len(turns) >= LEAST_TURNS else None
     parameters = (
         *_force_parameters(chosen),
@@ -149,14 +154,42 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
             "dof": {"accelerometer": chosen.dof, "gyro": None if gyro is None else gyro.dof},
             "gravity_direction": None
             if gyro is None
-            else {
-                "before_deg": math.degrees(gyro.rms_before),
-                "after_deg": math.degrees(gyro.rms_after),
-                "of": "angle between carried and felt direction after a turn, rms",
-                "turns": len(turns),
-            },
+            else _directions(gyro, turns, with_g_sensitivity(log, stops, chosen, turns)),
         },
     )
+
+
+def _directions(gyro: RateModel, turns: Sequence[Turn], pulled: Sequence[Turn]) -> dict[str, Any]:
+    """How far the carried direction of gravity misses the felt one, by the model of the gyros."""
+    return {
+        "before_deg": math.degrees(gyro.rms_before),
+        "after_deg": math.degrees(gyro.rms_after),
+        "with_g_sensitivity_deg": math.degrees(fit_rates(pulled).rms_after) if pulled else None,
+        "of": "angle between carried and felt direction after a turn, rms",
+        "turns": len(turns),
+    }
+
+
+def with_g_sensitivity(
+    log: SensorLog, stops: Sequence[HeldStop], model: ForceModel, turns: Sequence[Turn]
+) -> list[Turn]:
+    """The turns with the sensitivity to gravity that the rests show carried through them.
+
+    Empty where the rests do not determine it: each gyro has a bias and three elements.
+    """
+    rests = model.corrected(np.array([s.force for s in stops]))
+    design = np.column_stack([np.ones(len(stops)), rests])
+    if len(stops) < LEAST_FOR_FORCES or float(np.linalg.cond(design)) > WORST_CONDITION:
+        return []
+    means = np.array([s.rate for s in stops])
+    pull = np.linalg.lstsq(design, means, rcond=None)[0][1:]
+    force = np.column_stack([log.columns[c] for c in ACCELEROMETERS])
+    found = []
+    for k, turn in enumerate(turns):
+        inside = model.corrected(force[stops[k].stop : stops[k + 1].start])
+        rest = 0.5 * (rests[k] + rests[k + 1])
+        found.append(replace(turn, rates=turn.rates - (inside - rest) @ pull))
+    return found
 
 
 def force_model(forces: Floats, options: MultiPositionOptions) -> ForceModel:
@@ -189,26 +222,40 @@ def _chosen(models: Sequence[ForceModel], held: dict[str, float | None]) -> Forc
     return min(known, key=lambda m: held[m.level] or 0.0)
 
 
-def _turns(
+def turns_between(
     log: SensorLog,
     stops: Sequence[HeldStop],
     model: ForceModel,
     options: MultiPositionOptions,
-) -> tuple[list[Turn], Floats, Floats]:
-    """Turns between the stops, and the gyros' bias with its sigma from the stops' scatter."""
+) -> list[Turn]:
+    """Turns between the stops, their rates less the mean of the two rests about them.
+
+    The vertical earth rate turns nothing that the accelerometers feel and stays in the turn.
+    """
     rate = np.column_stack([log.columns[c] for c in GYROS])
-    ups = np.array([model.corrected(s.force) for s in stops])
-    ups /= np.linalg.norm(ups, axis=1)[:, None]
-    means = rest_rates(stops, ups, options.latitude)
-    bias = means.mean(axis=0)
-    sigma = means.std(axis=0, ddof=1) / math.sqrt(len(stops))
+    ups = _ups(stops, model)
+    rests = rest_rates(stops, ups, options.latitude)
     interval = 1.0 / (log.rate_hz or 100.0)
     turns = []
     for k, (one, other) in enumerate(pairwise(stops)):
         inside = slice(one.stop, other.start)
-        local = 0.5 * (one.rate + other.rate)  # earth and slow bias as the two rests show them
+        local = 0.5 * (rests[k] + rests[k + 1])  # a slow bias as the two rests show it
         turns.append(Turn(rate[inside] - local, ups[k], ups[k + 1], interval))
-    return turns, bias, sigma
+    return turns
+
+
+def _ups(stops: Sequence[HeldStop], model: ForceModel) -> Floats:
+    """Direction of up in the body at each stop, shape (n, 3)."""
+    ups = np.array([model.corrected(s.force) for s in stops])
+    return np.asarray(ups / np.linalg.norm(ups, axis=1)[:, None])
+
+
+def _bias(
+    stops: Sequence[HeldStop], model: ForceModel, options: MultiPositionOptions
+) -> tuple[Floats, Floats]:
+    """Bias of each gyro and its sigma from the scatter of the stops [rad/s]."""
+    means = rest_rates(stops, _ups(stops, model), options.latitude)
+    return means.mean(axis=0), means.std(axis=0, ddof=1) / math.sqrt(len(stops))
 
 
 def rest_rates(stops: Sequence[HeldStop], ups: Floats, latitude: float | None) -> Floats:

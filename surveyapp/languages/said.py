@@ -1,0 +1,93 @@
+"""A text that can be said in another language later: its English template and what stands in it.
+
+Core forms texts with values inside; they are plain English for JSON, files and comparison, and the
+screens and the record say them again in the reader's language. Nothing here reads a catalogue.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any, Self
+
+Translate = Callable[[str, str | None, int], str]
+"""From an English template, its plural (or None) and a count to the template of a language."""
+
+
+class Said(str):
+    """English text that knows its template and fields.
+
+    Equal to, and hashed as, its English; what is made of it by other means than ``said`` and ``+``
+    (an f-string, ``join``) is plain English again and is no longer translated.
+
+    Parameters
+    ----------
+    template : str
+        Text as in the catalogue; with fields it is filled by ``str.format``.
+    fields : dict
+        By name; a field that is itself ``Said`` is translated too.
+    plural : str or None
+        Template for other counts than one; the field ``count`` decides.
+    """
+
+    __slots__ = ("fields", "plural", "template")
+    template: str
+    plural: str | None
+    fields: dict[str, Any]
+
+    def __new__(cls, template: str, fields: dict[str, Any], plural: str | None = None) -> Self:
+        """English text by filling the template."""
+        chosen = template if plural is None or fields.get("count") == 1 else plural
+        text = super().__new__(cls, chosen.format(**fields) if fields else chosen)
+        text.template, text.fields, text.plural = template, fields, plural
+        return text
+
+    def __getnewargs__(self) -> tuple[str, dict[str, Any], str | None]:  # type: ignore[override]
+        return self.template, self.fields, self.plural
+
+    def __deepcopy__(self, memo: object) -> Self:
+        return self
+
+    def __add__(self, other: str) -> str:
+        return joined("", (self, other))
+
+    def __radd__(self, other: str) -> str:
+        return joined("", (other, self))
+
+    def told(self, translate: Translate) -> str:
+        """The text in the language of ``translate``; English where its template does not fit."""
+        count = self.fields.get("count", 0) if self.plural is not None else 0
+        template = translate(self.template, self.plural, count)
+        if not self.fields:
+            return template
+        fields = {
+            name: value.told(translate) if isinstance(value, Said) else value
+            for name, value in self.fields.items()
+        }
+        try:
+            return template.format(**fields)
+        except (KeyError, IndexError, ValueError):
+            return str(self)
+
+
+def said(template: str, /, **fields: Any) -> str:
+    """A text: its template is a literal, so that ``scripts/extract_texts.py`` finds it."""
+    return Said(template, fields)
+
+
+def counted(one: str, many: str, /, *, count: int, **fields: Any) -> str:
+    """A text with a count: English has two forms, Russian three, Chinese one."""
+    return Said(one, {"count": count, **fields}, many)
+
+
+def said_each(*templates: str) -> tuple[str, ...]:
+    """Several texts without fields: the heads of a table."""
+    return tuple(Said(template, {}) for template in templates)
+
+
+def joined(separator: str, parts: Iterable[str]) -> str:
+    """Texts behind one another; the separator has no words, so that it is no text itself."""
+    fields = {f"part{index}": part for index, part in enumerate(parts)}
+    if not fields:
+        return Said("", {})
+    literal = separator.replace("{", "{{").replace("}", "}}")
+    return Said(literal.join(f"{{{name}}}" for name in fields), fields)
