@@ -65,6 +65,7 @@ class _State:
     begun: bool = False
     doubt: int = 0
     circle_lost: str = ""
+    differs: list[str] = field(default_factory=list)
     negative: list[int] = field(default_factory=list)
     time: str = ""
     opened: str = ""
@@ -95,7 +96,7 @@ def read_sdr(path: Path, options: ReadOptions) -> FieldFile:
     if text.encoding != "ascii":
         state.gathered.warn("code_page", "names that are no ASCII were read as Latin-1")
     _keep_means(state)
-    _tell_means(state)
+    _tell_places(state)
     if len(state.negative) >= _NEGATIVE:
         raise SurveyError(_from_horizon(state))
     applied = _constant(state)
@@ -310,18 +311,8 @@ def _observation(state: _State, number: int, line: str) -> None:
     if lost:
         state.gathered.dependent(number, lost)
         return
-    if at != state.station:
-        if state.doubt:
-            _lose(state, state.doubt, frozenset(("02",)))
-            state.gathered.dependent(number, state.lost)
-            return
-        if state.station is not None:
-            if state.shape.stations[at] == 1:
-                raise RecordError(f"station {at} has no record: {state.station} is occupied")
-            text = f"line {number} names station {at}, the record before it {state.station}"
-            state.gathered.warn("station_differs", text)
-        state.setup += 1
-        state.station, state.hi = at, None
+    if at != state.station and not _stands(state, number, at):
+        return
     if sd:
         state.said.add(state.applied)
     pointing = Pointing(
@@ -340,10 +331,30 @@ def _observation(state: _State, number: int, line: str) -> None:
         time=state.time,
         code=line[state.shape.full("09") :].strip(),
     )
+    _keep(state, pointing, mean=origin == "MC")
+
+
+def _stands(state: _State, number: int, at: str) -> bool:
+    """Take a station that a sight names and no record before it; whether that can be done."""
+    if state.doubt:
+        _lose(state, state.doubt, frozenset(("02",)))
+        state.gathered.dependent(number, state.lost)
+        return False
+    if state.station is not None:
+        if state.shape.stations[at] == 1:
+            raise RecordError(f"station {at} has no record: {state.station} is occupied")
+        state.differs.append(f"line {number} names {at}, the record before it {state.station}")
+        del state.differs[_SHOWN:]
+    state.setup += 1
+    state.station, state.hi = at, None
+    return True
+
+
+def _keep(state: _State, pointing: Pointing, *, mean: bool) -> None:
     if pointing.setup != state.opened:
         _keep_means(state)
         state.opened = pointing.setup
-    if origin == "MC":
+    if mean:
         state.means.append(pointing)
     else:
         state.faces.add(pointing.to)
@@ -364,7 +375,9 @@ def _keep_means(state: _State) -> None:
     state.faces.clear()
 
 
-def _tell_means(state: _State) -> None:
+def _tell_places(state: _State) -> None:
+    if state.differs:
+        state.gathered.warn("station_differs", "; ".join(state.differs))
     if state.mean_only:
         text = (
             f"only the mean of a sight is stored, its faces are gone: {', '.join(state.mean_only)}"
