@@ -27,6 +27,7 @@ from surveyapp.diagnosis.long_records.record import (
 )
 from surveyapp.diagnosis.loop import DEFAULT_DRAWS, Search, rivals_delta, search
 from surveyapp.diagnosis.next_observation import advice, worth_in_words
+from surveyapp.diagnosis.next_run import run_advice
 from surveyapp.diagnosis.result import (
     Ambiguity,
     CandidateResult,
@@ -108,7 +109,8 @@ def _diagnosed(
         averaged = short_average(problem, base, named=bool(found.adopted))
     best = found.best if ambiguous else found.after
     models = [_model(problem, fit, confirm) for fit in (base, found.after, best)]
-    outlook = advice(problem, np.random.default_rng(int(digest[:15], 16)))
+    rng = np.random.default_rng(int(digest[:15], 16))
+    outlook = run_advice(problem, base, rng) if problem.has_swing else advice(problem, rng)
     return Diagnosis(
         subject=problem.subject,
         identity=problem.identity,
