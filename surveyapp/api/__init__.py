@@ -61,6 +61,7 @@ from surveyapp.api.project import (
     simulate,
 )
 from surveyapp.api.rate import motion, north, plan_fog_station, plan_north_stops, spectrum
+from surveyapp.api.sensor_files import add_sensor_log, preview_sensor_log, sensor_pictures
 from surveyapp.api.sensors import (
     LogOptions,
     allan,
@@ -92,6 +93,7 @@ if TYPE_CHECKING:
     from surveyapp.core.sensors.rate.fog_station_plan import FogStationPlan
     from surveyapp.core.sensors.rate.stop_plan import StopPlan
     from surveyapp.diagnosis.sensors.diagnosis import SensorDiagnosis
+    from surveyapp.domain.chart import SensorPictures
     from surveyapp.domain.filing import (
         BatchResult,
         BatchRow,
@@ -102,6 +104,7 @@ if TYPE_CHECKING:
     )
     from surveyapp.domain.instrument_reading import FollowedTurn, InstrumentReading
     from surveyapp.domain.line_spectrum import LineSpectrum
+    from surveyapp.domain.log_preview import LogPreview
     from surveyapp.domain.motion import Motion
     from surveyapp.domain.noise import AllanResult, FilterResult
     from surveyapp.domain.north import NorthResult
@@ -151,6 +154,7 @@ _TYPES: Final = {
     "LineResult": "surveyapp.domain.results",
     "LineSpectrum": "surveyapp.domain.line_spectrum",
     "Listing": "surveyapp.domain.records",
+    "LogPreview": "surveyapp.domain.log_preview",
     "MadeProject": "surveyapp.domain.filing",
     "Motion": "surveyapp.domain.motion",
     "NorthResult": "surveyapp.domain.north",
@@ -159,6 +163,7 @@ _TYPES: Final = {
     "ReportResult": "surveyapp.report.written",
     "ResultWarning": "surveyapp.domain.project",
     "SensorDiagnosed": "surveyapp.workflows.diagnosing_sensor",
+    "SensorPictures": "surveyapp.domain.chart",
     "SessionResult": "surveyapp.domain.results",
     "ShaftResult": "surveyapp.domain.shaft_result",
     "SheetsResult": "surveyapp.report.written",
@@ -224,6 +229,9 @@ __all__ = [
     "motion",
     "open_sensor_log",
     "LogOptions",
+    "preview_sensor_log",
+    "add_sensor_log",
+    "sensor_pictures",
     "batch",
     "batch_rows",
     "report",
@@ -293,4 +301,6 @@ __all__ = [
     "FilterResult",
     "CompensationResult",
     "SensorDiagnosis",
+    "LogPreview",
+    "SensorPictures",
 ]

@@ -47,10 +47,10 @@ class Said(str):
     def __deepcopy__(self, memo: object) -> Self:
         return self
 
-    def __add__(self, other: str) -> Said:
+    def __add__(self, other: str) -> str:
         return joined("", (self, other))
 
-    def __radd__(self, other: str) -> Said:
+    def __radd__(self, other: str) -> str:
         return joined("", (other, self))
 
     def told(self, translate: Translate) -> str:
@@ -69,22 +69,22 @@ class Said(str):
             return str(self)
 
 
-def said(template: str, /, **fields: Any) -> Said:
+def said(template: str, /, **fields: Any) -> str:
     """A text: its template is a literal, so that ``scripts/extract_texts.py`` finds it."""
     return Said(template, fields)
 
 
-def counted(one: str, many: str, /, *, count: int, **fields: Any) -> Said:
+def counted(one: str, many: str, /, *, count: int, **fields: Any) -> str:
     """A text with a count: English has two forms, Russian three, Chinese one."""
     return Said(one, {"count": count, **fields}, many)
 
 
-def said_each(*templates: str) -> tuple[Said, ...]:
+def said_each(*templates: str) -> tuple[str, ...]:
     """Several texts without fields: the heads of a table."""
     return tuple(Said(template, {}) for template in templates)
 
 
-def joined(separator: str, parts: Iterable[str]) -> Said:
+def joined(separator: str, parts: Iterable[str]) -> str:
     """Texts behind one another; the separator has no words, so that it is no text itself."""
     fields = {f"part{index}": part for index, part in enumerate(parts)}
     if not fields:

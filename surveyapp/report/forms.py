@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Final
 
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import said
 from surveyapp.report.blocks import Block, Document, Heading, Paragraph, Signature, Table
 
 _ROW_MM: Final = 6.5
@@ -25,77 +26,110 @@ def _form(head: tuple[str, ...], first: Sequence[tuple[str, ...]], rows: int) ->
 
 def _wide(*names: str) -> tuple[str, ...]:
     """Column heads padded so that a form has room to write."""
-    return tuple(name.ljust(16, "\N{NO-BREAK SPACE}") for name in names)
+    return tuple(name + "\N{NO-BREAK SPACE}" * (16 - len(name)) for name in names)
 
 
 def _sights(place: str) -> tuple[Block, ...]:
     rows = [("L",), ("R",), ("L",), ("R",)]
-    head = ("face", *_wide("target", "circle reading", "zenith angle", "time"))
-    return (Heading(f"Sights {place} (backsight, zenith)", 2), _form(head, rows, 4))
+    head = (
+        said("face"),
+        *_wide(said("target"), said("circle reading"), said("zenith angle"), said("time")),
+    )
+    return (
+        Heading(said("Sights {place} (backsight, zenith)", place=place), 2),
+        _form(head, rows, 4),
+    )
 
 
 def _tape_zero(place: str) -> tuple[Block, ...]:
     rows = [(str(index + 1),) for index in range(6)]
-    head = ("no.", "side", *_wide("scale reading div", "time", "remark"))
+    head = (
+        said("no."),
+        said("side"),
+        *_wide(said("scale reading div"), said("time"), said("remark")),
+    )
     return (
-        Heading(f"Tape zero {place}, rotor at rest (tape_zero)", 2),
+        Heading(said("Tape zero {place}, rotor at rest (tape_zero)", place=place), 2),
         _form(head, rows, 6),
     )
 
 
 def _conditions() -> tuple[Block, ...]:
-    head = _wide("time", "temperature C", "supply V / Hz", "level along", "level across", "remark")
-    return (Heading("Conditions (temperature, supply, level)", 2), _form(head, [], 3))
+    head = _wide(
+        said("time"),
+        said("temperature C"),
+        said("supply V / Hz"),
+        said("level along"),
+        said("level across"),
+        said("remark"),
+    )
+    return (Heading(said("Conditions (temperature, supply, level)"), 2), _form(head, [], 3))
 
 
 def _tracking() -> tuple[Block, ...]:
     rows = [(str(index + 1),) for index in range(12)]
-    head = ("no.", "side", *_wide("circle reading", "time", "elapsed s", "remark"))
+    head = (
+        said("no."),
+        said("side"),
+        *_wide(said("circle reading"), said("time"), said("elapsed s"), said("remark")),
+    )
     swing = (
-        Heading("Pre-orientation (clamp)", 2),
-        _form(_wide("circle reading", "time", "remark"), [], 1),
-        Heading("Turning points (reversal; write missed for one that was not read)", 2),
+        Heading(said("Pre-orientation (clamp)"), 2),
+        _form(_wide(said("circle reading"), said("time"), said("remark")), [], 1),
+        Heading(said("Turning points (reversal; write missed for one that was not read)"), 2),
         _form(head, rows, 12),
     )
-    return (*_sights("before"), *_tape_zero("before"), *swing, *_after())
+    return (*_sights(said("before")), *_tape_zero(said("before")), *swing, *_after())
 
 
 def _after() -> tuple[Block, ...]:
-    return (*_tape_zero("after"), *_sights("after"), *_conditions())
+    return (*_tape_zero(said("after")), *_sights(said("after")), *_conditions())
 
 
 def _amplitude() -> tuple[Block, ...]:
     rows = [(str(index + 1),) for index in range(10)]
-    head = ("no.", "side", *_wide("scale reading div", "time", "elapsed s", "remark"))
+    head = (
+        said("no."),
+        said("side"),
+        *_wide(said("scale reading div"), said("time"), said("elapsed s"), said("remark")),
+    )
     swing = (
-        Heading("Clamped alidade (clamp)", 2),
-        _form(_wide("circle reading", "time", "remark"), [], 1),
-        Heading("Turning points on the scale (scale_reversal)", 2),
+        Heading(said("Clamped alidade (clamp)"), 2),
+        _form(_wide(said("circle reading"), said("time"), said("remark")), [], 1),
+        Heading(said("Turning points on the scale (scale_reversal)"), 2),
         _form(head, rows, 10),
     )
-    return (*_sights("before"), *_tape_zero("before"), *swing, *_after())
+    return (*_sights(said("before")), *_tape_zero(said("before")), *swing, *_after())
 
 
 def _transit() -> tuple[Block, ...]:
     rows = [(str(index + 1),) for index in range(12)]
-    head = ("no.", *_wide("division passed", "elapsed s", "scale at turning point", "side"))
+    head = (
+        said("no."),
+        *_wide(
+            said("division passed"), said("elapsed s"), said("scale at turning point"), said("side")
+        ),
+    )
     swing = (
-        Heading("Clamped alidade (clamp)", 2),
-        _form(_wide("circle reading", "time", "remark"), [], 1),
-        Heading("Passages and turning points between them (transit, scale_reversal)", 2),
+        Heading(said("Clamped alidade (clamp)"), 2),
+        _form(_wide(said("circle reading"), said("time"), said("remark")), [], 1),
+        Heading(said("Passages and turning points between them (transit, scale_reversal)"), 2),
         _form(head, rows, 12),
     )
-    return (*_sights("before"), *_tape_zero("before"), *swing, *_after())
+    return (*_sights(said("before")), *_tape_zero(said("before")), *swing, *_after())
 
 
 def _automatic() -> tuple[Block, ...]:
     rows = [(str(index + 1),) for index in range(8)]
-    head = ("round", *_wide("azimuth or north", "time", "duration s", "remark"))
+    head = (
+        said("round"),
+        *_wide(said("azimuth or north"), said("time"), said("duration s"), said("remark")),
+    )
     rounds = (
-        Heading("Rounds (azimuth: of the line; north: circle reading of north)", 2),
+        Heading(said("Rounds (azimuth: of the line; north: circle reading of north)"), 2),
         _form(head, rows, 8),
     )
-    return (*_sights("before"), *rounds, *_sights("after"), *_conditions())
+    return (*_sights(said("before")), *rounds, *_sights(said("after")), *_conditions())
 
 
 FORMS: Final[Mapping[str, Callable[[], tuple[Block, ...]]]] = {
@@ -126,11 +160,11 @@ def blank_form(method: str, *, software: str) -> Document:
             )
         )
     pairs = (
-        ("project", "session"),
-        ("station", "target"),
-        ("instrument, no.", "theodolite, no."),
-        ("observer", "booker"),
-        ("date", "weather, place"),
+        (said("project"), said("session")),
+        (said("station"), said("target")),
+        (said("instrument, no."), said("theodolite, no.")),
+        (said("observer"), said("booker")),
+        (said("date"), said("weather, place")),
     )
     blank = "\N{NO-BREAK SPACE}" * 44
     top = Table(
@@ -140,13 +174,15 @@ def blank_form(method: str, *, software: str) -> Document:
         lined=True,
     )
     note = Paragraph(
-        "Struck entries are crossed out with one line and stay legible; the entry that takes their "
-        "place is written below. Side R: larger reading, east.",
+        said(
+            "Struck entries are crossed out with one line and stay legible; the entry "
+            "that takes their place is written below. Side R: larger reading, east."
+        ),
         "small",
     )
     return Document(
-        title=f"Field book: {method} method",
-        running_head=f"Field book, {method} method",
+        title=said("Field book: {method} method", method=method),
+        running_head=said("Field book, {method} method", method=method),
         foot=(software,),
-        blocks=(top, *FORMS[method](), note, Signature(("Observed", "Booked"))),
+        blocks=(top, *FORMS[method](), note, Signature((said("Observed"), said("Booked")))),
     )

@@ -11,6 +11,7 @@ from typing import Final
 
 from surveyapp.domain.adjustment import AdjustedPoint, AdjustmentResult
 from surveyapp.domain.observations import ObservationKind
+from surveyapp.languages import said
 from surveyapp.report.blocks import Figure, Label, Line, Marker, Polyline, Primitive
 
 WIDTH_MM: Final = 170.0
@@ -62,10 +63,12 @@ def plan_figure(result: AdjustmentResult, *, confidence: float = 1.0) -> Figure 
             parts += _point(point, paper[point.name], factor)
             if len(paper) <= NAMED:
                 parts.append(_name(point, paper[point.name], factor))
-    kind = "standard" if confidence == 1.0 else "confidence"
-    title = f"Plan, north up; {kind} ellipses {enlarged:g} times enlarged"
+    kind = said("standard") if confidence == 1.0 else said("confidence")
+    title = said(
+        "Plan, north up; {kind} ellipses {enlarged:g} times enlarged", kind=kind, enlarged=enlarged
+    )
     if any(o.kind is ObservationKind.GYRO for o in result.observations):
-        title += "; sides with an arrow are gyro sides"
+        title += said("; sides with an arrow are gyro sides")
     return Figure(title, WIDTH_MM, height, tuple(parts))
 
 
@@ -131,5 +134,5 @@ def _scale_bar(scale: float) -> list[Primitive]:
     return [
         Line((4.0, 4.0), (end, 4.0), "axis"),
         *ticks,
-        Label((end + 1.5, 3.2), f"{length:g} m", "start"),
+        Label((end + 1.5, 3.2), said("{length:g} m", length=length), "start"),
     ]

@@ -13,6 +13,7 @@ from typing import Final
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
 from surveyapp.domain.rulebook import RuleBook
+from surveyapp.languages import said
 from surveyapp.report.blocks import Block, Document
 from surveyapp.report.sections import (
     azimuths,
@@ -91,10 +92,10 @@ def _signed(seals: Sequence[SealShown]) -> tuple[tuple[str, str], ...]:
     """What the first page says of the closings."""
     facts: list[tuple[str, str]] = []
     if not any(not item.session for item in seals):
-        facts.append(("signed", "the project is open and not signed as a whole"))
+        facts.append((said("signed"), said("the project is open and not signed as a whole")))
     for item in seals:
-        what = f"signed, {item.session}" if item.session else "signed"
-        facts += [(what, f"{item.by or '-'}, {item.at}"), ("seal", item.seal)]
+        what = said("signed, {session}", session=item.session) if item.session else said("signed")
+        facts += [(what, f"{item.by or '-'}, {item.at}"), (said("seal"), item.seal)]
     return tuple(facts)
 
 
@@ -126,9 +127,12 @@ def record_document(record: Record) -> tuple[Document, tuple[str, ...]]:
         elif blocks:
             names.append(name)
     document = Document(
-        title=f"Survey record: {record.project.name}",
-        running_head=f"Survey record: {record.project.name}",
-        foot=(record.result.software, f"sha256 of the input {record.result.input_sha256}"),
+        title=said("Survey record: {name}", name=record.project.name),
+        running_head=said("Survey record: {name}", name=record.project.name),
+        foot=(
+            record.result.software,
+            said("sha256 of the input {input_sha256}", input_sha256=record.result.input_sha256),
+        ),
         blocks=tuple(block for _, blocks in made for block in blocks),
     )
     return document, tuple(names)

@@ -50,12 +50,14 @@ msgstr[2] "{count} проверок"
 
 def test_a_text_is_its_english_for_everybody_but_the_reader() -> None:
     text = said("tape zero {value:+.3f} div, {point}", value=-0.25, point=said("before"))
+    assert isinstance(text, Said)
     assert text == "tape zero -0.250 div, before"
     assert json.dumps({"text": text}) == '{"text": "tape zero -0.250 div, before"}'
     assert hash(text) == hash(str(text))
     warning = ResultWarning("code", text)
     assert asdict(warning)["text"] == str(text)
-    for other in (copy.deepcopy(text), pickle.loads(pickle.dumps(text))):
+    others: list[Said] = [copy.deepcopy(text), pickle.loads(pickle.dumps(text))]
+    for other in others:
         assert other == text
         assert other.template == text.template
         assert other.fields == text.fields
@@ -73,7 +75,8 @@ def test_texts_that_are_put_together_are_still_translated() -> None:
 def test_a_catalogue_has_its_own_order_of_words_and_its_own_plurals() -> None:
     found = translations(read_po(RUSSIAN))
 
-    def told(text: Said) -> str:
+    def told(text: str) -> str:
+        assert isinstance(text, Said)
         return text.told(
             lambda one, many, count: (
                 found.gettext(one) if many is None else found.ngettext(one, many, count)
@@ -96,6 +99,7 @@ def test_a_catalogue_has_its_own_order_of_words_and_its_own_plurals() -> None:
 
 def test_a_translation_whose_fields_do_not_fit_leaves_english() -> None:
     text = said("{a} of {b}", a=1, b=2)
+    assert isinstance(text, Said)
     assert text.told(lambda *_: "{a} von {c}") == "1 of 2"
     assert text.told(lambda *_: "{a} von {") == "1 of 2"
 

@@ -246,6 +246,15 @@ def test_diagnosis(snap_compare: Snap, tmp_path: Path, size: tuple[int, int]) ->
 
 
 @sizes
+@pytest.mark.parametrize("page", ["logs", "result", "picture"])
+def test_sensors(snap_compare: Snap, tmp_path: Path, page: str, size: tuple[int, int]) -> None:
+    """The measured Allan deviation of a gyro at rest."""
+    folder = sample(tmp_path, "mpu6050-static")
+    press = {"logs": ("l",), "result": ("l", "enter", "l"), "picture": ("l", "enter", "l", "v")}
+    assert snap_compare(app_on(folder), terminal_size=size, run_before=keys(*press[page]))
+
+
+@sizes
 def test_a_question_before_something_is_written(snap_compare: Snap, size: tuple[int, int]) -> None:
     async def ask(pilot: Pilot[int]) -> None:
         await keys()(pilot)

@@ -77,7 +77,7 @@ def append_row(
         fresh += [problem for problem in also(after.book, where) if problem not in known]
     if fresh:
         raise SurveyError(fresh)
-    _append(path, line.encode("utf-8"))
+    append_line(path, line.encode("utf-8"))
     return seq
 
 
@@ -125,8 +125,14 @@ def _line(header: Sequence[str], row: Mapping[str, str], where: str) -> str:
     return buffer.getvalue()
 
 
-def _append(path: Path, line: bytes) -> None:
-    """One write at the end, then fsync; what could not be written in whole is cut off again."""
+def append_line(path: Path, line: bytes) -> None:
+    """One write at the end, then fsync; what could not be written in whole is cut off again.
+
+    Raises
+    ------
+    SurveyError
+        If the system refuses; the earlier lines stand.
+    """
     new = not path.exists()
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -12,6 +12,7 @@ from surveyapp.domain.results import (
     OrientationResult,
     to_degrees,
 )
+from surveyapp.languages import joined, said, said_each
 from surveyapp.report.blocks import Block, Heading, Paragraph, Table
 from surveyapp.report.numbers import (
     NOTHING,
@@ -26,10 +27,10 @@ from surveyapp_models.angles import AngleUnit
 
 def blocks(project: Project, result: OrientationResult) -> tuple[Block, ...]:
     """Summary of all lines, then each line with its steps and its budget."""
-    found: list[Block] = [Heading("Azimuths")]
+    found: list[Block] = [Heading(said("Azimuths"))]
     if not result.lines:
-        text = "No line was oriented: no survey session has sights of a target."
-        return (Heading("Azimuths"), Paragraph(text), *_norths(project, result))
+        text = said("No line was oriented: no survey session has sights of a target.")
+        return (Heading(said("Azimuths")), Paragraph(text), *_norths(project, result))
     found.append(_summary(project, result))
     for line in result.lines:
         found += _line(project, line)
@@ -41,22 +42,24 @@ def _combined(project: Project, sides: Sequence[CombinedResult]) -> tuple[Block,
     rows = []
     for side in sides:
         test = f"{plain(side.chi_square, 2)} ({side.dof})"
-        verdict = "agree" if side.agree else "disagree, not combined"
+        verdict = said("agree") if side.agree else said("disagree, not combined")
         lines = "; ".join(f"{of.name} {_share(of.weight)}" for of in side.lines)
         name = f"{side.station} - {side.target}"
         value = with_sigma(side.grid_azimuth, project.angle_unit)
         rows.append((name, *value, test, verdict, lines))
     if not rows:
         return ()
-    head = ("side", "grid azimuth", '±"', '95 % ±"', "chi-square (dof)", "lines", "weights %")
+    head = said_each(
+        "side", "grid azimuth", '±"', '95 % ±"', "chi-square (dof)", "lines", "weights %"
+    )
     return (
-        Heading("Lines of one side, combined by their variances", 2),
+        Heading(said("Lines of one side, combined by their variances"), 2),
         Table(head, tuple(rows), "lrrrrll"),
     )
 
 
 def _share(weight: float | None) -> str:
-    return "no sigma" if weight is None else plain(100.0 * weight, 1)
+    return said("no sigma") if weight is None else plain(100.0 * weight, 1)
 
 
 def _norths(project: Project, result: OrientationResult) -> tuple[Block, ...]:
@@ -67,7 +70,7 @@ def _norths(project: Project, result: OrientationResult) -> tuple[Block, ...]:
     ]
     if not rows:
         return ()
-    head = ("session", "station", "gyro north on the circle", '±"', '95 % ±"')
+    head = said_each("session", "station", "gyro north on the circle", '±"', '95 % ±"')
     return (Table(head, tuple(rows), "llrrr"),)
 
 
@@ -76,7 +79,13 @@ def _summary(project: Project, result: OrientationResult) -> Table:
     rows = []
     for line in result.lines:
         final = line.grid_azimuth or line.true_azimuth or line.gyro_azimuth
-        kind = "grid" if line.grid_azimuth else "astronomic" if line.true_azimuth else "gyro"
+        kind = (
+            said("grid")
+            if line.grid_azimuth
+            else said("astronomic")
+            if line.true_azimuth
+            else said("gyro")
+        )
         rows.append(
             (
                 f"{line.station} - {line.target}",
@@ -87,23 +96,25 @@ def _summary(project: Project, result: OrientationResult) -> Table:
                 plain(to_degrees(final.value), 6),
             )
         )
-    head = ("line", "instrument", "rounds", "azimuth", "value", '±"', '95 % ±"', "degrees")
+    head = said_each("line", "instrument", "rounds", "azimuth", "value", '±"', '95 % ±"', "degrees")
     return Table(head, tuple(rows), "llrlrrrr", strong=frozenset(range(len(rows))))
 
 
 def _line(project: Project, line: LineResult) -> list[Block]:
     unit = project.angle_unit
     rows, strong = _steps(project, line, unit)
-    head = ("step", "value", '±"', '95 % ±"', "where it comes from")
+    head = said_each("step", "value", '±"', '95 % ±"', "where it comes from")
     found: list[Block] = [
-        Heading(f"Line {line.station} - {line.target}", 2),
+        Heading(said("Line {station} - {target}", station=line.station, target=line.target), 2),
         Table(head, tuple(rows), "lrrrl", strong=strong),
     ]
     if line.budget:
         budget = [
             (item.source, seconds(item.sigma), plain(100.0 * item.share, 1)) for item in line.budget
         ]
-        found.append(Table(("source of error", '±"', "share of variance %"), tuple(budget), "lrr"))
+        found.append(
+            Table(said_each("source of error", '±"', "share of variance %"), tuple(budget), "lrr")
+        )
     return found
 
 
@@ -118,33 +129,48 @@ def _steps(
             rows.append((label, *with_sigma(item, unit), origin))
 
     def small(label: str, value: float | None, sigma: float | None, origin: str) -> None:
-        shown = signed_angle(value) if value is not None else "not known"
+        shown = signed_angle(value) if value is not None else said("not known")
         rows.append((label, shown, seconds(sigma), "", origin))
 
     sessions = ", ".join(line.sessions)
-    result("gyro azimuth", line.gyro_azimuth, f"{line.rounds} rounds: {sessions}")
+    result(
+        said("gyro azimuth"),
+        line.gyro_azimuth,
+        said("{rounds} rounds: {sessions}", rounds=line.rounds, sessions=sessions),
+    )
     choice = line.constant_choice or ""
-    origin = f"{line.instrument}, {choice}" if choice else "no constant of this instrument is known"
-    small("+ instrument constant", line.constant, line.constant_sigma, origin)
+    origin = said("no constant of this instrument is known")
+    if choice:
+        origin = joined(", ", (line.instrument, choice))
+    small(said("+ instrument constant"), line.constant, line.constant_sigma, origin)
     if line.true_azimuth is not None:
         strong.add(len(rows))
-    result("= true azimuth (astronomic)", line.true_azimuth, "")
-    station = project.station(line.station)
-    known = "of the station" if station.deflection.known else "not known, 0 assumed with its sigma"
-    small("- deflection of the vertical", line.deflection, None, known)
-    where = f"{line.station} in the grid" if project.crs or project.grid else "as stated"
-    small("- meridian convergence", line.convergence, None, where)
-    ends = "both ends in the grid" if line.arc_to_chord is not None else "a position is missing"
-    small("- arc-to-chord", line.arc_to_chord, None, ends)
+    result(said("= true azimuth (astronomic)"), line.true_azimuth, "")
+    small(said("- deflection of the vertical"), line.deflection, None, _deflection(project, line))
+    known = project.crs or project.grid
+    where = said("{station} in the grid", station=line.station) if known else said("as stated")
+    small(said("- meridian convergence"), line.convergence, None, where)
+    whole = line.arc_to_chord is not None
+    ends = said("both ends in the grid") if whole else said("a position is missing")
+    small(said("- arc-to-chord"), line.arc_to_chord, None, ends)
     if line.grid_azimuth is not None:
         strong.add(len(rows))
-    result("= grid azimuth", line.grid_azimuth, "from grid north, clockwise")
+    result(said("= grid azimuth"), line.grid_azimuth, said("from grid north, clockwise"))
     if line.direction_from_south is not None:
         text = direction(line.direction_from_south, unit)
-        rows.append(("direction from south", text, "", "", "the axes of the grid ask for it"))
+        rows.append(
+            (said("direction from south"), text, "", "", said("the axes of the grid ask for it"))
+        )
     if line.existing_azimuth is not None:
         text = direction(line.existing_azimuth, unit)
-        rows.append(("azimuth from coordinates", text, "", "", "for comparison only"))
+        rows.append((said("azimuth from coordinates"), text, "", "", said("for comparison only")))
     if line.distance_m is not None:
-        rows.append(("length of the line m", plain(line.distance_m, 3), "", "", "grid"))
+        rows.append((said("length of the line m"), plain(line.distance_m, 3), "", "", said("grid")))
     return [row if any(row) else (NOTHING,) * 5 for row in rows], frozenset(strong)
+
+
+def _deflection(project: Project, line: LineResult) -> str:
+    """Where the deflection comes from."""
+    if project.station(line.station).deflection.known:
+        return said("of the station")
+    return said("not known, 0 assumed with its sigma")

@@ -6,11 +6,16 @@ import math
 
 from surveyapp.core.orientation.constant_axis import EPOCH, calendar_moment
 from surveyapp.domain.results import ConstantResult, Determination, OrientationResult, to_arcsec
+from surveyapp.languages import said, said_each
 from surveyapp.report.blocks import Block, Figure, Heading, KeyValues, Table
 from surveyapp.report.numbers import NOTHING, plain, seconds
 from surveyapp.report.plots import Axis, Frame, axis
 
-_STABLE = {True: "stable", False: "NOT STABLE: lines or epochs disagree", None: "nothing can tell"}
+_STABLE = {
+    True: said("stable"),
+    False: said("NOT STABLE: lines or epochs disagree"),
+    None: said("nothing can tell"),
+}
 
 
 def blocks(result: OrientationResult) -> tuple[Block, ...]:
@@ -19,19 +24,28 @@ def blocks(result: OrientationResult) -> tuple[Block, ...]:
     for constant in result.constants:
         if constant.value is not None:
             found += _constant(constant)
-    return (Heading("Instrument constant"), *found) if found else ()
+    return (Heading(said("Instrument constant")), *found) if found else ()
 
 
 def _constant(constant: ConstantResult) -> list[Block]:
     found: list[Block] = [
-        Heading(f"{constant.instrument}: true minus gyro azimuth, astronomic terms", 2),
+        Heading(
+            said(
+                "{instrument}: true minus gyro azimuth, astronomic terms",
+                instrument=constant.instrument,
+            ),
+            2,
+        ),
         KeyValues(
             (
-                ("constant", f'{seconds(constant.value, sign=True)}" ± {seconds(constant.sigma)}"'),
-                ("95 % interval", f'± {seconds(constant.interval95)}"'),
-                ("choice", constant.choice),
-                ("determinations", str(constant.count)),
-                ("stability", _STABLE[constant.stable]),
+                (
+                    said("constant"),
+                    f'{seconds(constant.value, sign=True)}" ± {seconds(constant.sigma)}"',
+                ),
+                (said("95 % interval"), f'± {seconds(constant.interval95)}"'),
+                (said("choice"), constant.choice),
+                (said("determinations"), str(constant.count)),
+                (said("stability"), _STABLE[constant.stable]),
             )
         ),
     ]
@@ -47,7 +61,7 @@ def _constant(constant: ConstantResult) -> list[Block]:
             )
             for line in constant.by_line
         )
-        head = ("known line", 'constant "', '±"', "determinations", "rounds", "length m")
+        head = said_each("known line", 'constant "', '±"', "determinations", "rounds", "length m")
         found.append(Table(head, rows, "lrrrrr"))
     if constant.determinations:
         found += [_determinations(constant), _plot(constant)]
@@ -70,7 +84,7 @@ def _determinations(constant: ConstantResult) -> Table:
                 NOTHING if difference is None else seconds(difference, sign=True),
             )
         )
-    head = ("session", "line", "phase", 'constant "', '±"', 'known minus coordinates "')
+    head = said_each("session", "line", "phase", 'constant "', '±"', 'known minus coordinates "')
     return Table(head, tuple(rows), "lllrrr")
 
 
@@ -88,7 +102,9 @@ def _plot(constant: ConstantResult) -> Figure:
     names = [_name(item) for item in items]
     by_order = len(set(frame.x.ticks)) == len(items) and frame.x.decimals < 0
     parts = frame.axes(
-        "session" if by_order else "date (UTC)", "arcsec", names if by_order else _days(frame.x)
+        said("session") if by_order else said("date (UTC)"),
+        said("arcsec"),
+        names if by_order else _days(frame.x),
     )
     parts.append(frame.level(to_arcsec(centre) or 0.0, "mean"))
     for place, item in zip(_places(items), items, strict=True):
@@ -97,7 +113,7 @@ def _plot(constant: ConstantResult) -> Figure:
             sigma = to_arcsec(item.sigma) or 0.0
             parts += frame.bar(place, low=value - sigma, high=value + sigma, cap_mm=1.0)
         parts += frame.marks([(place, value)], "circle")
-    title = "Determinations of the constant with one sigma; dashed: the constant in force"
+    title = said("Determinations of the constant with one sigma; dashed: the constant in force")
     return frame.figure(title, parts)
 
 

@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from surveyapp.diagnosis.result import Diagnosis, Estimate, ModelResult
+from surveyapp.languages import said, said_each
 from surveyapp.report.blocks import Block, Figure, Heading, Paragraph, Table
 from surveyapp.report.numbers import plain
 from surveyapp.report.plots import Frame, axis
 from surveyapp_models.angles import AngleUnit, format_angle, wrap_two_pi
 
 CHANNEL_NAMES = {
-    "amplitude": "amplitude channel (side times residual)",
-    "midpoint": "midpoint channel (Schuler mean of the residuals)",
-    "residual": "residuals",
+    "amplitude": said("amplitude channel (side times residual)"),
+    "midpoint": said("midpoint channel (Schuler mean of the residuals)"),
+    "residual": said("residuals"),
 }
 
 
@@ -45,7 +46,9 @@ def blocks(
 def told(diagnosis: Diagnosis, words: Sequence[str]) -> tuple[Block, ...]:
     """Verdict and words of a diagnosis."""
     verdict = diagnosis.verdict.replace("_", " ")
-    heading = Heading(f"Diagnosis of {diagnosis.heading}: {verdict}")
+    heading = Heading(
+        said("Diagnosis of {heading}: {verdict}", heading=diagnosis.heading, verdict=verdict)
+    )
     return (heading, *(Paragraph(text) for text in words))
 
 
@@ -64,9 +67,9 @@ def candidates(diagnosis: Diagnosis) -> tuple[Block, ...]:
         for (verdict, reason), names in reasons.items()
     ]
     if diagnosis.lines:
-        found += [Heading("Spectral lines", 2), _lines(diagnosis)]
+        found += [Heading(said("Spectral lines"), 2), _lines(diagnosis)]
     if diagnosis.ambiguous:
-        found += [Heading("Not separable", 2), _ambiguous(diagnosis)]
+        found += [Heading(said("Not separable"), 2), _ambiguous(diagnosis)]
     return tuple(found)
 
 
@@ -90,7 +93,7 @@ def models(diagnosis: Diagnosis, unit: AngleUnit) -> Table:
     def row(name: str, model: ModelResult) -> tuple[str, ...]:
         return (
             name,
-            " + ".join(model.effects) or "base model",
+            " + ".join(model.effects) or said("base model"),
             plain(model.parameters, 0),
             small(model.rms),
             small(model.loo_rms),
@@ -98,19 +101,19 @@ def models(diagnosis: Diagnosis, unit: AngleUnit) -> Table:
             value_text(diagnosis, model.value, unit),
         )
 
-    rows = [row("before", diagnosis.before), row("after", diagnosis.after)]
+    rows = [row(said("before"), diagnosis.before), row(said("after"), diagnosis.after)]
     if diagnosis.ambiguous:
-        rows.append(row("after, best member", diagnosis.after_best))
+        rows.append(row(said("after, best member"), diagnosis.after_best))
     averaged = value_text(diagnosis, diagnosis.averaged, unit)
-    rows.append(("averaged over models", "", "", "", "", "", averaged))
+    rows.append((said("averaged over models"), "", "", "", "", "", averaged))
     head = (
-        "model",
-        "effects",
-        "param.",
-        f"rms {diagnosis.unit}",
-        "left out",
-        "second set",
-        "value and sigma",
+        said("model"),
+        said("effects"),
+        said("param."),
+        said("rms {unit}", unit=diagnosis.unit),
+        said("left out"),
+        said("second set"),
+        said("value and sigma"),
     )
     return Table(head, tuple(rows), align="llrrrrr", strong=frozenset({len(rows) - 1}))
 
@@ -120,7 +123,7 @@ def _figures(
 ) -> list[Figure]:
     title = CHANNEL_NAMES.get(name, name)
     figures = []
-    for state, series in (("before", before), ("after", after)):
+    for state, series in ((said("before"), before), (said("after"), after)):
         points = [(float(i + 1), value / diagnosis.scale) for i, value in enumerate(series)]
         if len(points) < 2:
             continue
@@ -129,7 +132,7 @@ def _figures(
             axis([y for _, y in points], about_zero=True),
             height_mm=40.0,
         )
-        parts = frame.axes("observation", diagnosis.unit)
+        parts = frame.axes(said("observation"), diagnosis.unit)
         parts.append(frame.level(0.0, "axis"))
         for x, y in points:
             parts += frame.bar(x, low=min(0.0, y), high=max(0.0, y))
@@ -150,7 +153,7 @@ def _candidates(diagnosis: Diagnosis) -> Table:
         for item in diagnosis.candidates
     )
     return Table(
-        ("candidate", "verdict", "p", "p of the family", "BIC behind the best"),
+        said_each("candidate", "verdict", "p", "p of the family", "BIC behind the best"),
         rows,
         align="llrrr",
         strong=frozenset(
@@ -167,17 +170,22 @@ def _lines(diagnosis: Diagnosis) -> Table:
             f"{line.amplitude / diagnosis.scale:.3g}",
             f"{line.sigma_amplitude / diagnosis.scale:.1g}",
             f"{line.false_alarm:.1g}",
-            line.effect or (f"left to {line.shared_with}" if line.shared_with else "unattributed"),
+            line.effect
+            or (
+                said("left to {shared_with}", shared_with=line.shared_with)
+                if line.shared_with
+                else said("unattributed")
+            ),
         )
         for line in diagnosis.lines
     )
     head = (
-        f"frequency {diagnosis.frequency_unit}",
-        "sigma",
-        f"amplitude {diagnosis.unit}",
-        "sigma",
-        "false alarm",
-        "cause",
+        said("frequency {frequency_unit}", frequency_unit=diagnosis.frequency_unit),
+        said("sigma"),
+        said("amplitude {unit}", unit=diagnosis.unit),
+        said("sigma"),
+        said("false alarm"),
+        said("cause"),
     )
     return Table(head, rows, align="rrrrrl")
 
@@ -191,4 +199,4 @@ def _ambiguous(diagnosis: Diagnosis) -> Table:
         )
         for item in diagnosis.ambiguous
     )
-    return Table(("any of", "BIC apart", "what would separate them"), rows)
+    return Table(said_each("any of", "BIC apart", "what would separate them"), rows)

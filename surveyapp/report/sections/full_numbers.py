@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from surveyapp.domain.results import OrientationResult
+from surveyapp.languages import said
 from surveyapp.report.blocks import Block, Heading, PageBreak, Paragraph, Table
 
 _NUMBERS_A_ROW = 24
@@ -31,13 +32,16 @@ def blocks(result: OrientationResult) -> tuple[Block, ...]:
         return ()
     return (
         PageBreak(),
-        Heading("Annex: the result in full precision"),
+        Heading(said("Annex: the result in full precision")),
         Paragraph(
-            "Every number of the result, unrounded, under the names of the JSON that the command "
-            "orient prints: angles in decimal degrees, small quantities in arc-seconds.",
+            said(
+                "Every number of the result, unrounded, under the names of the JSON that "
+                "the command orient prints: angles in decimal degrees, small quantities in "
+                "arc-seconds."
+            ),
             "small",
         ),
-        Table(("result", "numbers"), tuple(rows), "ll"),
+        Table((said("result"), said("numbers")), tuple(rows), "ll"),
     )
 
 

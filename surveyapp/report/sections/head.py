@@ -8,6 +8,7 @@ from surveyapp.domain.mine_grid import MineGrid
 from surveyapp.domain.project import Project, Station
 from surveyapp.domain.results import OrientationResult
 from surveyapp.domain.rulebook import RuleBook
+from surveyapp.languages import counted, said, said_each
 from surveyapp.report.blocks import Block, Heading, KeyValues, Paragraph, Table
 from surveyapp.report.numbers import NOTHING, plain, seconds
 from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, format_angle
@@ -22,32 +23,43 @@ def blocks(
     signed: tuple[tuple[str, str], ...] = (),
 ) -> tuple[Block, ...]:
     """Blocks of the head; ``signed`` is what it says of the closing, name and text."""
-    facts = [("project", project.name)]
-    facts += [("instrument", _instrument(project, item.id)) for item in project.instruments]
+    facts = [(said("project"), project.name)]
+    facts += [(said("instrument"), _instrument(project, item.id)) for item in project.instruments]
     facts += [
-        ("observer", ", ".join(observers(project)) or NOTHING),
-        ("date of observation", ", ".join(dates(project)) or NOTHING),
-        ("grid", _grid(project)),
-        ("unit of angles", str(project.angle_unit)),
-        ("rule book", NOTHING if rule_book is None else f"{rule_book.title} ({rule_book.id})"),
-        ("software", result.software),
-        ("sha256 of the input", result.input_sha256),
+        (said("observer"), ", ".join(observers(project)) or NOTHING),
+        (said("date of observation"), ", ".join(dates(project)) or NOTHING),
+        (said("grid"), _grid(project)),
+        (said("unit of angles"), str(project.angle_unit)),
+        (
+            said("rule book"),
+            NOTHING if rule_book is None else f"{rule_book.title} ({rule_book.id})",
+        ),
+        (said("software"), result.software),
+        (said("sha256 of the input"), result.input_sha256),
     ]
     met = sum(check.passed is True for check in result.checks)
     warned = sum(c.passed is False and not c.confirmed for c in result.checks)
     broken = sum(c.passed is False and c.confirmed for c in result.checks)
     still = sum(check.passed is None for check in result.checks)
-    verdict = f"{met} met, {broken} NOT MET, {warned} warnings, {still} open for want of data"
-    facts.append(("checks", verdict))
+    verdict = said(
+        "{met} met, {broken} NOT MET, {warned} warnings, {still} open for want of data",
+        met=met,
+        broken=broken,
+        warned=warned,
+        still=still,
+    )
+    facts.append((said("checks"), verdict))
     facts += signed
-    facts.insert(1, ("verdict", _verdict(broken, still)))
+    facts.insert(1, (said("verdict"), _verdict(broken, still)))
     return (
         KeyValues(tuple(facts)),
         *_stations(project),
         Paragraph(
-            "Azimuths and circle readings are clockwise. A suspended gyro gives the astronomic "
-            "azimuth; grid azimuth = gyro azimuth + constant - deflection - convergence - "
-            "arc-to-chord. Sigmas are one standard deviation.",
+            said(
+                "Azimuths and circle readings are clockwise. A suspended gyro gives the "
+                "astronomic azimuth; grid azimuth = gyro azimuth + constant - deflection - "
+                "convergence - arc-to-chord. Sigmas are one standard deviation."
+            ),
             "small",
         ),
     )
@@ -55,9 +67,11 @@ def blocks(
 
 def _verdict(broken: int, still: int) -> str:
     if broken:
-        return f"NOT MET: {broken} confirmed {'check' if broken == 1 else 'checks'}"
-    open_ones = f"; {still} open for want of data" if still else ""
-    return f"every confirmed check that could be answered is met{open_ones}"
+        return counted(
+            "NOT MET: {count} confirmed check", "NOT MET: {count} confirmed checks", count=broken
+        )
+    met = said("every confirmed check that could be answered is met")
+    return met + said("; {still} open for want of data", still=still) if still else met
 
 
 def observers(project: Project) -> list[str]:
@@ -79,27 +93,36 @@ def dates(project: Project) -> list[str]:
 
 def _instrument(project: Project, identity: str) -> str:
     item = project.instrument(identity)
-    serial = f", no. {item.serial}" if item.serial else ""
-    return f"{identity}: {item.card.title}{serial} (card {item.card.id}, {item.card.kind})"
+    serial = said(", no. {serial}", serial=item.serial) if item.serial else ""
+    return said(
+        "{identity}: {title}{serial} (card {id}, {kind})",
+        identity=identity,
+        title=item.card.title,
+        serial=serial,
+        id=item.card.id,
+        kind=item.card.kind,
+    )
 
 
 def _mine_grid(grid: MineGrid) -> str:
     """The mine's own grid in one line."""
-    base = "true north at the origin" if grid.base is None else " ".join(grid.base.split())
+    base = said("true north at the origin") if grid.base is None else " ".join(grid.base.split())
     turned = format_angle(grid.rotation % (2.0 * math.pi), AngleUnit.DMS, 1)
-    text = f"mine grid, north bears {turned} against {base[:_LONGEST_CRS]}"
+    text = said(
+        "mine grid, north bears {turned} against {base}", turned=turned, base=base[:_LONGEST_CRS]
+    )
     if grid.rotation_sigma > 0.0:
         text += f' +-{grid.rotation_sigma * RHO_ARCSEC:.1f}"'
     if grid.scale != 1.0:
-        text += f", scale {grid.scale:.8f}"
-    return f"{text}; origin {grid.e:.3f} {grid.n:.3f}"
+        text += said(", scale {scale:.8f}", scale=grid.scale)
+    return said("{text}; origin {e:.3f} {n:.3f}", text=text, e=grid.e, n=grid.n)
 
 
 def _grid(project: Project) -> str:
     if project.grid is not None:
         return _mine_grid(project.grid)
     if project.crs is None:
-        return "none: no convergence and no grid azimuth"
+        return said("none: no convergence and no grid azimuth")
     text = " ".join(project.crs.split())
     return text if len(text) <= _LONGEST_CRS else text[:_LONGEST_CRS] + "..."
 
@@ -108,14 +131,16 @@ def _stations(project: Project) -> tuple[Block, ...]:
     if not project.stations:
         return ()
     rows = tuple(_station(station) for station in project.stations)
-    columns = ("station", "E m", "N m", "lat deg", "lon deg", "h m", "fixed", 'xi "', 'eta "', '±"')
+    columns = said_each(
+        "station", "E m", "N m", "lat deg", "lon deg", "h m", "fixed", 'xi "', 'eta "', '±"'
+    )
     used = [
         index
         for index in range(len(columns))
         if index == 0 or any(row[index] not in (NOTHING, "") for row in rows)
     ]
     return (
-        Heading("Stations", 2),
+        Heading(said("Stations"), 2),
         Table(
             tuple(columns[i] for i in used),
             tuple(tuple(row[i] for i in used) for row in rows),
@@ -137,7 +162,7 @@ def _station(station: Station) -> tuple[str, ...]:
         degrees(station.latitude),
         degrees(station.longitude),
         plain(station.h, 3),
-        "yes" if station.fixed else "",
+        said("yes") if station.fixed else "",
         seconds(deflection.xi) if known else NOTHING,
         seconds(deflection.eta) if known else NOTHING,
         seconds(deflection.sigma, 1),

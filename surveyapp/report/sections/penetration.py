@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from surveyapp.domain.penetration import STEP_TITLES
 from surveyapp.domain.penetration_result import MissTest, Prediction
+from surveyapp.languages import said, said_each
 from surveyapp.report.blocks import (
     Block,
     Figure,
@@ -30,49 +31,69 @@ STEPS = 48
 
 def blocks(result: Prediction) -> tuple[Block, ...]:
     """Blocks of the section."""
-    found: list[Block] = [Heading("Breakthrough"), KeyValues(_facts(result)), _verdict(result)]
+    found: list[Block] = [
+        Heading(said("Breakthrough")),
+        KeyValues(_facts(result)),
+        _verdict(result),
+    ]
     figure = plan_figure(result)
     if figure is not None:
         found.append(figure)
-    found += [Heading("Budget at the meeting point", 2), _budget(result)]
-    found.append(Paragraph("1 sigma; the rows add in squares to the total.", "small"))
+    found += [Heading(said("Budget at the meeting point"), 2), _budget(result)]
+    found.append(Paragraph(said("1 sigma; the rows add in squares to the total."), "small"))
     if result.measured is not None:
-        found += [Heading("After the breakthrough", 2), *_measured(result.measured)]
-    found += [Heading("The six steps of the procedure", 2), _steps(result)]
+        found += [Heading(said("After the breakthrough"), 2), *_measured(result.measured)]
+    found += [Heading(said("The six steps of the procedure"), 2), _steps(result)]
     found += [Paragraph(f"{w.code}: {w.text}", "warning") for w in result.warnings]
     return tuple(found)
 
 
 def _facts(result: Prediction) -> tuple[tuple[str, str], ...]:
     sections = result.sectioned
-    facts = [("factor", f"{result.factor:g} ({result.factor_source})")]
+    facts = [(said("factor"), f"{result.factor:g} ({result.factor_source})")]
     if result.tolerance is not None:
-        sure = "" if result.tolerance.confirmed else ", not confirmed"
-        facts.append(("allowed by", f"{result.tolerance.source}{sure}"))
+        sure = "" if result.tolerance.confirmed else said(", not confirmed")
+        facts.append((said("allowed by"), f"{result.tolerance.source}{sure}"))
     if sections.lateral_m is not None:
-        why = "" if sections.valid else f"; does not hold here: {sections.why}"
-        facts.append(("sectioned formula", f"lateral {sections.lateral_m:.4f} m{why}"))
+        why = "" if sections.valid else said("; does not hold here: {why}", why=sections.why)
+        facts.append(
+            (
+                said("sectioned formula"),
+                said("lateral {lateral_m:.4f} m{why}", lateral_m=sections.lateral_m, why=why),
+            )
+        )
     if result.simulated is not None:
         runs = result.simulated
-        text = f"lateral {plain(runs.sigma.lateral_m, 4)} m over {runs.runs} runs, seed {runs.seed}"
-        facts.append(("simulated surveys", text))
+        text = said(
+            "lateral {lateral_m} m over {runs} runs, seed {seed}",
+            lateral_m=plain(runs.sigma.lateral_m, 4),
+            runs=runs.runs,
+            seed=runs.seed,
+        )
+        facts.append((said("simulated surveys"), text))
     ellipse = result.ellipse
-    axes = f"{ellipse.a_m * 1e3:.1f} x {ellipse.b_m * 1e3:.1f} mm"
-    facts.append(("ellipse", f"{axes}, {math.degrees(ellipse.azimuth):.1f}\N{DEGREE SIGN}"))
+    axes = said("{a_m:.1f} x {b_m:.1f} mm", a_m=ellipse.a_m * 1000.0, b_m=ellipse.b_m * 1000.0)
+    facts.append((said("ellipse"), f"{axes}, {math.degrees(ellipse.azimuth):.1f}\N{DEGREE SIGN}"))
     return tuple(facts)
 
 
 def _verdict(result: Prediction) -> Table:
     allowed = (None, None, None) if result.tolerance is None else result.tolerance.components()
     rows = []
-    names = ("lateral", "longitudinal", "vertical")
+    names = said_each("lateral", "longitudinal", "vertical")
     for name, sigma, limit in zip(names, result.sigma.components(), allowed, strict=True):
         value = None if sigma is None else result.factor * sigma
         met = NOTHING
         if limit is not None and value is not None:
-            met = "yes" if value <= limit * (1.0 + 1e-12) else "NO"
+            met = said("yes") if value <= limit * (1.0 + 1e-12) else said("NO")
         rows.append((name, plain(sigma, 4), plain(value, 4), plain(limit, 4), met))
-    head = ("component", "1 sigma m", f"x {result.factor:g} m", "allowed m", "met")
+    head = (
+        said("component"),
+        said("1 sigma m"),
+        said("x {factor:g} m", factor=result.factor),
+        said("allowed m"),
+        said("met"),
+    )
     return Table(head, tuple(rows), "lrrrl", strong=frozenset({0}))
 
 
@@ -80,7 +101,7 @@ def _budget(result: Prediction) -> Table:
     rows: list[tuple[str, ...]] = [
         (
             row.source.replace("_", " "),
-            row.heading or "common",
+            row.heading or said("common"),
             plain(row.lateral_m, 4),
             plain(row.longitudinal_m, 4),
             plain(row.vertical_m, 4),
@@ -88,19 +109,19 @@ def _budget(result: Prediction) -> Table:
         for row in result.budget
     ]
     sigma = result.sigma
-    rows.append(("total", "", *(plain(value, 4) for value in sigma.components())))
-    head = ("cause", "heading", "lateral m", "longitudinal m", "vertical m")
+    rows.append((said("total"), "", *(plain(value, 4) for value in sigma.components())))
+    head = said_each("cause", "heading", "lateral m", "longitudinal m", "vertical m")
     return Table(head, tuple(rows), "llrrr", strong=frozenset({len(rows) - 1}))
 
 
 def _measured(test: MissTest) -> list[Block]:
-    names = ("lateral", "longitudinal", "vertical")
+    names = said_each("lateral", "longitudinal", "vertical")
     facts = [
-        (f"{name}: miss / sigma", plain(value, 2, sign=True))
+        (said("{name}: miss / sigma", name=name), plain(value, 2, sign=True))
         for name, value in zip(names, test.t, strict=True)
     ]
-    facts.append(("chi-square", f"{test.chi2:.2f}, p = {test.p:.4f}"))
-    facts.append(("verdict", test.verdict.replace("_", " ")))
+    facts.append((said("chi-square"), said("{chi2:.2f}, p = {p:.4f}", chi2=test.chi2, p=test.p)))
+    facts.append((said("verdict"), test.verdict.replace("_", " ")))
     found: list[Block] = [KeyValues(tuple(facts))]
     if test.text:
         found.append(Paragraph(test.text))
@@ -114,7 +135,7 @@ def _measured(test: MissTest) -> list[Block]:
             )
             for item in test.candidates
         )
-        head = ("one cause alone", "component", "would be", "declared sigmas")
+        head = said_each("one cause alone", "component", "would be", "declared sigmas")
         found.append(Table(head, rows, "llrr"))
     shares = tuple(
         (
@@ -127,8 +148,10 @@ def _measured(test: MissTest) -> list[Block]:
         for share in test.distribution
     )
     if shares:
-        found.append(Paragraph("The miss distributed by least squares: the ends move by", "small"))
-        found.append(Table(("heading", "right m", "along m", "up m"), shares, "lrrr"))
+        found.append(
+            Paragraph(said("The miss distributed by least squares: the ends move by"), "small")
+        )
+        found.append(Table(said_each("heading", "right m", "along m", "up m"), shares, "lrrr"))
     return found
 
 
@@ -137,19 +160,23 @@ def _steps(result: Prediction) -> Table:
     for number, title in enumerate(STEP_TITLES, start=1):
         entries = [step for step in result.steps if step.id == number]
         if not entries:
-            rows.append((f"{number} {title}", "open", "", "", ""))
+            rows.append((f"{number} {title}", said("open"), "", "", ""))
         for step in entries:
             readings = ", ".join(
-                f"{name} {value:+.1f} mm"
+                said("{name} {value:+.1f} mm", name=name, value=value)
                 for name, value in (
-                    ("centre line", step.centre_line_mm),
-                    ("waist line", step.waist_line_mm),
+                    (said("centre line"), step.centre_line_mm),
+                    (said("waist line"), step.waist_line_mm),
                 )
                 if value is not None
             )
             note = "; ".join(part for part in (readings, step.note) if part)
-            rows.append((f"{number} {title}", step.done_at or "open", step.by, step.file, note))
-    return Table(("step", "done", "by", "file", "readings and notes"), tuple(rows), "lllll")
+            rows.append(
+                (f"{number} {title}", step.done_at or said("open"), step.by, step.file, note)
+            )
+    return Table(
+        said_each("step", "done", "by", "file", "readings and notes"), tuple(rows), "lllll"
+    )
 
 
 def plan_figure(result: Prediction) -> Figure | None:
@@ -183,9 +210,11 @@ def plan_figure(result: Prediction) -> Figure | None:
     parts.append(Polyline(curve, "data"))
     parts += _corridor(result, meeting, scale * enlarged)
     parts += _scale_bar(scale)
-    title = (
-        f"Plan, north up; thick: gyro sides; ellipse of {result.factor:g} sigma and the allowed "
-        f"lateral error {enlarged:g} times enlarged"
+    title = said(
+        "Plan, north up; thick: gyro sides; ellipse of {factor:g} sigma and the "
+        "allowed lateral error {enlarged:g} times enlarged",
+        factor=result.factor,
+        enlarged=enlarged,
     )
     return Figure(title, WIDTH_MM, HEIGHT_MM, tuple(parts))
 
@@ -241,5 +270,5 @@ def _scale_bar(scale: float) -> Sequence[Primitive]:
     return [
         Line((4.0, 4.0), (end, 4.0), "axis"),
         *ticks,
-        Label((end + 1.5, 3.2), f"{length:g} m", "start"),
+        Label((end + 1.5, 3.2), said("{length:g} m", length=length), "start"),
     ]

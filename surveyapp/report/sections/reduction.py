@@ -11,6 +11,7 @@ from surveyapp.domain.results import (
     TapeZeroResult,
     TargetResult,
 )
+from surveyapp.languages import said, said_each
 from surveyapp.report.blocks import Block, Figure, Heading, Paragraph, Table
 from surveyapp.report.numbers import (
     NOTHING,
@@ -31,7 +32,7 @@ def blocks(project: Project, result: OrientationResult) -> tuple[Block, ...]:
     found: list[Block] = []
     for item in result.sessions:
         found += _session(project, item)
-    return (Heading("Reduction"), *found) if found else ()
+    return (Heading(said("Reduction")), *found) if found else ()
 
 
 def _session(project: Project, item: SessionResult) -> list[Block]:
@@ -44,9 +45,11 @@ def _session(project: Project, item: SessionResult) -> list[Block]:
         if target.gyro_azimuth is not None:
             strong.add(len(rows) - 1)
     line = item.station if item.target is None else f"{item.station} - {item.target}"
-    head = ("step", "value", '±"', '95 % ±"', "where it comes from")
+    head = said_each("step", "value", '±"', '95 % ±"', "where it comes from")
     found: list[Block] = [
-        Heading(f"Session {item.id}: {line}, {item.method}", 2),
+        Heading(
+            said("Session {id}: {line}, {method}", id=item.id, line=line, method=item.method), 2
+        ),
         Table(head, tuple(rows), "lrrrl", strong=frozenset(strong)),
         *_effects(project, session),
         _figures_of_merit(item),
@@ -61,20 +64,31 @@ def _north(item: SessionResult, unit: AngleUnit) -> list[Row]:
     if north is None:
         return []
     rows: list[Row] = []
-    how = f"{item.estimator}, {item.points_used} points, {item.dof} degrees of freedom"
+    how = said(
+        "{estimator}, {points_used} points, {dof} degrees of freedom",
+        estimator=item.estimator,
+        points_used=item.points_used,
+        dof=item.dof,
+    )
     correction = item.tape_zero_correction
     before = north.value - (correction or 0.0)
     scale = _scale_steps(item, before, unit, how)
     rows += scale
     if item.tape_zero is not None or scale:
         how = "" if scale else how
-        rows.append(("= north as observed", direction(wrap_two_pi(before), unit), "", "", how))
+        rows.append(
+            (said("= north as observed"), direction(wrap_two_pi(before), unit), "", "", how)
+        )
     if item.tape_zero is not None:
         rows += _tape_zero(item.tape_zero, correction)
         how = ""
-    origin = f"sigma from {item.sigma_source}" if item.sigma_source else "no sigma: nothing tells"
+    origin = (
+        said("sigma from {sigma_source}", sigma_source=item.sigma_source)
+        if item.sigma_source
+        else said("no sigma: nothing tells")
+    )
     text = f"{how}; {origin}" if how else origin
-    rows.append(("= gyro north", *with_sigma(north, unit), text))
+    rows.append((said("= gyro north"), *with_sigma(north, unit), text))
     return rows
 
 
@@ -87,14 +101,14 @@ def _scale_steps(item: SessionResult, north: float, unit: AngleUnit, how: str) -
     middle, ratio = known["middle of the swing"], known["torsion ratio"]
     shift = wrap_pi(north - clamp)
     return [
-        ("middle of the swing B", f"{middle:+.4f} div", "", "", how),
-        ("clamped alidade", direction(clamp, unit), "", "", "circle reading"),
+        (said("middle of the swing B"), said("{middle:+.4f} div", middle=middle), "", "", how),
+        (said("clamped alidade"), direction(clamp, unit), "", "", said("circle reading")),
         (
-            "+ (1 + lambda) mu B",
+            said("+ (1 + lambda) mu B"),
             signed_angle(shift),
             "",
             "",
-            f"lambda {ratio:.4f} at this latitude, mu of the card",
+            said("lambda {ratio:.4f} at this latitude, mu of the card", ratio=ratio),
         ),
     ]
 
@@ -102,52 +116,90 @@ def _scale_steps(item: SessionResult, north: float, unit: AngleUnit, how: str) -
 def _tape_zero(zero: TapeZeroResult, correction: float | None) -> list[Row]:
     rows: list[Row] = []
     for name, value, means in (
-        ("before", zero.before_div, zero.schuler_before_div),
-        ("after", zero.after_div, zero.schuler_after_div),
+        (said("before"), zero.before_div, zero.schuler_before_div),
+        (said("after"), zero.after_div, zero.schuler_after_div),
     ):
         if value is not None:
             listing = ", ".join(plain(mean, 3, sign=True) for mean in means)
-            origin = f"Schuler means {listing} div" if means else "rest reading"
-            rows.append((f"tape zero {name}", f"{value:+.3f} div", "", "", origin))
+            origin = (
+                said("Schuler means {listing} div", listing=listing)
+                if means
+                else said("rest reading")
+            )
+            rows.append(
+                (
+                    said("tape zero {name}", name=name),
+                    said("{value:+.3f} div", value=value),
+                    "",
+                    "",
+                    origin,
+                )
+            )
     how = {
         "time": "interpolated in time to the middle of the run",
         "mean": "mean of before and after",
         "single": "the only one",
     }.get(zero.interpolation, zero.interpolation)
-    rows.append(("tape zero in force", f"{zero.value_div:+.3f} div", "", "", how))
+    rows.append(
+        (
+            said("tape zero in force"),
+            said("{value_div:+.3f} div", value_div=zero.value_div),
+            "",
+            "",
+            how,
+        )
+    )
     if correction is None or zero.coefficient is None:
-        text = "the card tells neither lambda nor a coefficient: not applied"
-        rows.append(("+ tape-zero correction", "not known", "", "", text))
+        text = said("the card tells neither lambda nor a coefficient: not applied")
+        rows.append((said("+ tape-zero correction"), said("not known"), "", "", text))
     else:
-        origin = f'{seconds(zero.coefficient)}" per division ({zero.coefficient_origin})'
-        rows.append(("+ tape-zero correction", signed_angle(correction), "", "", origin))
+        origin = said(
+            '{coefficient}" per division ({coefficient_origin})',
+            coefficient=seconds(zero.coefficient),
+            coefficient_origin=zero.coefficient_origin,
+        )
+        rows.append((said("+ tape-zero correction"), signed_angle(correction), "", "", origin))
     return rows
 
 
 def _target(session: OrientationSession, target: TargetResult, unit: AngleUnit) -> list[Row]:
     rows: list[Row] = []
-    name = target.target or "target"
-    for place, value in (("before", target.before), ("after", target.after)):
+    name = target.target or said("target")
+    for place, value in ((said("before"), target.before), (said("after"), target.after)):
         if value is not None:
-            origin = f"mean of the sights of {name}, as face left"
-            rows.append((f"sights {place}", direction(value, unit), "", "", origin))
+            origin = said("mean of the sights of {name}, as face left", name=name)
+            rows.append(
+                (said("sights {place}", place=place), direction(value, unit), "", "", origin)
+            )
     if target.collimation is not None:
-        origin = "half of face left minus face right; cancels in the mean of both"
-        rows.append(("collimation", signed_angle(target.collimation), "", "", origin))
+        origin = said("half of face left minus face right; cancels in the mean of both")
+        rows.append((said("collimation"), signed_angle(target.collimation), "", "", origin))
     if target.drift is not None:
-        origin = "sights after minus before; taken out linearly in time"
-        rows.append(("turning of the tripod", signed_angle(target.drift), "", "", origin))
+        origin = said("sights after minus before; taken out linearly in time")
+        rows.append((said("turning of the tripod"), signed_angle(target.drift), "", "", origin))
     if target.eccentric_correction or session.eccentric is not None:
         shift = signed_angle(target.eccentric_correction)
-        rows.append(("+ eccentric set-up", shift, "", "", _eccentric(session, unit)))
+        rows.append((said("+ eccentric set-up"), shift, "", "", _eccentric(session, unit)))
     if target.line_reading is not None:
         shown = with_sigma(target.line_reading, unit)
-        rows.append(("= line reading", *shown, f"{target.pointings} pointings of {name}"))
+        rows.append(
+            (
+                said("= line reading"),
+                *shown,
+                said("{pointings} pointings of {name}", pointings=target.pointings, name=name),
+            )
+        )
     if target.gyro_azimuth is not None:
-        origin = "line reading - gyro north"
+        origin = said("line reading - gyro north")
         if target.line_reading is None:
-            origin = "delivered by the instrument, mean of the rounds"
-        rows.append((f"= gyro azimuth to {name}", *with_sigma(target.gyro_azimuth, unit), origin))
+            origin = said("delivered by the instrument, mean of the rounds")
+        rows.append(
+            (
+                said("= gyro azimuth to {name}", name=name),
+                *with_sigma(target.gyro_azimuth, unit),
+                origin,
+            )
+        )
     return rows
 
 
@@ -155,9 +207,11 @@ def _eccentric(session: OrientationSession, unit: AngleUnit) -> str:
     item = session.eccentric
     if item is None:
         return ""
-    return (
-        f"{item.at} {item.distance_m:.3f} m beside its mark, "
-        f"mark in direction {direction(item.direction, unit)}"
+    return said(
+        "{at} {distance_m:.3f} m beside its mark, mark in direction {direction}",
+        at=item.at,
+        distance_m=item.distance_m,
+        direction=direction(item.direction, unit),
     )
 
 
@@ -170,28 +224,28 @@ def _effects(project: Project, session: OrientationSession) -> list[Block]:
         for effect in effects
         for name, value, sigma, unit in (effect.coefficients or (("", 0.0, 0.0, ""),))
     )
-    head = ("adopted effect", "coefficient", "value", "±", "unit", "adopted")
+    head = said_each("adopted effect", "coefficient", "value", "±", "unit", "adopted")
     return [Table(head, rows, "llrrll")]
 
 
 def _figures_of_merit(item: SessionResult) -> Table:
     rows = [
-        ("points used", str(item.points_used), ""),
-        ("degrees of freedom", str(item.dof), ""),
-        ("rms of the residuals", seconds(item.residual_rms), "arcsec"),
-        ("95 % interval", seconds(item.interval95), "arcsec"),
-        ("amplitude, first point", seconds(item.amplitude), "arcsec"),
-        ("amplitude ratio of successive points", plain(item.damping_per_half_swing, 5), ""),
-        ("period", plain(item.period_s, 2), "s"),
+        (said("points used"), str(item.points_used), ""),
+        (said("degrees of freedom"), str(item.dof), ""),
+        (said("rms of the residuals"), seconds(item.residual_rms), said("arcsec")),
+        (said("95 % interval"), seconds(item.interval95), said("arcsec")),
+        (said("amplitude, first point"), seconds(item.amplitude), said("arcsec")),
+        (said("amplitude ratio of successive points"), plain(item.damping_per_half_swing, 5), ""),
+        (said("period"), plain(item.period_s, 2), "s"),
     ]
     if item.reading_sigma is not None and item.method in ("tracking", "automatic"):
-        rows.append(("sigma of one reading", seconds(item.reading_sigma), "arcsec"))
+        rows.append((said("sigma of one reading"), seconds(item.reading_sigma), said("arcsec")))
     rows += [
         (name.replace("_", " "), _quantity(value, unit), unit)
         for name, value, unit in item.quantities
     ]
     known = tuple(row for row in rows if row[1] != NOTHING)
-    return Table(("quantity", "value", "unit"), known, "lrl")
+    return Table(said_each("quantity", "value", "unit"), known, "lrl")
 
 
 def _quantity(value: float, unit: str) -> str:
@@ -227,8 +281,15 @@ def _points(item: SessionResult, unit: AngleUnit) -> list[Block]:
                 schuler,
             )
         )
-    columns = ["point", "seq", "side", "elapsed s", "observed", "fitted"]
-    columns += ["residual div" if scale else 'residual "', "Schuler mean"]
+    columns = [
+        said("point"),
+        said("seq"),
+        said("side"),
+        said("elapsed s"),
+        said("observed"),
+        said("fitted"),
+    ]
+    columns += [said("residual div") if scale else said('residual "'), said("Schuler mean")]
     used = [i for i in range(len(columns)) if any(row[i] not in ("", NOTHING) for row in rows)]
     table = Table(
         tuple(columns[i] for i in used),
@@ -245,7 +306,7 @@ def _plots(item: SessionResult) -> list[Figure]:
     if len(item.points) > 2 and item.method != "automatic":
         figures.append(_scale_swing(item) if scale else _swing(item))
     if len(residuals) > 1:
-        factor, unit = (1.0, "div") if scale else (RHO_ARCSEC, "arcsec")
+        factor, unit = (1.0, said("div")) if scale else (RHO_ARCSEC, said("arcsec"))
         points = [(x, y * factor) for x, y in residuals]
         figures.append(_residuals(item, points, unit))
     return figures
@@ -264,12 +325,12 @@ def _swing(item: SessionResult) -> Figure:
     frame = Frame(
         axis([x for x, _ in observed], count=10), axis([y for _, y in observed], about_zero=True)
     )
-    parts = frame.axes("turning point", "arcmin from gyro north as observed")
+    parts = frame.axes(said("turning point"), said("arcmin from gyro north as observed"))
     parts.append(frame.level(0.0, "mean"))
     if len(fitted) > 1:
         parts.append(frame.curve(half_wave(fitted), "data"))
     parts += frame.marks(observed, "circle")
-    return frame.figure("Swing: circles observed, line fitted", parts)
+    return frame.figure(said("Swing: circles observed, line fitted"), parts)
 
 
 def _scale_swing(item: SessionResult) -> Figure:
@@ -277,14 +338,14 @@ def _scale_swing(item: SessionResult) -> Figure:
     observed = [(float(p.index + 1), p.observed) for p in item.points]
     fitted = [(float(p.index + 1), p.fitted) for p in item.points if p.fitted is not None]
     frame = Frame(axis([x for x, _ in observed], count=10), axis([y for _, y in observed]))
-    parts = frame.axes("turning point", "divisions")
+    parts = frame.axes(said("turning point"), said("divisions"))
     middle = {name: value for name, value, _ in item.quantities}.get("middle of the swing")
     if middle is not None:
         parts.append(frame.level(middle, "mean"))
     if len(fitted) > 1:
         parts.append(frame.curve(half_wave(fitted), "data"))
     parts += frame.marks(observed, "circle")
-    title = "Swing on the scale: circles observed, line fitted; dashed: its middle"
+    title = said("Swing on the scale: circles observed, line fitted; dashed: its middle")
     return frame.figure(title, parts)
 
 
@@ -296,12 +357,14 @@ def _residuals(item: SessionResult, points: list[tuple[float, float]], unit: str
     frame = Frame(
         axis([x for x, _ in points], count=10), axis(values, about_zero=True), height_mm=45.0
     )
-    parts = frame.axes("point", unit)
+    parts = frame.axes(said("point"), unit)
     parts.append(frame.level(0.0, "axis"))
     if sigma:
         parts += [frame.level(2.0 * sigma, "limit"), frame.level(-2.0 * sigma, "limit")]
     for x, y in points:
         parts += frame.bar(x, low=min(0.0, y), high=max(0.0, y))
     parts += frame.marks(points, "dot")
-    title = "Residuals; dashed: twice the sigma of one reading" if sigma else "Residuals"
+    title = (
+        said("Residuals; dashed: twice the sigma of one reading") if sigma else said("Residuals")
+    )
     return frame.figure(title, parts)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from surveyapp.languages import said
 from surveyapp.report.blocks import Block, Heading, KeyValues, Paragraph
 
 if TYPE_CHECKING:
@@ -18,21 +19,29 @@ def blocks(seals: Sequence[SealShown]) -> tuple[Block, ...]:
     facts: list[tuple[str, str]] = []
     for shown in seals:
         facts += [
-            ("closed", f"session {shown.session}" if shown.session else "the project"),
-            ("closed at", shown.at),
-            ("closed by", shown.by or "-"),
-            ("seal", shown.seal),
-            ("sha256 of the files", shown.files or "-"),
+            (
+                said("closed"),
+                said("session {session}", session=shown.session)
+                if shown.session
+                else said("the project"),
+            ),
+            (said("closed at"), shown.at),
+            (said("closed by"), shown.by or "-"),
+            (said("seal"), shown.seal),
+            (said("sha256 of the files"), shown.files or "-"),
         ]
     return (
-        Heading("Closing"),
+        Heading(said("Closing")),
         KeyValues(tuple(facts)),
         Paragraph(
-            "The seal is the head of the ledger's hash chain at this closing; the closing holds "
-            "the sha256 of what it closes: project.toml or the session's table, books, own cards "
-            "and rule books, logs; of a session also stations, instrument, settings and "
-            f"calibrations. surveyapp check DIR --seal {seals[0].seal} tells whether all of it is "
-            "as it was signed.",
+            said(
+                "The seal is the head of the ledger's hash chain at this closing; the "
+                "closing holds the sha256 of what it closes: project.toml or the session's "
+                "table, books, own cards and rule books, logs; of a session also stations, "
+                "instrument, settings and calibrations. surveyapp check DIR --seal {seal} "
+                "tells whether all of it is as it was signed.",
+                seal=seals[0].seal,
+            ),
             "small",
         ),
     )

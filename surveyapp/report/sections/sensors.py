@@ -10,6 +10,7 @@ from itertools import chain
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.noise import AllanChannel, AllanResult
 from surveyapp.domain.project import ResultWarning
+from surveyapp.languages import said, said_each
 from surveyapp.report.blocks import Block, Figure, Heading, KeyValues, Paragraph, Table
 from surveyapp.report.numbers import NOTHING, four_digits
 from surveyapp.report.plots import Axis, Frame
@@ -20,7 +21,7 @@ DIGEST_SHOWN = 16
 
 def title_of(identity: str) -> str:
     """Heading of the section of a log."""
-    return f"Sensor log {identity}"
+    return said("Sensor log {identity}", identity=identity)
 
 
 def calibration_blocks(identity: str, result: Calibration) -> tuple[Block, ...]:
@@ -33,13 +34,13 @@ def calibration_body(result: Calibration) -> tuple[Block, ...]:
     """The same without the heading."""
     found: list[Block] = [_facts(result), _parameters(result)]
     if result.models:
-        found += [Heading("Models compared", 2), _models(result)]
+        found += [Heading(said("Models compared"), 2), _models(result)]
     if not result.met:
-        text = "Not determined, refused or inconsistent: no sensor card comes of this log."
+        text = said("Not determined, refused or inconsistent: no sensor card comes of this log.")
         found.append(Paragraph(text, "warning"))
     if result.geometry.undetermined:
         names = ", ".join(result.geometry.undetermined)
-        found.append(Paragraph(f"Not determined: {names}.", "warning"))
+        found.append(Paragraph(said("Not determined: {names}.", names=names), "warning"))
     return (*found, *_warnings(result.warnings))
 
 
@@ -47,7 +48,12 @@ def allan_blocks(identity: str, result: AllanResult) -> tuple[Block, ...]:
     """Blocks of the noise of one log: for every column a table, a plot and the coefficients."""
     found: list[Block] = [Heading(title_of(identity))]
     for channel in result.channels:
-        text = f"Allan deviation of {channel.name}, {channel.n} samples at {channel.rate_hz:g} Hz"
+        text = said(
+            "Allan deviation of {name}, {n} samples at {rate_hz:g} Hz",
+            name=channel.name,
+            n=channel.n,
+            rate_hz=channel.rate_hz,
+        )
         found += [Heading(text, 2), deviations(channel), *allan_figures(channel)]
         found.append(coefficients(channel))
     return (*found, *_warnings(result.warnings))
@@ -57,23 +63,32 @@ def _facts(result: Calibration) -> KeyValues:
     geometry = result.geometry
     words: list[str] = [geometry.verdict]
     if geometry.coverage is not None:
-        words.append(f"coverage {geometry.coverage:.0%}")
+        words.append(said("coverage {coverage:.0%}", coverage=geometry.coverage))
     if geometry.heading_sigma_deg is not None:
-        words.append(f"heading sigma {geometry.heading_sigma_deg:.3g} degrees")
+        words.append(
+            said(
+                "heading sigma {heading_sigma_deg:.3g} degrees",
+                heading_sigma_deg=geometry.heading_sigma_deg,
+            )
+        )
     if geometry.condition is not None:
-        words.append(f"condition {geometry.condition:.3g}")
+        words.append(said("condition {condition:.3g}", condition=geometry.condition))
     pairs = [
-        ("calibration", f"{result.kind}, {result.n} rows"),
-        ("sha256 of the log", result.sha256[:DIGEST_SHOWN] or NOTHING),
-        ("geometry", ", ".join(words)),
+        (said("calibration"), said("{kind}, {n} rows", kind=result.kind, n=result.n)),
+        (said("sha256 of the log"), result.sha256[:DIGEST_SHOWN] or NOTHING),
+        (said("geometry"), ", ".join(words)),
     ]
-    for name, misfit in (("rms before", result.before), ("rms after", result.after)):
+    for name, misfit in ((said("rms before"), result.before), (said("rms after"), result.after)):
         of = f" ({misfit.of})" if misfit.of else ""
         pairs.append((name, f"{four_digits(misfit.rms)} {misfit.unit}{of}"))
     held = result.held_out
     if held is not None:
-        values = f"{four_digits(held.before)} before, {four_digits(held.after)} after"
-        pairs.append(("left out", f"{values} {held.unit}: {held.scheme}"))
+        values = said(
+            "{before} before, {after} after",
+            before=four_digits(held.before),
+            after=four_digits(held.after),
+        )
+        pairs.append((said("left out"), f"{values} {held.unit}: {held.scheme}"))
     return KeyValues(tuple(pairs))
 
 
@@ -82,7 +97,7 @@ def _parameters(result: Calibration) -> Table:
         (item.name.replace("_", " "), four_digits(item.value), four_digits(item.sigma), item.unit)
         for item in result.parameters
     )
-    return Table(("parameter", "value", "\N{PLUS-MINUS SIGN}", "unit"), rows, "lrrl")
+    return Table(said_each("parameter", "value", "±", "unit"), rows, "lrrl")
 
 
 def _models(result: Calibration) -> Table:
@@ -91,12 +106,12 @@ def _models(result: Calibration) -> Table:
             model.id.replace("_", " "),
             four_digits(model.rms),
             four_digits(model.held_out_rms),
-            "chosen" if model.chosen else "",
+            said("chosen") if model.chosen else "",
         )
         for model in result.models
     )
     chosen = frozenset(i for i, model in enumerate(result.models) if model.chosen)
-    return Table(("model", "rms", "left out", ""), rows, "lrrl", strong=chosen)
+    return Table(said_each("model", "rms", "left out", ""), rows, "lrrl", strong=chosen)
 
 
 def deviations(channel: AllanChannel) -> Table:
@@ -107,7 +122,16 @@ def deviations(channel: AllanChannel) -> Table:
             channel.taus_s, channel.deviation, channel.low, channel.high, strict=True
         )
     )
-    return Table(("time s", f"deviation {channel.unit}", "95 % from", "to"), rows, "rrrr")
+    return Table(
+        (
+            said("time s"),
+            said("deviation {unit}", unit=channel.unit),
+            said("95 % from"),
+            said("to"),
+        ),
+        rows,
+        "rrrr",
+    )
 
 
 def coefficients(channel: AllanChannel) -> Table:
@@ -122,7 +146,7 @@ def coefficients(channel: AllanChannel) -> Table:
         )
         for item in channel.coefficients
     )
-    head = ("coefficient", "value", "\N{PLUS-MINUS SIGN}", "unit", "why not")
+    head = said_each("coefficient", "value", "±", "unit", "why not")
     return Table(head, rows, "lrrll")
 
 
@@ -145,12 +169,16 @@ def allan_figures(channel: AllanChannel) -> tuple[Figure, ...]:
     up, _ = _decades(list(chain.from_iterable((low, high) for _, low, high in bars)))
     frame = Frame(across, up)
     curve = [(x, y) for x, y, *_ in points]
-    label = f"lg of the deviation [{channel.unit}]"
-    parts = frame.axes("averaging time [s]", label, x_names)
+    label = said("lg of the deviation [{unit}]", unit=channel.unit)
+    parts = frame.axes(said("averaging time [s]"), label, x_names)
     for x, low, high in bars:
         parts += frame.bar(x, low=low, high=high, cap_mm=0.8)
     parts += [frame.curve(curve, "data"), *frame.marks(curve, "dot")]
-    return (frame.figure(f"Allan deviation of {channel.name} with 95 % interval", parts),)
+    return (
+        frame.figure(
+            said("Allan deviation of {name} with 95 % interval", name=channel.name), parts
+        ),
+    )
 
 
 def _decades(values: Sequence[float]) -> tuple[Axis, list[str]]:

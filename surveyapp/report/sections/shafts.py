@@ -4,51 +4,68 @@ from __future__ import annotations
 
 from surveyapp.domain.shaft import CHECK_IDS
 from surveyapp.domain.shaft_result import ShaftOrientation, ShaftResult, SideAzimuth
+from surveyapp.languages import said, said_each
 from surveyapp.report.blocks import Block, Heading, Paragraph, Table
 from surveyapp.report.numbers import NOTHING, direction, plain
 from surveyapp_models.angles import RHO_ARCSEC, AngleUnit
 
-MET = {True: "yes", False: "NO", None: NOTHING}
+MET = {True: said("yes"), False: said("NO"), None: NOTHING}
 
 
 def blocks(result: ShaftResult, *, unit: AngleUnit) -> tuple[Block, ...]:
     """Blocks of every shaft."""
     found: list[Block] = []
     for shaft in result.shafts:
-        found += [Heading(f"Shaft {shaft.id}"), _azimuths(shaft, unit)]
+        found += [Heading(said("Shaft {id}", id=shaft.id)), _azimuths(shaft, unit)]
         if shaft.combined.consistent is False:
-            text = "Wires and gyro contradict each other: nothing is averaged."
+            text = said("Wires and gyro contradict each other: nothing is averaged.")
             found.append(Paragraph(text, "warning"))
-        found += [Heading("Checks of the shaft", 2), _checks(shaft)]
-        text = f"The plumb lines converge by {shaft.convergence_mm:.2f} mm over the depth."
+        found += [Heading(said("Checks of the shaft"), 2), _checks(shaft)]
+        text = said(
+            "The plumb lines converge by {convergence_mm:.2f} mm over the depth.",
+            convergence_mm=shaft.convergence_mm,
+        )
         found.append(Paragraph(text, "small"))
-        found += [Heading("Rest of the wires", 2), _wires(shaft)]
-        found += [Heading("Error of one orientation through the shaft", 2), _budget(shaft)]
-        found += [Heading("Checks of the plumbing", 2), _plumbing(shaft)]
+        found += [Heading(said("Rest of the wires"), 2), _wires(shaft)]
+        found += [Heading(said("Error of one orientation through the shaft"), 2), _budget(shaft)]
+        found += [Heading(said("Checks of the plumbing"), 2), _plumbing(shaft)]
     found += [Paragraph(f"{w.code}: {w.text}", "warning") for w in result.warnings]
     return tuple(found)
 
 
 def _azimuths(shaft: ShaftOrientation, unit: AngleUnit) -> Table:
     joint = shaft.combined
-    chi = NOTHING if joint.chi2 is None else f"{joint.chi2:.2f} ({joint.dof} dof)"
+    chi = (
+        NOTHING
+        if joint.chi2 is None
+        else said("{chi2:.2f} ({dof} dof)", chi2=joint.chi2, dof=joint.dof)
+    )
 
     def row(name: str, value: SideAzimuth | None, note: str = "") -> tuple[str, ...]:
         if value is None:
             return name, NOTHING, NOTHING, note
         return name, direction(value.value, unit), plain(value.sigma * RHO_ARCSEC, 1), note
 
-    rows = [row("wires", shaft.azimuth), row("gyro", shaft.gyro)]
+    rows = [row(said("wires"), shaft.azimuth), row(said("gyro"), shaft.gyro)]
     if shaft.gyro is not None:
-        rows.append(row("together", joint.azimuth, f"chi-square {chi}"))
-    head = (f"{shaft.at} - {shaft.to} by", "grid azimuth", '\N{PLUS-MINUS SIGN}"', "")
+        rows.append(row(said("together"), joint.azimuth, said("chi-square {chi}", chi=chi)))
+    head = (
+        said("{at} - {to} by", at=shaft.at, to=shaft.to),
+        said("grid azimuth"),
+        '\N{PLUS-MINUS SIGN}"',
+        "",
+    )
     return Table(head, tuple(rows), "lrrl", strong=frozenset({len(rows) - 1}))
 
 
 def _checks(shaft: ShaftOrientation) -> Table:
     rows = [
         (
-            f"distance of the wires from {item.station}, {item.place}",
+            said(
+                "distance of the wires from {station}, {place}",
+                station=item.station,
+                place=item.place,
+            ),
             f"{item.f_mm:+.2f}",
             f"{item.limit_mm:.2f}",
             MET[item.passed],
@@ -58,17 +75,17 @@ def _checks(shaft: ShaftOrientation) -> Table:
     if shaft.scale is not None:
         scale = shaft.scale
         values = (f"{scale.misclosure_mm:+.2f}", f"{scale.limit_mm:.2f}", MET[scale.passed])
-        rows.append(("distance of the shafts, above against below", *values))
+        rows.append((said("distance of the shafts, above against below"), *values))
     depth = shaft.depth
     rows.append(
         (
-            f"depth {depth.m:.4f} m by two determinations",
+            said("depth {m:.4f} m by two determinations", m=depth.m),
             plain(depth.difference_mm, 2),
             f"{depth.limit_mm:.2f}",
             MET[depth.passed],
         )
     )
-    return Table(("check", "mm", "limit mm", "met"), tuple(rows), "lrrl")
+    return Table(said_each("check", "mm", "limit mm", "met"), tuple(rows), "lrrl")
 
 
 def _wires(shaft: ShaftOrientation) -> Table:
@@ -84,7 +101,9 @@ def _wires(shaft: ShaftOrientation) -> Table:
         for wire in shaft.wires
     )
     sign = "\N{PLUS-MINUS SIGN}"
-    return Table(("wire", "x mm", sign, "y mm", sign, "period s"), rows, "lrrrrr")
+    return Table(
+        (said("wire"), said("x mm"), sign, said("y mm"), sign, said("period s")), rows, "lrrrrr"
+    )
 
 
 def _budget(shaft: ShaftOrientation) -> Table:
@@ -92,7 +111,7 @@ def _budget(shaft: ShaftOrientation) -> Table:
         (line.source.replace("_", " "), plain(line.sigma * RHO_ARCSEC, 2), f"{line.share:.0%}")
         for line in shaft.budget
     )
-    return Table(("source", '\N{PLUS-MINUS SIGN}"', "share"), rows, "lrr")
+    return Table(said_each("source", '±"', "share"), rows, "lrr")
 
 
 def _plumbing(shaft: ShaftOrientation) -> Table:
@@ -101,8 +120,8 @@ def _plumbing(shaft: ShaftOrientation) -> Table:
     for name in CHECK_IDS:
         check = recorded.get(name)
         if check is None:
-            rows.append((name.replace("_", " "), "open", "", ""))
+            rows.append((name.replace("_", " "), said("open"), "", ""))
         else:
-            done = check.done_at or "open"
+            done = check.done_at or said("open")
             rows.append((name.replace("_", " "), done, check.by, check.note))
-    return Table(("check", "done", "by", "note"), tuple(rows), "llll")
+    return Table(said_each("check", "done", "by", "note"), tuple(rows), "llll")

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from surveyapp.domain.adjustment import AdjustedObservation, AdjustmentResult, Closure
 from surveyapp.domain.observations import ObservationKind
+from surveyapp.languages import said, said_each
 from surveyapp.report.blocks import Block, Heading, KeyValues, Paragraph, Table
 from surveyapp.report.numbers import NOTHING, direction, plain
 from surveyapp.report.plan import plan_figure
@@ -31,20 +32,23 @@ def blocks(
     title : str
         Instead of ``Traverse NAME``.
     """
-    found: list[Block] = [Heading(title or f"Traverse {name}"), KeyValues(_facts(result))]
+    found: list[Block] = [
+        Heading(title or said("Traverse {name}", name=name)),
+        KeyValues(_facts(result)),
+    ]
     plane = [item for item in result.closures if item.kind != "height"]
     heights = [item for item in result.closures if item.kind == "height"]
     if plane:
-        found += [Heading("Closures before the adjustment", 2), _closures(plane)]
+        found += [Heading(said("Closures before the adjustment"), 2), _closures(plane)]
     if heights:
-        found += [Heading("Height closures before the adjustment", 2), _levelling(heights)]
-    found += [Heading("Points", 2), _points(result)]
+        found += [Heading(said("Height closures before the adjustment"), 2), _levelling(heights)]
+    found += [Heading(said("Points"), 2), _points(result)]
     plan = plan_figure(result)
     if plan is not None:
         found.append(plan)
     if result.shared:
-        found += [Heading("Constants and orientations", 2), _shared(result, unit)]
-    found += [Heading("Observations", 2), *_observations(result, unit)]
+        found += [Heading(said("Constants and orientations"), 2), _shared(result, unit)]
+    found += [Heading(said("Observations"), 2), *_observations(result, unit)]
     found += [*_suspects(result), *_removals(result)]
     found += [Paragraph(f"{w.code}: {w.text}", "warning") for w in result.warnings]
     return tuple(found)
@@ -59,17 +63,20 @@ def _suspects(result: AdjustmentResult) -> tuple[Block, ...]:
             item.description,
             plain(item.standardized, 2, sign=True),
             plain(item.estimated_error * (RHO_ARCSEC if item.angular else MM), 1, sign=True),
-            '"' if item.angular else "mm",
+            '"' if item.angular else said("mm"),
         )
         for item in test.suspects
     )
-    text = (
-        f"|v/sigma| above {plain(test.critical, 2)}, level {test.level:g} for all {test.tests} "
-        "tests together; only the first is accused."
+    text = said(
+        "|v/sigma| above {critical}, level {level:g} for all {tests} tests "
+        "together; only the first is accused.",
+        critical=plain(test.critical, 2),
+        level=test.level,
+        tests=test.tests,
     )
-    head = ("observation", "v/sigma", "error", "unit")
+    head = said_each("observation", "v/sigma", "error", "unit")
     return (
-        Heading("Suspected of a gross error", 2),
+        Heading(said("Suspected of a gross error"), 2),
         Table(head, rows, "lrrl", strong=frozenset({0})),
         Paragraph(text, "small"),
     )
@@ -82,47 +89,89 @@ def _removals(result: AdjustmentResult) -> tuple[Block, ...]:
             item.description,
             plain(item.sum_of_squares, 2),
             plain(item.ratio, 3),
-            {True: "met", False: "NOT MET", None: NOTHING}[item.passed],
+            {True: said("met"), False: said("NOT MET"), None: NOTHING}[item.passed],
             str(item.suspects),
         )
         for item in result.removals
     )
     if not rows:
         return ()
-    head = ("without", "v'Pv", "ratio", "global test", "suspects")
-    title = "The adjustment without one observation, the removal that helps most first"
+    head = said_each("without", "v'Pv", "ratio", "global test", "suspects")
+    title = said("The adjustment without one observation, the removal that helps most first")
     return (Heading(title, 2), Table(head, rows, "lrrlr"))
 
 
 def _facts(result: AdjustmentResult) -> tuple[tuple[str, str], ...]:
     test = result.global_test
     facts = [
-        ("observations", str(len(result.observations))),
+        (said("observations"), str(len(result.observations))),
         (
-            "degrees of freedom",
-            f"{result.dof} (rank defect {result.defect}, {result.iterations} iterations)",
+            said("degrees of freedom"),
+            said(
+                "{dof} (rank defect {defect}, {iterations} iterations)",
+                dof=result.dof,
+                defect=result.defect,
+                iterations=result.iterations,
+            ),
         ),
-        ("sigma0", f"{plain(result.sigma0, 4)} (a priori {test.sigma_apriori:g})"),
-        ("sigmas in this section", "a priori" if result.sigma_scale == 1.0 else "from residuals"),
+        (
+            said("sigma0"),
+            said(
+                "{sigma0} (a priori {sigma_apriori:g})",
+                sigma0=plain(result.sigma0, 4),
+                sigma_apriori=test.sigma_apriori,
+            ),
+        ),
+        (
+            said("sigmas in this section"),
+            said("a priori") if result.sigma_scale == 1.0 else said("from residuals"),
+        ),
     ]
     if test.ratio is not None:
-        verdict = {True: "met", False: "NOT MET", None: "open"}[test.passed]
-        bounds = f"{plain(test.lower, 3)} to {plain(test.upper, 3)} at {test.probability:.0%}"
-        facts.append(("global test", f"sigma0 / a priori = {test.ratio:.3f}, {bounds}: {verdict}"))
-    else:
-        facts.append(("global test", "nothing controls this traverse"))
-    snoop = result.snooping
-    if snoop.critical is not None:
-        worst = "nothing is accused"
-        if snoop.suspects:
-            first = snoop.suspects[0]
-            size = first.estimated_error * (RHO_ARCSEC if first.angular else MM)
-            what = '"' if first.angular else " mm"
-            worst = f"{first.description} stands off by {size:+.1f}{what}"
-        facts.append(
-            ("data snooping", f"limit {snoop.critical:.2f} ({snoop.tests} tests): {worst}")
+        verdict = {True: said("met"), False: said("NOT MET"), None: said("open")}[test.passed]
+        bounds = said(
+            "{lower} to {upper} at {probability:.0%}",
+            lower=plain(test.lower, 3),
+            upper=plain(test.upper, 3),
+            probability=test.probability,
         )
-    return tuple(facts)
+        facts.append(
+            (
+                said("global test"),
+                said(
+                    "sigma0 / a priori = {ratio:.3f}, {bounds}: {verdict}",
+                    ratio=test.ratio,
+                    bounds=bounds,
+                    verdict=verdict,
+                ),
+            )
+        )
+    else:
+        facts.append((said("global test"), said("nothing controls this traverse")))
+    return (*facts, *_snooping(result))
+
+
+def _snooping(result: AdjustmentResult) -> list[tuple[str, str]]:
+    """What data snooping accuses, if anything can be tested."""
+    snoop = result.snooping
+    if snoop.critical is None:
+        return []
+    worst = said("nothing is accused")
+    if snoop.suspects:
+        first = snoop.suspects[0]
+        worst = said(
+            "{description} stands off by {size:+.1f}{what}",
+            description=first.description,
+            size=first.estimated_error * (RHO_ARCSEC if first.angular else MM),
+            what='"' if first.angular else " mm",
+        )
+    text = said(
+        "limit {critical:.2f} ({tests} tests): {worst}",
+        critical=snoop.critical,
+        tests=snoop.tests,
+        worst=worst,
+    )
+    return [(said("data snooping"), text)]
 
 
 def _levelling(closures: Sequence[Closure]) -> Table:
@@ -134,11 +183,11 @@ def _levelling(closures: Sequence[Closure]) -> Table:
             plain(None if item.height_m is None else item.height_m * MM, 2, sign=True),
             plain(item.height_per_sqrt_km, 2, sign=True),
             plain(None if item.height_allowed_m is None else item.height_allowed_m * MM, 2),
-            {True: "yes", False: "NO", None: NOTHING}[item.passed],
+            {True: said("yes"), False: said("NO"), None: NOTHING}[item.passed],
         )
         for item in closures
     ]
-    head = ("route", "km", "height mm", "mm per root km", "allowed mm", "3 sigma")
+    head = said_each("route", "km", "height mm", "mm per root km", "allowed mm", "3 sigma")
     return _filled(head, rows, "lrrrrl")
 
 
@@ -156,18 +205,10 @@ def _closures(closures: Sequence[Closure]) -> Table:
                 plain(None if item.angular_sigma is None else item.angular_sigma * RHO_ARCSEC),
                 plain(None if item.linear_m is None else item.linear_m * MM),
                 relative,
-                {True: "yes", False: "NO", None: NOTHING}[item.passed],
+                {True: said("yes"), False: said("NO"), None: NOTHING}[item.passed],
             )
         )
-    head = (
-        "kind",
-        "route",
-        'angles "',
-        '\N{PLUS-MINUS SIGN}"',
-        "place mm",
-        "relative",
-        "3 sigma",
-    )
+    head = said_each("kind", "route", 'angles "', '±"', "place mm", "relative", "3 sigma")
     return _filled(head, rows, "llrrrrl")
 
 
@@ -191,25 +232,19 @@ def _points(result: AdjustmentResult) -> Table:
     rows = []
     for p in result.points:
         sigmas = [None if s is None else s * MM for s in (p.sigma_e, p.sigma_n, p.sigma_h)]
-        shown = ["fixed" if s == 0.0 else plain(s) for s in sigmas]
+        shown = [said("fixed") if s == 0.0 else plain(s) for s in sigmas]
         ellipse = NOTHING
         if p.ellipse is not None:
             e = p.ellipse
-            ellipse = (
-                f"{e.a_m * MM:.1f} x {e.b_m * MM:.1f}, {math.degrees(e.azimuth):.0f}\N{DEGREE SIGN}"
+            ellipse = said(
+                "{a_m:.1f} x {b_m:.1f}, {azimuth:.0f}°",
+                a_m=e.a_m * MM,
+                b_m=e.b_m * MM,
+                azimuth=math.degrees(e.azimuth),
             )
         values = [plain(x, 4) for x in (p.e, p.n, p.h)]
         rows.append((p.name, *values, *shown, ellipse))
-    head = (
-        "point",
-        "E m",
-        "N m",
-        "H m",
-        "\N{PLUS-MINUS SIGN} E mm",
-        "\N{PLUS-MINUS SIGN} N mm",
-        "\N{PLUS-MINUS SIGN} H mm",
-        "ellipse mm",
-    )
+    head = said_each("point", "E m", "N m", "H m", "± E mm", "± N mm", "± H mm", "ellipse mm")
     return _filled(head, rows, "lrrrrrrr")
 
 
@@ -222,7 +257,7 @@ def _shared(result: AdjustmentResult, unit: AngleUnit) -> Table:
             else f'{item.value * RHO_ARCSEC:+.1f}"'
         )
         rows.append((item.kind.replace("_", " "), item.name, value, plain(item.sigma * RHO_ARCSEC)))
-    return Table(("kind", "name", "value", '\N{PLUS-MINUS SIGN}"'), tuple(rows), "llrr")
+    return Table(said_each("kind", "name", "value", '±"'), tuple(rows), "llrr")
 
 
 def _observations(result: AdjustmentResult, unit: AngleUnit) -> list[Block]:
@@ -234,7 +269,7 @@ def _observations(result: AdjustmentResult, unit: AngleUnit) -> list[Block]:
     accused = {item.place for item in result.snooping.suspects[:1]}
     rows = tuple(_observation(item, unit) for item in shown)
     strong = frozenset(i for i, item in enumerate(shown) if item.place in accused and accused)
-    head = (
+    head = said_each(
         "kind",
         "at",
         "to",
@@ -247,13 +282,19 @@ def _observations(result: AdjustmentResult, unit: AngleUnit) -> list[Block]:
     )
     found: list[Block] = [Table(head, rows, "lllrrrrrr", strong=strong)]
     if more:
-        text = f"{more} observations with smaller residuals are not shown; adjust --json has all."
+        text = said(
+            "{more} observations with smaller residuals are not shown; adjust --json has all.",
+            more=more,
+        )
         found.append(Paragraph(text, "small"))
     found.append(
         Paragraph(
-            "residual = adjusted - observed, arc-seconds or millimetres; redundancy: share of an "
-            "error that shows in the residual; smallest bias: what the test finds with the stated "
-            "power, and how far an undetected one moves a point. The accused observation is bold.",
+            said(
+                "residual = adjusted - observed, arc-seconds or millimetres; redundancy: "
+                "share of an error that shows in the residual; smallest bias: what the "
+                "test finds with the stated power, and how far an undetected one moves a "
+                "point. The accused observation is bold."
+            ),
             "small",
         )
     )
@@ -262,9 +303,9 @@ def _observations(result: AdjustmentResult, unit: AngleUnit) -> list[Block]:
 
 def _observation(item: AdjustedObservation, unit: AngleUnit) -> tuple[str, ...]:
     small = RHO_ARCSEC if item.angular else MM
-    what = '"' if item.angular else " mm"
+    what = '"' if item.angular else said(" mm")
     if not item.angular:
-        observed = f"{item.observed:.4f} m"
+        observed = said("{observed:.4f} m", observed=item.observed)
     elif item.kind is ObservationKind.GYRO_CONSTANT:
         observed = f'{item.observed * RHO_ARCSEC:+.1f}"'
     else:

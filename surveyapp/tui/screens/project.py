@@ -64,6 +64,7 @@ class ProjectScreen(Screen[None]):
         Binding(
             "p", "breakthrough", texts.KEY_PENETRATION, tooltip=texts.LONG_PENETRATION, show=False
         ),
+        Binding("l", "sensors", texts.KEY_SENSORS, tooltip=texts.LONG_SENSORS),
         Binding("s", "shafts", texts.KEY_SHAFTS, tooltip=texts.LONG_SHAFTS, show=False),
         Binding("f5", "reload", texts.KEY_RELOAD, tooltip=texts.LONG_RELOAD, show=False),
         Binding("escape", "back", texts.KEY_BACK, tooltip=texts.LONG_BACK),
@@ -114,7 +115,7 @@ class ProjectScreen(Screen[None]):
                         columns, empty = LISTS[page]
                         details = partial(self.details, page)
                         yield Records(columns, empty=empty, details=details)
-        yield Footer(show_command_palette=False)
+        yield Footer(show_command_palette=False, compact=True)
 
     def on_mount(self) -> None:
         """Begin to compute."""
@@ -272,6 +273,13 @@ class ProjectScreen(Screen[None]):
             self.app.push_screen(ShaftScreen(self.folder, self.project.angle_unit))
         else:
             self.notify(texts.NO_SHAFT, severity="warning", markup=False)
+
+    def action_sensors(self) -> None:
+        """Logs, calibrations, cards and guided programmes."""
+        from surveyapp.tui.screens.sensors import SensorsScreen
+
+        if self.project is not None:
+            self.app.push_screen(SensorsScreen(self.folder))
 
     def _diagnosed(self, _: None) -> None:
         self.action_reload()

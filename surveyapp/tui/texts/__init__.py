@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from surveyapp.tui.texts.penetration import *
     from surveyapp.tui.texts.project import *
     from surveyapp.tui.texts.result import *
+    from surveyapp.tui.texts.sensors import *
     from surveyapp.tui.texts.session import *
 
 _MODULES: Final = (
@@ -31,6 +32,7 @@ _MODULES: Final = (
     "penetration",
     "project",
     "result",
+    "sensors",
     "session",
 )
 """Modules of texts; no name stands in two of them."""

@@ -263,7 +263,42 @@ otherwise. F8 writes it. A file that is there is never written over.
 Coordinates are adjusted where that is possible; what was left out or
 renamed is told.
 """
+_SENSORS: Final = """\
+The sensors that level, pre-orient or find north beside the gyro: their
+logs, the cards that were written from them, and until when each holds.
+Enter opens a log: calibration, noise, lines, motion, north, diagnosis.
+A takes another log into the project. A card that does not hold today,
+or that cannot be read, says so in its last column.
+
+   log -> calibrate -> card -> compensate, or a session that names it
+"""
+_SENSOR_LOG: Final = """\
+C calibrates, D asks which effect the calibration lacks, L the Allan
+deviation, F a filter, S the spectrum, M the motion, N north, P the
+plan of stops. Page 2 has the pictures, V shows the next one. X cancels
+what is being computed. K writes the card after one question; nothing
+else is written here.
+
+Options stand in the line below, key=value each, as on the command
+line: latitude=47.1 programme=six-position column=gyr_x_rad_s. Enter
+in that line runs the last task again. A dash is not determined; the
+warnings below the table say why.
+"""
+_ADD_LOG: Final = """\
+Enter on a file shows its columns: what each was taken for, its unit,
+its smallest and largest value. A unit with ? was not stated. What is
+wrong stands first; F8 takes the log only when nothing is.
+
+map.CANON=COLUMN names a column, unit.COLUMN=UNIT its unit (uT nT mG
+m/s2 g rad/s deg/s deg/h arcsec deg rad LSB 1), scale.COLUMN=VALUE the
+value of one count, rate-hz=F stands for a missing time. kind= is
+compass, tilt, rate or fog-station. The log is copied into sensors/ and
+pinned by its hash; one that lies in the project stays where it is.
+"""
 PAGES: Final = {
+    "SensorsScreen": ("Sensors", _SENSORS),
+    "SensorLogScreen": ("A sensor log", _SENSOR_LOG),
+    "AddLogScreen": ("Add a log", _ADD_LOG),
     "ImportScreen": ("Import", _IMPORT),
     "ExportScreen": ("Export", _EXPORT),
     "HomeScreen": ("Where to begin", _HOME),

@@ -92,7 +92,7 @@ ADOPTED: Final = "written: {place}"
 
 # traverses
 TRAVERSE_TITLE: Final = "Traverses of {name}"
-KEY_TRAVERSE: Final = "Traverses"
+KEY_TRAVERSE: Final = "Traverse"
 KEY_NEXT_TRAVERSE: Final = "Next traverse"
 NO_TRAVERSE: Final = "This project has no [[traverse]]."
 TAB_PLAN: Final = "1 Plan"

@@ -1,0 +1,1 @@
+"""Pictures of sensor results, as values: what is drawn, not how."""

@@ -1,0 +1,216 @@
+"""Pictures that a result alone holds: noise, filters, spectrum, motion, turntables."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
+from typing import Any, Final
+
+import numpy as np
+
+from surveyapp.core.sensors.rate.stop_plan import StopPlan
+from surveyapp.domain.calibration import Calibration
+from surveyapp.domain.chart import MOST_POINTS, Chart, Picture, Series
+from surveyapp.domain.line_spectrum import LineSpectrum
+from surveyapp.domain.motion import STATES, Motion
+from surveyapp.domain.noise import AllanChannel, AllanResult, FilterResult
+
+TIME: Final = "time [s]"
+TAU: Final = "averaging time [s]"
+SLOPES: Final = {"Q": -1.0, "N": -0.5, "B": 0.0, "K": 0.5, "R": 1.0}
+"""Slope of the Allan deviation that each coefficient makes (IEEE 952, annex C)."""
+
+Points = tuple[tuple[float, float], ...]
+
+
+def pairs(x: Iterable[float], y: Iterable[float]) -> Points:
+    """Points of a curve where both values are numbers, thinned to what can be told apart."""
+    found = [
+        (float(a), float(b))
+        for a, b in zip(x, y, strict=True)
+        if math.isfinite(float(a)) and math.isfinite(float(b))
+    ]
+    step = max(1, math.ceil(len(found) / MOST_POINTS))
+    return tuple(found[::step])
+
+
+def allan_charts(result: AllanResult) -> tuple[Picture, ...]:
+    """The deviation of each column with its interval, and the slope of each coefficient found."""
+    return tuple(_allan_chart(channel) for channel in result.channels if len(channel.taus_s) > 1)
+
+
+def _allan_chart(channel: AllanChannel) -> Chart:
+    curves = [
+        Series("deviation", pairs(channel.taus_s, channel.deviation)),
+        Series("95 %", pairs(channel.taus_s, channel.low), "bound"),
+        Series("95 %", pairs(channel.taus_s, channel.high), "bound"),
+    ]
+    curves += _slopes(channel)
+    return Chart(
+        f"Allan deviation of {channel.name}",
+        TAU,
+        f"deviation [{channel.unit}]",
+        tuple(_positive(curve) for curve in curves),
+        log_x=True,
+        log_y=True,
+        note=_named(channel),
+    )
+
+
+def _slopes(channel: AllanChannel) -> list[Series]:
+    """Through the point where a term matters most: a line of its slope over a decade and more."""
+    taus = np.array(channel.taus_s)
+    values = np.array(channel.deviation)
+    if taus.size < 2 or not np.all(values > 0.0):
+        return []
+    found = []
+    local = np.gradient(np.log(values), np.log(taus))
+    for item in channel.coefficients:
+        if item.value is None or item.symbol not in SLOPES:
+            continue
+        slope = SLOPES[item.symbol]
+        place = int(np.argmin(np.abs(local - slope)))
+        ends = taus[max(place - 3, 0)], taus[min(place + 3, taus.size - 1)]
+        line = tuple(
+            (float(tau), float(values[place] * (tau / taus[place]) ** slope)) for tau in ends
+        )
+        found.append(Series(f"slope of {item.symbol}", line, "guide"))
+    return found
+
+
+def _named(channel: AllanChannel) -> str:
+    known = [c for c in channel.coefficients if c.value is not None]
+    if not known:
+        return "no coefficient is determined"
+    return ", ".join(f"{c.symbol} {c.value:.3g} {c.unit}" for c in known)
+
+
+def _positive(curve: Series) -> Series:
+    return Series(curve.name, tuple(p for p in curve.points if p[1] > 0.0), curve.style)
+
+
+def filter_charts(results: Sequence[FilterResult]) -> tuple[Picture, ...]:
+    """Raw and filtered deviation curves together, and the ratios."""
+    first = results[0]
+    curves = [Series("raw", pairs(first.before.taus_s, first.before.deviation))]
+    curves += [
+        Series(result.filter, pairs(result.after.taus_s, result.after.deviation))
+        for result in results
+    ]
+    ratios = tuple(Series(r.filter, pairs(r.before.taus_s, r.deviation_ratio)) for r in results)
+    return (
+        Chart(
+            f"Raw and filtered: {first.column}",
+            TAU,
+            f"deviation [{first.unit}]",
+            tuple(_positive(curve) for curve in curves),
+            log_x=True,
+            log_y=True,
+        ),
+        Chart("Deviation, filtered to raw", TAU, "ratio", ratios, log_x=True),
+    )
+
+
+def spectrum_charts(result: LineSpectrum) -> tuple[Picture, ...]:
+    """Power spectral density in decibels with the lines found."""
+    density = [
+        (f, 10.0 * math.log10(d))
+        for f, d in zip(result.frequency_hz, result.density, strict=True)
+        if d > 0.0 and f > 0.0
+    ]
+    if len(density) < 2:
+        return ()
+    lowest, highest = min(y for _, y in density), max(y for _, y in density)
+    curves = [Series("density", pairs(*zip(*density, strict=True)))]
+    curves += [
+        Series(
+            f"{line.frequency_hz:.3f} Hz",
+            ((line.frequency_hz, lowest), (line.frequency_hz, highest)),
+            "guide",
+        )
+        for line in result.lines[:20]
+    ]
+    note = f"{len(result.lines)} lines" if result.lines else "no line"
+    label = f"density [dB re {result.unit}^2/Hz]"
+    title = f"Spectrum of {result.column}"
+    return (Chart(title, "frequency [Hz]", label, tuple(curves), note=note),)
+
+
+def motion_charts(result: Motion) -> tuple[Picture, ...]:
+    """States over time, and the path where there is one."""
+    steps: list[tuple[float, float]] = []
+    for segment in result.segments:
+        level = float(STATES.index(segment.state))
+        steps += [(segment.start_s, level), (segment.end_s, level)]
+    found: list[Picture] = [
+        Chart("State of motion", TIME, "", (Series("state", tuple(steps)),), y_names=STATES)
+    ]
+    if result.path is not None and len(result.path.points) > 1:
+        path = result.path
+        places = pairs((p[1] for p in path.points), (p[2] for p in path.points))
+        closes = "" if path.closure_m is None else f", closes to {path.closure_m:.3f} m"
+        note = f"{path.mode}: {path.length_m:.2f} m{closes}"
+        ends = (Series("begin", places[:1], "dots"), Series("end", places[-1:], "dots"))
+        series = (Series("path", places), *ends)
+        found.append(Chart("Path", "east [m]", "north [m]", series, square=True, note=note))
+        sigma = [math.hypot(p[3], p[4]) for p in path.points]
+        along = pairs((p[0] for p in path.points), sigma)
+        title = "Uncertainty of the place along the path"
+        found.append(Chart(title, "along [m]", "sigma [m]", (Series("sigma", along),)))
+    return tuple(found)
+
+
+def plan_charts(plan: StopPlan) -> tuple[Picture, ...]:
+    """What a bias leaves of the pointing."""
+    series = (Series("arctan(bias / level earth rate)", tuple(plan.pointing)),)
+    title = f"Pointing at latitude {plan.latitude_deg:g}"
+    return (Chart(title, "bias [deg/h]", "error [deg]", series, log_x=True),)
+
+
+def table_charts(result: Calibration) -> tuple[Picture, ...]:
+    """Repeats of the constant, and parameters over temperature, where there are any."""
+    found: list[Picture] = []
+    sets: Sequence[dict[str, Any]] = result.extra.get("sets", ())
+    if result.kind == "fog-station" and sets:
+        number = range(1, len(sets) + 1)
+        values = pairs(number, (s["elevation_arcsec"] for s in sets))
+        mean = float(np.mean([v for _, v in values]))
+        line = ((1.0, mean), (float(len(sets)), mean))
+        repeats = (Series("elevation", values, "dots"), Series("mean", line, "guide"))
+        found.append(Chart("Elevation of the gyro axis", "set", "elevation [arcsec]", repeats))
+    nodes: Sequence[dict[str, Any]] = result.extra.get("nodes", ())
+    for name, unit in (("bias", "deg/h"), ("scale_factor", "ppm")):
+        series = tuple(
+            Series(f"{name}_{axis}", _node_points(nodes, f"{name}_{axis}")) for axis in "xyz"
+        )
+        if any(item.points for item in series):
+            word = name.replace("_", " ")
+            title = f"{word.capitalize()} over temperature"
+            found.append(Chart(title, "temperature [C]", f"{word} [{unit}]", series))
+    return tuple(found)
+
+
+def _node_points(nodes: Sequence[dict[str, Any]], name: str) -> Points:
+    return tuple(
+        (float(node["temperature_c"]), float(p["value"]))
+        for node in nodes
+        for p in node["parameters"]
+        if p["name"] == name and p["value"] is not None
+    )
+
+
+def turns_of(result: Calibration) -> tuple[Picture, ...]:
+    """Whole turns of every stretch of a six-position programme, in the order of the record."""
+    steps = [s for s in result.extra.get("steps", ()) if s.get("step") == "segment"]
+    if not steps:
+        return ()
+    marks = tuple(
+        (0.5 * (s["start_s"] + s["end_s"]), math.copysign(s["turns_used"], s["rate_deg_s"]))
+        for s in steps
+    )
+    order = [s["position"] for s in steps]
+    changes = [order[0], *(b for a, b in pairwise(order) if a != b)]
+    note = "positions in order: " + " ".join(changes)
+    series = (Series("turns", marks, "dots"),)
+    return (Chart("Turns used, both senses", TIME, "turns", series, note=note),)

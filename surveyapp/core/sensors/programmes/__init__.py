@@ -1,0 +1,1 @@
+"""Guided programmes: steps as values, what a run has determined so far, which step is next."""

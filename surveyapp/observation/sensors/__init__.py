@@ -1,0 +1,1 @@
+"""What the screens for sensors ask: logs and cards, tasks on a log, guided programmes."""

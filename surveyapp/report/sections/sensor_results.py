@@ -1,0 +1,280 @@
+"""Noise filters, spectra, motion, north and diagnoses of sensor logs as blocks.
+
+What the screens show, and what the record prints of a log beside its calibration.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from surveyapp.core.sensors.rate.stop_plan import StopPlan
+from surveyapp.domain.line_spectrum import LineSpectrum
+from surveyapp.domain.motion import Motion
+from surveyapp.domain.noise import FilterResult
+from surveyapp.domain.north import NorthResult
+from surveyapp.domain.project import ResultWarning
+from surveyapp.report.blocks import Block, Heading, KeyValues, Paragraph, Table
+from surveyapp.report.numbers import NOTHING, four_digits, plain
+
+PM = "\N{PLUS-MINUS SIGN}"
+
+
+def warning_blocks(warnings: Sequence[ResultWarning]) -> tuple[Block, ...]:
+    """Every warning as a paragraph of its own."""
+    return tuple(Paragraph(f"{item.code}: {item.text}", "warning") for item in warnings)
+
+
+def filter_blocks(result: FilterResult) -> tuple[Block, ...]:
+    """What a filter gains at each averaging time, and how late it follows a step."""
+    rows = tuple(
+        (f"{tau:g}", four_digits(a), four_digits(b), four_digits(ratio))
+        for tau, a, b, ratio in zip(
+            result.before.taus_s,
+            result.before.deviation,
+            result.after.deviation,
+            result.deviation_ratio,
+            strict=True,
+        )
+    )
+    terms = tuple(
+        (
+            f"{a.symbol} {a.name.replace('_', ' ')}",
+            four_digits(a.value),
+            four_digits(b.value),
+            a.unit,
+            (b.reason or a.reason or "").replace("_", " "),
+        )
+        for a, b in zip(result.before.coefficients, result.after.coefficients, strict=True)
+    )
+    lags = [
+        (f"90 % of a step of {name.replace('_', ' ')}", _lag(value))
+        for name, value in result.step_lag_90_samples.items()
+    ]
+    facts = [("filter", f"{result.filter}, q {result.q:.4g}, r {result.r:.4g}"), *lags]
+    if result.resamplings is not None:
+        facts.append(("resamplings", f"{result.resamplings} of {result.before.n} samples"))
+    return (
+        Heading(f"Filter on {result.column}", 2),
+        KeyValues(tuple(facts)),
+        Table(("time s", f"raw {result.unit}", "filtered", "ratio"), rows, "rrrr"),
+        Table(("coefficient", "before", "after", "unit", "why not"), terms, "lrrll"),
+        *warning_blocks(result.warnings),
+    )
+
+
+def _lag(samples: float | None) -> str:
+    return "not within the test" if samples is None else f"after {samples:.0f} samples"
+
+
+def spectrum_blocks(result: LineSpectrum) -> tuple[Block, ...]:
+    """Lines with their probability of false alarm, families, and the scatter without them."""
+    rows = tuple(
+        (
+            f"{line.frequency_hz:.4f}",
+            f"{line.sigma_hz:.1e}",
+            four_digits(line.amplitude),
+            f"{line.false_alarm_probability:.1e}",
+            "" if line.family is None else str(line.family + 1),
+        )
+        for line in result.lines
+    )
+    scatter = result.scatter
+    facts = [
+        ("record", f"{result.n} rows at {result.rate_hz:g} Hz"),
+        ("sd of a sample", _change(scatter.before, scatter.after, scatter.unit)),
+        ("sd of 10 s means", _change(scatter.before_10s, scatter.after_10s, scatter.unit)),
+    ]
+    for i, family in enumerate(result.families, start=1):
+        times = ", ".join(str(h) for h in family.harmonics)
+        text = f"{times} x {family.fundamental_hz:.4f} Hz, p {family.p_family:.1e}"
+        facts.append((f"family {i}", text))
+    if result.magnetic is not None:
+        m = result.magnetic
+        text = (
+            f"{m.field_uT:g} uT x {m.sensitivity_deg_h_t:g} deg/h per T / {m.shielding:g} "
+            f"= {m.bias_deg_h:.4g} deg/h"
+        )
+        facts.append(("magnetic bias", text))
+    head = ("Hz", PM, f"amplitude {result.unit}", "false alarm", "family")
+    lines: Block = Table(head, rows, "rrrrr") if rows else Paragraph("No line stands out.")
+    return (
+        Heading(f"Spectrum of {result.column}", 2),
+        KeyValues(tuple(facts)),
+        lines,
+        *_against(result.against),
+        *warning_blocks(result.warnings),
+    )
+
+
+def _change(before: float | None, after: float | None, unit: str) -> str:
+    return f"{four_digits(before)} with the lines, {four_digits(after)} without {unit}"
+
+
+def _against(found: Mapping[str, Any] | None) -> tuple[Block, ...]:
+    if found is None:
+        return ()
+    rows = tuple(
+        (
+            str(axis["column"]),
+            four_digits(axis["sd_first"]),
+            four_digits(axis["sd_second"]),
+            four_digits(axis["sd_ratio"]),
+            ", ".join(f"{line['frequency_hz']:.3f}" for line in axis["new_lines"]) or NOTHING,
+        )
+        for axis in found["axes"]
+    )
+    return (Table(("column", "sd", "sd second", "ratio", "new lines Hz"), rows, "lrrrl"),)
+
+
+def motion_blocks(result: Motion) -> tuple[Block, ...]:
+    """States, the path, what was laid back over it, and the test of the gate."""
+    rows = tuple((f"{s.start_s:.2f}", f"{s.end_s:.2f}", s.state) for s in result.segments)
+    facts = [("record", f"{result.n} rows at {result.rate_hz:g} Hz")]
+    facts.append(("false alarm of a rest", f"{result.false_alarm:g}"))
+    if result.path is not None:
+        path = result.path
+        facts.append(("path", f"{path.mode}, {path.length_m:.2f} m"))
+        facts.append(("closes to", f"{plain(path.closure_m, 3)} m"))
+        sides = ", ".join(f"{side:.3f}" for side in path.sides_m)
+        facts.append(("between stops", f"{sides or NOTHING} m"))
+    for item in result.snapped:
+        span = f"{item.from_m:.1f} to {item.to_m:.1f} m"
+        facts.append(("laid back", f"{span}, {item.kind}, {item.heading_deg:+.3f} degrees"))
+    if result.zero_velocity is not None:
+        verdict = str(result.zero_velocity["verdict"])
+        share = result.zero_velocity.get("share_exceeding")
+        told = "" if share is None else f", {share:.0%} of the innovations beyond their bound"
+        facts.append(("gate of rest", verdict + told))
+    return (
+        Heading("State of motion", 2),
+        KeyValues(tuple(facts)),
+        Table(("from s", "to s", "state"), rows, "rrl"),
+        *warning_blocks(result.warnings),
+    )
+
+
+def north_blocks(result: NorthResult) -> tuple[Block, ...]:
+    """North or heading with its reference, both roots where they are not told apart."""
+    way = result.direction
+    facts = [("method", f"{result.method}, {result.n} rows")]
+    name = "gyro north, circle reading" if result.key == "gyro_north" else "heading"
+    value = "not determined" if way.deg is None else f"{way.deg:.5f} degrees {way.reference}"
+    facts.append((name, value))
+    if way.sigma_arcsec is not None:
+        interval = plain(way.interval95_arcsec)
+        facts.append(("sigma, 95 % interval", f'{plain(way.sigma_arcsec)}", {PM}{interval}"'))
+    third = result.extra.get("third_axis")
+    blocks: list[Block] = [Heading("North", 2), KeyValues(tuple(facts))]
+    if third:
+        blocks += _roots(third)
+    rows = tuple(
+        (p.name.replace("_", " "), four_digits(p.value), four_digits(p.sigma), p.unit)
+        for p in result.parameters
+    )
+    blocks.append(Table(("parameter", "value", PM, "unit"), rows, "lrrl"))
+    steps = result.extra.get("steps") or ()
+    if steps:
+        blocks.append(_steps(steps))
+    tracking = result.extra.get("tracking") or ()
+    if tracking:
+        blocks.append(_tracking(tracking))
+    if result.undetermined:
+        names = ", ".join(result.undetermined)
+        blocks.append(Paragraph(f"Not determined: {names}.", "warning"))
+    return (*blocks, *warning_blocks(result.warnings))
+
+
+def _roots(third: Mapping[str, Any]) -> list[Block]:
+    """The headings that the third axis leaves open."""
+    rows = tuple(
+        (four_digits(root["heading_deg"]), four_digits(root["bias_deg_h"]))
+        for root in third.get("roots", ())
+    )
+    found: list[Block] = [Paragraph(f"Third axis: {third['verdict']}.")]
+    if rows:
+        found.append(Table(("heading deg", "bias of the third axis deg/h"), rows, "rr"))
+    return found
+
+
+def _steps(steps: Sequence[Mapping[str, Any]]) -> Table:
+    rows = []
+    for item in steps:
+        keys = [k for k in item if k not in ("step", "title")]
+        told = ", ".join(f"{k} {_value(item[k])}" for k in keys)
+        rows.append((str(item.get("step", "")), str(item.get("title", "")), told))
+    return Table(("step", "", "done"), tuple(rows), "lll")
+
+
+def _value(value: object) -> str:
+    if isinstance(value, float):
+        return four_digits(value)
+    if isinstance(value, list | tuple):
+        return " ".join(_value(v) for v in value)
+    return NOTHING if value is None else str(value)
+
+
+def _tracking(tracking: Sequence[Mapping[str, Any]]) -> Table:
+    rows = tuple(
+        (
+            str(i),
+            _value(item.get("bias")),
+            _value(item.get("sigma")),
+            "gated" if item.get("gated") else "",
+        )
+        for i, item in enumerate(tracking, start=1)
+    )
+    return Table(("stop", "bias deg/h", PM, ""), rows, "rrrl")
+
+
+def plan_blocks(plan: StopPlan) -> tuple[Block, ...]:
+    """Stops by spacings, and what a bias leaves."""
+    rows = tuple(
+        (
+            f"{row.stop_s:g}",
+            f"{row.spacing_m:g}",
+            plain(row.heading_sd_deg, 2),
+            plain(row.lateral_sd_m, 2),
+            plain(row.hours, 2),
+            "" if row.enough is None else "yes" if row.enough else "no",
+        )
+        for row in plan.rows
+    )
+    table = tuple((f"{bias:g}", plain(theta, 2)) for bias, theta in plan.pointing)
+    return (
+        Heading(f"Stops of a {plan.grade.title} at latitude {plan.latitude_deg:g}", 2),
+        Table(("stop s", "every m", "heading deg", "lateral m", "hours", "enough"), rows, "rrrrrl"),
+        Paragraph(plan.words),
+        Table(("bias deg/h", "pointing error deg"), table, "rr"),
+    )
+
+
+def diagnosis_blocks(document: Mapping[str, Any], words: Sequence[str]) -> tuple[Block, ...]:
+    """The diagnosis of a log: words, candidates, before and after on held-out data."""
+    unit = str(document.get("unit", ""))
+    held = document.get("held_out") or {}
+    facts = [("verdict", str(document["verdict"]).replace("_", " "))]
+    for name in ("before", "after"):
+        model = document.get(name) or {}
+        left = held.get(name, model.get("loo_rms"))
+        text = f"{four_digits(model.get('rms'))} {unit}, left out {four_digits(left)} {unit}"
+        facts.append((f"rms {name}", text))
+    rows = tuple(
+        (
+            str(item["effect"]).replace("_", " "),
+            str(item["verdict"]).replace("_", " "),
+            _p(item.get("p_family")),
+            four_digits(item.get("delta_bic")),
+        )
+        for item in document.get("candidates", ())
+    )
+    return (
+        Heading("Diagnosis", 2),
+        KeyValues(tuple(facts)),
+        *(Paragraph(word) for word in words),
+        Table(("effect", "verdict", "p of family", "BIC gained"), rows, "llrr"),
+    )
+
+
+def _p(value: float | None) -> str:
+    return NOTHING if value is None else f"{value:.2g}"
