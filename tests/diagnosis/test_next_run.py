@@ -40,7 +40,7 @@ def by_id(found: Outlook) -> dict[str, ActionResult]:
 )
 def test_as_it_stands_it_is_the_average_of_the_run(effect: str, sizes: dict[str, float]) -> None:
     """Two programs, one formula: the interval of now is that of the short run's average."""
-    case = run(effect, **sizes)
+    case = run(effect, **sizes)  # type: ignore[arg-type]
     average, _ = run_average(case, fit_members(case, ()))
     assert advised(case).interval == pytest.approx(average.interval95, rel=0.02)
 
