@@ -2,7 +2,7 @@
 
 For 6 to 12 turning points: how often the gate fires, how often the averaged north of those runs
 holds the true mean over the run, and its interval against that of the base model.
-SURVEYAPP_BENCH_RUNS is the number of runs a line (clean lines four times as many: they seldom fire).
+SURVEYAPP_BENCH_RUNS is the number of runs a line (four times as many clean ones: they seldom fire).
 """
 
 from __future__ import annotations
