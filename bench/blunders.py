@@ -1,8 +1,9 @@
 """Planted blunders: which are told, which stay silent with harm; how often clean projects alarm.
 
 A clean project is simulated (two calibrations, two surveys of one line, both ends of the line
-fixed or not), read and checked through the public interface. Then one blunder is planted into its
-files as a hand makes it. It is told where the project is refused or a confirmed check is not met;
+fixed or not; or, lean, one calibration and one survey of a line without coordinates of its own),
+read and checked through the public interface. Then one blunder is planted into its files as a hand
+makes it. It is told where the project is refused or a confirmed check is not met;
 it is silent with harm where nothing is told and the grid azimuth is off by more than three of its
 own sigmas. What no second session, no fixed coordinates and no card could have told is listed with
 what would be needed to see it.
@@ -20,7 +21,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bench.coverage import specification
+from bench.coverage import specification, write_files
 from surveyapp import api
 from surveyapp.core.simulate.project import project_files, simulate_reversal_project
 from surveyapp.core.simulate.specification import SwingMethod
@@ -46,28 +47,26 @@ class Clean:
     fixed: bool
 
 
-def clean_projects(count: int, seed: int) -> Iterator[Clean]:
-    """Simulated projects without a blunder; in every second the line has fixed coordinates."""
+def clean_projects(count: int, seed: int, *, lean: bool = False) -> Iterator[Clean]:
+    """Simulated projects without a blunder; in every second the line has fixed coordinates.
+
+    A lean one has a single calibration and a single survey, and coordinates of an old plan only.
+    """
     rng = np.random.default_rng(seed)
+    rounds = 1 if lean else 2
     for number in range(count):
         method, latitude = METHODS[number % 3], LATITUDES_DEG[(number // 3) % 3]
-        project = simulate_reversal_project(specification(method, latitude, rng), rng)
+        spec = specification(method, latitude, rng)
+        project = simulate_reversal_project(spec, rng, calibrations=rounds, surveys=rounds)
         files = project_files(project)
         survey = next(s for s in project.sessions if s.purpose == "survey")
-        fixed = number % 2 == 0
+        fixed = number % 2 == 0 and not lean
         if fixed:
             toml = files["project.toml"]
             for name in ("U1", "U2"):
                 toml = toml.replace(f'name = "{name}"\n', f'name = "{name}"\nfixed = true\n')
             files["project.toml"] = toml
         yield Clean(files, survey.simulated.spec.line_azimuth, fixed)
-
-
-def write(folder: Path, files: Files) -> None:
-    for name, text in files.items():
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +89,7 @@ def judged(files: Files, azimuth: float) -> Outcome:
     """Check and orient one project."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        write(folder, files)
+        write_files(folder, files)
         try:
             result = api.orient(folder)
         except SurveyError:
@@ -262,6 +261,31 @@ def _text(name: str, pattern: str, new: str) -> Plant:
     return plant
 
 
+def _books_exchanged(files: Files, rng: np.random.Generator) -> Files | None:
+    """The books of a calibration and a survey under each other's name."""
+    known = [name for name in _books(files) if "/cal-" in name]
+    sought = [name for name in _books(files) if "/run-" in name]
+    one, other = str(rng.choice(known)), str(rng.choice(sought))
+    return files | {one: files[other], other: files[one]}
+
+
+def _moved(names: tuple[str, ...], degrees: float) -> Plant:
+    """The longitude of some stations off by so much."""
+
+    def plant(files: Files, rng: np.random.Generator) -> Files | None:
+        toml = files["project.toml"]
+        for name in names:
+            found = re.search(rf'name = "{name}"\n(?:fixed = true\n)?lat = \S+\nlon = (\S+)', toml)
+            if found is None:
+                return None
+            text = f"{float(found[1]) + degrees:.12f}"
+            toml = toml[: found.start(1)] + text + toml[found.end(1) :]
+        return files | {"project.toml": toml}
+
+    return plant
+
+
+CARD = "cards/simulated-gyro.toml"
 PLANTS: dict[str, Plant] = {
     **{f"sight {k}": _shifted("backsight", v) for k, v in SIZES.items()},
     **{f"turning point {k}": _shifted("reversal", v) for k, v in SIZES.items()},
@@ -283,8 +307,18 @@ PLANTS: dict[str, Plant] = {
     "turning point a minute late": _late("reversal", 60.0),
     "an hour late": _late("transit", 3600.0),
     "scale value doubled": _text(
-        "cards/simulated-gyro.toml", r"scale_value_arcsec = [\d.]+", "scale_value_arcsec = 1200.0"
+        CARD, r"scale_value_arcsec = [\d.]+", "scale_value_arcsec = 1200.0"
     ),
+    "scale reversed": _text(CARD, r"scale_value_arcsec = ", "scale_value_arcsec = -"),
+    "periods exchanged": _text(
+        CARD, r"tracking_s = (\S+)\nclamped_s = (\S+)", r"tracking_s = \2\nclamped_s = \1"
+    ),
+    "card of another gyro": _text(
+        CARD, r"tracking_s = \S+\nclamped_s = \S+", "tracking_s = 480.0\nclamped_s = 410.0"
+    ),
+    "books exchanged": _books_exchanged,
+    "station 1 deg away": _moved(("U1",), 1.0),
+    "line 1 deg away": _moved(("U1", "U2"), 1.0),
     "latitude exchanged": _text("project.toml", r"lat = (\S+)\nlon = (\S+)", r"lat = \2\nlon = \1"),
 }
 """Blunders by name."""
@@ -292,7 +326,16 @@ NEEDED = {
     "clamp": "a second clamping of the line, or fixed coordinates",
     "another target": "fixed coordinates, or a second session of the line",
     "known azimuth": "coordinates of the known line, or a second known line",
-    "scale value": "two clampings of the line, or the periods of the card",
+    "scale": "two clampings of the line, or a second session clamped elsewhere",
+    "card of another": "times of the turning points or passages: the period",
+    "line 1 deg": "a traverse from the calibration line: the coordinates of both ends agree",
+    "face": "sights in both faces, a second session",
+    "sight": "sights before and after in both faces, a second session",
+    "tape zero": "tape zeros before and after, five readings each",
+    "turning point": "six turning points or more, with their times",
+    "passage": "five passages or more",
+    "scale reading": "six scale readings or more",
+    "books": "a second session of the line, or fixed coordinates",
 }
 """What would be needed to see what stays silent."""
 
@@ -312,13 +355,13 @@ def alarms(count: int, seed: int) -> tuple[int, Counter[str]]:
     return wrong, rules
 
 
-def planted(count: int, seed: int) -> dict[str, list[tuple[bool, Outcome]]]:
+def planted(count: int, seed: int, *, lean: bool = False) -> dict[str, list[tuple[bool, Outcome]]]:
     """Outcomes of planted blunders by name, with whether the line had fixed coordinates."""
     rng = np.random.default_rng(seed)
     found: dict[str, list[tuple[bool, Outcome]]] = {name: [] for name in PLANTS}
     done = 0
     while done < count:
-        for clean in clean_projects(6, seed + 1000 + done):
+        for clean in clean_projects(6, seed + 1000 + done, lean=lean):
             for name, plant in PLANTS.items():
                 files = plant(clean.files, rng)
                 if files is not None:
@@ -327,17 +370,13 @@ def planted(count: int, seed: int) -> dict[str, list[tuple[bool, Outcome]]]:
     return found
 
 
-def run(clean: int = 400, blunders: int = 1000) -> list[str]:
-    """Clean projects, then blunders."""
-    wrong, rules = alarms(clean, 20261128)
-    lines = [f"clean projects {clean}, that alarm {wrong} ({wrong / clean:.1%})"]
-    lines += [f"  {rule}: {number}" for rule, number in rules.most_common()]
-    found = planted(blunders, 20261129)
+def table(found: dict[str, list[tuple[bool, Outcome]]]) -> list[str]:
+    """What became of the planted blunders, by name."""
     total = sum(map(len, found.values()))
     silent = {
         name: [o for _, o in items if not o.told and o.harmful] for name, items in found.items()
     }
-    lines.append(f"planted {total}, silent with harm {sum(map(len, silent.values()))}")
+    lines = [f"planted {total}, silent with harm {sum(map(len, silent.values()))}"]
     lines.append("blunder                      planted  told  harmless  silent  with fixed ends")
     for name, items in found.items():
         told = sum(bool(o.told) for _, o in items)
@@ -347,3 +386,13 @@ def run(clean: int = 400, blunders: int = 1000) -> list[str]:
         why = f"  {needed(name)}" if mute else ""
         lines.append(f"{name:<28} {len(items):>7} {told:>5} {rest:>9} {mute:>7} {fixed:>6}{why}")
     return lines
+
+
+def run(clean: int = 400, blunders: int = 1000, lean: int = 500) -> list[str]:
+    """Clean projects, then blunders in full programmes and in lean ones."""
+    wrong, rules = alarms(clean, 20261128)
+    lines = [f"clean projects {clean}, that alarm {wrong} ({wrong / clean:.1%})"]
+    lines += [f"  {rule}: {number}" for rule, number in rules.most_common()]
+    lines += ["two calibrations, two surveys", *table(planted(blunders, 20261129))]
+    lines += ["one calibration, one survey, no coordinates of the line"]
+    return lines + table(planted(lean, 20261130, lean=True))

@@ -15,6 +15,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from surveyapp.core.statistics.distributions import student_quantile
+from surveyapp.core.statistics.few_degrees import effective_dof, half_width95
 from surveyapp.core.statistics.mixture import Mixture
 from surveyapp_models.angles import wrap_pi
 
@@ -95,22 +96,26 @@ class Uncertain:
     @property
     def dof(self) -> float:
         """Effective degrees of freedom (Welch-Satterthwaite); a pooled estimate counts once."""
+        return effective_dof(self._estimates())
+
+    def _estimates(self) -> list[tuple[float, float]]:
+        """Variance [rad^2] and degrees of freedom of every estimate; what is known is one."""
         shared: dict[tuple[str, str], tuple[float, float]] = {}
-        denominator = 0.0
+        found: list[tuple[float, float]] = []
+        known = 0.0
         for source, part in self.parts.items():
             if source.dof == math.inf:
-                continue
-            if not source.pool:
-                denominator += part**4 / source.dof
-                continue
-            before, dof = shared.get((source.name, source.pool), (0.0, source.dof))
-            shared[source.name, source.pool] = (before + part * part, min(dof, source.dof))
-        denominator += math.fsum(total**2 / dof for total, dof in shared.values())
-        return self.variance**2 / denominator if denominator > 0.0 else math.inf
+                known += part * part
+            elif not source.pool:
+                found.append((part * part, source.dof))
+            else:
+                before, dof = shared.get((source.name, source.pool), (0.0, source.dof))
+                shared[source.name, source.pool] = (before + part * part, min(dof, source.dof))
+        return [*found, *shared.values(), (known, math.inf)]
 
     @property
     def interval95(self) -> float:
-        """Half-width of the 95 % interval [rad]."""
+        """Half-width of the 95 % interval [rad]: see ``statistics.few_degrees``."""
         if self.spread is not None:
             others = self.without(self.spread.name)
             mixture = self.spread.mixture
@@ -119,7 +124,7 @@ class Uncertain:
             beside = others.variance * max(wider, 1.0) ** 2
             if math.isfinite(beside):
                 return mixture.half_width(beside)
-        return student_quantile(0.975, max(self.dof, 1.0)) * self.sigma
+        return half_width95(self._estimates())
 
     def only(self, *names: str) -> Uncertain:
         """Keep the contributions of the named sources alone."""

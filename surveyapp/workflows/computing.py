@@ -13,12 +13,13 @@ import numpy as np
 
 from surveyapp.core.checks.evidence import Evidence, TraverseEvidence
 from surveyapp.core.checks.verdicts import verdicts, verdicts_of
-from surveyapp.core.network.oriented import oriented_lines
+from surveyapp.core.network.oriented import oriented_lines, with_shared_errors
 from surveyapp.core.network.traverse_network import network_of
 from surveyapp.core.orientation.outcome import outcome
 from surveyapp.core.orientation.unfinished import waiting_sides, without_unfinished
 from surveyapp.core.orientation.whole_project import Orientation, orient_project
 from surveyapp.domain.advance import Advance, silent
+from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.project import Project, ResultWarning
 from surveyapp.domain.results import OrientationResult
 from surveyapp.domain.traverse import GyroConstant, Network, OrientedLine
@@ -157,6 +158,13 @@ def oriented(
         advance=advance,
     )
     sides, constants, warnings = oriented_lines([line.result for line in found.lines])
+    gyro = {
+        (row.at, row.to)
+        for traverse in project.traverses
+        for row in traverse.rows
+        if row.kind is ObservationKind.GYRO
+    }
+    sides, constants = with_shared_errors((sides, constants), found.lines, found.deflections, gyro)
     left_out = kept.warnings[len(project.warnings) :]
     return OrientedProject(project, found, sides, constants, (*warnings, *left_out))
 

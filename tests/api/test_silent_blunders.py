@@ -62,6 +62,38 @@ def test_an_azimuth_against_fixed_coordinates(tmp_path: Path) -> None:
         assert failed(write(tmp_path / name, toml, books, head=TM)) == wanted
 
 
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [
+        ("0-00-05", set()),
+        ("3-00-00", set()),  # 10 m at 200 m: a plan may be as wrong
+        ("40-00-00", {"coordinates.line"}),  # another target, or the book of another session
+        ("180-00-05", {"coordinates.line"}),
+    ],
+)
+def test_an_azimuth_that_is_not_that_of_the_line_in_the_plan(
+    tmp_path: Path, text: str, wanted: set[str]
+) -> None:
+    n0 = 5_300_000.0
+    toml = station("A", e=0.0, n=n0) + station("B", e=0.0, n=n0 + 200.0) + AUTOMATIC + line()
+    books = {"s": rows(*[f"azimuth,{text}"] * 3)}
+    assert failed(write(tmp_path, toml, books, head=TM)) == wanted
+
+
+@pytest.mark.parametrize(("longitude", "told"), [(8.6, False), (9.0, True)])
+def test_a_line_far_from_its_calibration_is_asked_about(
+    tmp_path: Path, longitude: float, told: bool
+) -> None:
+    # at 47 degrees .6 degrees of longitude are 45.6 km, a degree 75.9 km
+    toml = AUTOMATIC + PLACE
+    toml += f"[[station]]\nname = 'C'\nlat = 47.0\nlon = {longitude}\n[[station]]\nname = 'D'\n"
+    known = line('azimuth_known = "45-00-00"').replace('"survey"', '"calibration"')
+    sought = line().replace('"A"', '"C"').replace('"B"', '"D"')
+    toml += known.replace('id = "s"', 'id = "k"') + sought
+    found = api.orient(write(tmp_path, toml, {"s": rows("azimuth,45-00-00")}))
+    assert ("constant_far" in {warning.code for warning in found.warnings}) is told
+
+
 def test_two_known_azimuths_of_one_line(tmp_path: Path) -> None:
     toml = AUTOMATIC + PLACE
     for number, azimuth in enumerate(("45-00-00", "45-01-00")):

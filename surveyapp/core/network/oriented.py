@@ -1,17 +1,27 @@
 """Oriented lines of the sessions as gyro sides of a network.
 
 The constant is taken apart from the gyro azimuth again, because in a network all sides of one
-instrument share it: as an unknown with its own sigma, not as independent noise.
+instrument share it: as an unknown with its own sigma, not as independent noise. What else sides
+share, the deflection of neighbouring stations above all, is a covariance of theirs.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+from dataclasses import replace
 
+from surveyapp.core.orientation.deflection_field import DeflectionField
+from surveyapp.core.orientation.lines import OrientedLine as Line
+from surveyapp.core.orientation.side_errors import SideErrors, side_errors
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.results import LineResult
 from surveyapp.domain.traverse import GyroConstant, OrientedLine
+
+NOTHING = 1e-12
+"""Correlation of two sides that is rounding of the arithmetic."""
+LEAST_SHARE = 1e-4
+"""Of a side's sigma: a constant known so well is known exactly, and the equations stay regular."""
 
 
 def _name(line: LineResult) -> str:
@@ -84,3 +94,70 @@ def oriented_lines(
         usable = common is not None and 0.0 < common < math.inf
         constants[name] = GyroConstant(name, value, common if usable else None)
     return tuple(sides), tuple(constants.values()), tuple(warnings)
+
+
+Oriented = tuple[tuple[OrientedLine, ...], tuple[GyroConstant, ...]]
+
+
+def with_shared_errors(
+    found: Oriented,
+    lines: Sequence[Line],
+    deflections: DeflectionField,
+    sides: Collection[tuple[str, str]],
+) -> Oriented:
+    """Gyro sides and constants with the covariance of what the sides of a network share.
+
+    Parameters
+    ----------
+    found : tuple of (sides, constants)
+        Of ``oriented_lines``.
+    lines : sequence of OrientedLine
+        With their error contributions apart.
+    deflections : DeflectionField
+    sides : collection of (station, target)
+        Those that stand in a traverse; the others stay as they are.
+
+    Returns
+    -------
+    tuple of (sides, constants)
+        The sigma of a constant becomes that of what all its sides have alike.
+    """
+    by_key = {(x.result.station, x.result.target, _name(x.result)): x for x in lines}
+    used = [
+        place
+        for place, item in enumerate(found[0])
+        if (item.station, item.target) in sides or (item.target, item.station) in sides
+    ]
+    if not used:
+        return found
+    names = [found[0][place].constant for place in used]
+    chosen = [by_key[found[0][p].station, found[0][p].target, found[0][p].constant] for p in used]
+    errors = side_errors(chosen, names, deflections)
+    oriented = list(found[0])
+    for row, place in enumerate(used):
+        oriented[place] = _with_row(oriented[place], errors, row, used)
+    constants = tuple(_with_sigma(item, errors, oriented) for item in found[1])
+    return tuple(oriented), constants
+
+
+def _with_row(
+    side: OrientedLine, errors: SideErrors, row: int, places: Sequence[int]
+) -> OrientedLine:
+    variances = errors.covariance.diagonal()
+    shared = tuple(
+        (place, float(value))
+        for other, (place, value) in enumerate(zip(places, errors.covariance[row], strict=True))
+        if other != row and abs(value) > NOTHING * math.sqrt(variances[row] * variances[other])
+    )
+    return replace(side, sigma=math.sqrt(float(variances[row])), covariance=shared)
+
+
+def _with_sigma(
+    constant: GyroConstant, errors: SideErrors, sides: Sequence[OrientedLine]
+) -> GyroConstant:
+    """A constant of which its sides share nothing stays known: free it would take their azimuth."""
+    variance = errors.constants.get(constant.name)
+    if variance is None or constant.sigma is None:
+        return constant
+    least = LEAST_SHARE * min(side.sigma for side in sides if side.constant == constant.name)
+    return replace(constant, sigma=max(math.sqrt(variance), least))

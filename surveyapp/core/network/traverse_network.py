@@ -170,10 +170,13 @@ def _collect(
     traverse: Traverse,
     lines: Sequence[OrientedLine],
     waiting: Collection[tuple[str, str]],
+    *,
+    done: set[int],
 ) -> tuple[list[Observation], list[tuple[int, int]], list[CorrelatedBlock], list[Problem]]:
     """Observations, (line, observation) of the gyro sides, blocks of set-ups, problems.
 
-    A gyro side whose session is still being observed is passed over.
+    A gyro side whose session is still being observed is passed over, and one that stands in a row
+    before (``done``, which grows): an azimuth is one observation however often it is named.
     """
     known, problems = book_observations(traverse, project.stations)
     lengths = _lengths(traverse.rows, {station.name: station for station in project.stations})
@@ -191,6 +194,9 @@ def _collect(
         if not found and (row.at, row.to) not in waiting:
             problems.append(_not_oriented(row, traverse, lines))
         for place, obs in found:
+            if place in done:
+                continue
+            done.add(place)
             gyro.append((place, len(observations)))
             observations.append(obs)
     return observations, gyro, as_blocks(blocks, member_of), problems
@@ -326,8 +332,9 @@ def network_of(
     blocks: list[CorrelatedBlock] = []
     problems: list[Problem] = []
     warnings: list[ResultWarning] = []
+    done: set[int] = set()
     for header in chosen:
-        found, sides, shared_by, faults = _collect(project, header, lines, waiting)
+        found, sides, shared_by, faults = _collect(project, header, lines, waiting, done=done)
         blocks += [
             replace(block, members=tuple(m + len(observations) for m in block.members))
             for block in shared_by

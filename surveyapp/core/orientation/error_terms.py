@@ -22,6 +22,7 @@ from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import Project, ResultWarning
 from surveyapp.domain.subject import Subject
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC
 
 LEVEL_SIGMA: Final = 10.0 * ARCSEC
@@ -29,6 +30,11 @@ LEVEL_SIGMA: Final = 10.0 * ARCSEC
 article 63: the bubble leaves its middle by half a division at most."""
 LATITUDE_WARNING: Final = math.radians(1.0)
 """Lines further apart in latitude do not share a constant without a word."""
+
+FAR_M: Final = 50_000.0
+"""Lines further apart than any mine is wide: plumb lines have nothing in common any more (its
+correlation length is 20 km), and a degree of a coordinate may be mistyped."""
+EARTH_RADIUS_M: Final = 6371000.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +115,42 @@ def latitude_warnings(project: Project, positions: Mapping[str, Position]) -> li
             subject = Subject.of("instrument", instrument.id)
             warnings.append(ResultWarning("constant_latitude", text, subject))
     return warnings
+
+
+def distance_warnings(project: Project, positions: Mapping[str, Position]) -> list[ResultWarning]:
+    """Surveys further from every calibration of their instrument than any mine is wide."""
+    warnings = []
+    for instrument in project.instruments:
+        own = [s for s in project.sessions if s.instrument == instrument.id]
+        known = {s.station for s in own if s.purpose == "calibration"}
+        for station in sorted({s.station for s in own if s.purpose == "survey"} - known):
+            apart = [
+                distance
+                for other in known
+                if (distance := _apart_m(positions[station], positions[other])) is not None
+            ]
+            if not apart or min(apart) <= FAR_M:
+                continue
+            text = said(
+                "{station} lies {distance:.0f} km from the nearest calibration of {instrument} by "
+                "its coordinates: are they right? Convergence and deflection go with them",
+                station=station,
+                distance=min(apart) / 1000.0,
+                instrument=instrument.id,
+            )
+            subject = Subject.of("station", station)
+            warnings.append(ResultWarning("constant_far", text, subject))
+    return warnings
+
+
+def _apart_m(a: Position, b: Position) -> float | None:
+    """Distance of two positions on the sphere [m], None where a latitude is not known."""
+    if None in (a.latitude, a.longitude, b.latitude, b.longitude):
+        return None
+    north = (a.latitude or 0.0) - (b.latitude or 0.0)
+    east = math.remainder((a.longitude or 0.0) - (b.longitude or 0.0), 2.0 * math.pi)
+    middle = 0.5 * ((a.latitude or 0.0) + (b.latitude or 0.0))
+    return EARTH_RADIUS_M * math.hypot(north, east * math.cos(middle))
 
 
 def _side(geometry: LineGeometry) -> str:

@@ -174,13 +174,17 @@ class Round:
 
 @dataclass(frozen=True, slots=True)
 class OrientedLine:
-    """A line with its error contributions still apart: for checks and for adjustment."""
+    """A line with its error contributions still apart: for checks and for adjustment.
+
+    ``without_constant`` is the gyro azimuth with the errors of deflection and convergence.
+    """
 
     result: LineResult
     gyro: Uncertain
     true: Uncertain | None
     grid: Uncertain | None
     agreement: Consistency | None
+    without_constant: Uncertain
 
 
 def angle_result(item: Uncertain, reference: Reference | None = None) -> AngleResult:
@@ -244,7 +248,9 @@ def orient_line(
         existing_azimuth=None if existing is None else wrap_two_pi(existing),
         distance_m=geometry.distance_m,
     )
-    return OrientedLine(result, gyro, true, grid, consistency([aligned(agreement_of)]))
+    agreement = consistency([aligned(agreement_of)])
+    alone = replace(gyro - deflection - geometry.convergence_error, value=gyro.value)
+    return OrientedLine(result, gyro, true, grid, agreement, alone)
 
 
 def _levelling(rounds: Sequence[Round], weights: Sequence[float]) -> float | None:

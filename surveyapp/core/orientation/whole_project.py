@@ -33,6 +33,7 @@ from surveyapp.core.orientation.campaign_columns import session_temperature
 from surveyapp.core.orientation.deflection_field import DeflectionField, deflection_field
 from surveyapp.core.orientation.error_terms import (
     Circumstance,
+    distance_warnings,
     latitude_warnings,
     with_error_terms,
 )
@@ -144,6 +145,7 @@ def orient_project(
     geometry = _geometries(reduced, stations, grid, positions, deflections)
     reduced = _with_terms(project, reduced, geometry)
     warnings += latitude_warnings(project, positions)
+    warnings += distance_warnings(project, positions)
     groups = {item.id: run_groups(project, reduced, item.id) for item in project.instruments}
     reduced, more = with_scatter_sigma(project, reduced, groups)
     measured = without_answered(measured, reduced)
