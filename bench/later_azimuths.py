@@ -57,10 +57,10 @@ Ratio: interval of the azimuth over that with the mean (median). Reference: rms 
 """
 
 
-MORE = """Programmes of another make (`bench/_programmes.py`), on which the clean share was set: trips
-down the mine with determinations on the surface before and after, later visits in warm rock and on new
-lines, noise with heavier tails whose stated sigma is wrong by a seventh, sizes half-normal, other
-forms of every cause:"""
+MORE = """Programmes of another make (`bench/_programmes.py`), on which the clean share was set:
+trips down the mine with determinations on the surface before and after, later visits in warm rock
+and on new lines, noise with heavier tails whose stated sigma is wrong by a seventh, sizes
+half-normal, other forms of every cause:"""
 
 
 def as_reference(found: Members) -> Members:
