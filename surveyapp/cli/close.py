@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 
 from surveyapp.cli.output import print_json
 from surveyapp.domain.filing import ClosingResult
@@ -22,11 +23,16 @@ def run(options: argparse.Namespace) -> int:
     from surveyapp import api
 
     result = api.close(options.folder, session=options.session, by=options.by, note=options.note)
-    return tell(result, as_json=options.json)
+    return tell(result, as_json=options.json, folder=options.folder)
 
 
-def tell(result: ClosingResult, *, as_json: bool) -> int:
-    """Print a closing or a reopening."""
+def tell(result: ClosingResult, *, as_json: bool, folder: str) -> int:
+    """Print a closing or a reopening, and that a record on the disk is out of date now."""
+    from surveyapp.observation.record import outdated_told
+
+    outdated = outdated_told(folder)
+    if outdated:
+        print(outdated, file=sys.stderr)
     if as_json:
         print_json(result.to_dict())
         return 0

@@ -43,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
                 sigma = number(to_arcsec(session.gyro_north.sigma))
                 print(f'  {session.id}: gyro north by {session.estimator} {north} +-{sigma}"')
         for check in sample.default.checks:
-            if check.passed is False and not check.rule.startswith("fit."):
+            if check.passed is False and not check.is_part:
                 print(paragraph(f"not met: {check.where}: {check.text}"))
         print()
     print("Look closer: surveyapp orient DIR, or the screens: surveyapp open DIR")

@@ -15,7 +15,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folder", metavar="DIR", nargs="?", help="project folder")
     parser.add_argument("-o", "--output", metavar="FILE.pdf", help="PDF to be written")
     parser.add_argument("--blank", metavar="METHOD", help="a blank form instead of a record")
-    parser.add_argument("--font", metavar="FILE.ttf", help="face for Chinese, Japanese, Korean")
+    parser.add_argument(
+        "--font", metavar="FILE.ttf", help="face, or folder of faces, for further letters"
+    )
     add_language(parser)
     parser.add_argument(
         "--diagnosis", action="store_true", help="diagnose every run and campaign in it"

@@ -30,6 +30,8 @@ NOISE_AND_SHAPES = {
 }
 
 
+HALF_SWINGS = "half swing"
+"""Unit of places in a run: half swings since the first turning point."""
 Labels = Mapping[str, Mapping[float, str]]
 
 
@@ -119,12 +121,25 @@ def _adopted(result: Diagnosis, item: Adoption, known: dict[str, Effect], labels
     parts = [
         f"{c.name} {c.value:.3g} {c.unit} (sigma {c.sigma or 0.0:.1g})" for c in item.coefficients
     ]
-    where = ", ".join(_place(n, v, labels) for n, v, _ in item.grid)
+    turns = [_turning_point(name, value) for name, value, unit in item.grid if unit == HALF_SWINGS]
+    if any(turns):
+        where = ", ".join(text for text in turns if text)
+    else:
+        where = ", ".join(_place(n, v, labels) for n, v, _ in item.grid)
     place = f" at {where}" if where else ""
     margin = ""
     if item.margin_bic is not None:
         margin = f"; the next explanation is {item.margin_bic:.0f} BIC worse"
     return f"{item.title}: it looks as if {symptom}{place}: {', '.join(parts)}{margin}."
+
+
+def _turning_point(name: str, value: float) -> str:
+    """Where in a run, counted from 1 as everywhere that a surveyor reads it; else empty."""
+    base, _, number = name.rpartition("_")
+    kind = base if number.isdigit() else name
+    if kind == "after_point":
+        return f"turning point {value + 1.0:g} to {value + 2.0:g}"
+    return f"turning point {value + 1.0:g}" if kind in ("point", "position") else ""
 
 
 def _place(name: str, value: float, labels: Labels) -> str:

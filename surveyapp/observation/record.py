@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Final
 
 from surveyapp import api
+from surveyapp.domain.project import Project
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.files import read_inside
 from surveyapp.io.guarded import checked_inside, is_regular
 from surveyapp.languages import current
+from surveyapp.report.stamp import stamp_in, stamp_of
+
+RECORD: Final = "results/record.pdf"
 
 
 def write_record(folder: api.Folder) -> str:
@@ -18,7 +24,7 @@ def write_record(folder: api.Folder) -> str:
     SurveyError
         If the project cannot be used or the folder cannot be written to.
     """
-    checked_inside(Path(folder), "results/record.pdf", where="results")
+    checked_inside(Path(folder), RECORD, where="results")
     path = Path(folder) / "results"
     try:
         path.mkdir(exist_ok=True)
@@ -30,4 +36,31 @@ def write_record(folder: api.Folder) -> str:
 
 def record_written(folder: api.Folder) -> bool:
     """Whether a record of the project stands in its results folder."""
-    return is_regular(Path(folder) / "results" / "record.pdf")
+    return is_regular(Path(folder) / RECORD)
+
+
+def record_outdated(project: Project) -> bool:
+    """Whether the record in the results folder shows another state than the project has now.
+
+    Compared are the sha256 of everything that was read and the closings in force.
+    """
+    folder = Path(project.path)
+    if not record_written(folder):
+        return False
+    try:
+        data = read_inside(folder, RECORD, where=RECORD)
+    except SurveyError:
+        return True
+    now = stamp_of(project.digest, [item.head for item in project.filing.closings])
+    return stamp_in(data) != now
+
+
+def outdated_told(folder: api.Folder) -> str:
+    """A sentence about a record that is out of date, empty where there is none."""
+    try:
+        outdated = record_outdated(api.open_project(folder))
+    except SurveyError:
+        outdated = record_written(folder)
+    if not outdated:
+        return ""
+    return f"{RECORD} is out of date: surveyapp report DIR -o DIR/{RECORD} makes it again"

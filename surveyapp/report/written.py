@@ -82,5 +82,6 @@ def missing_text(missing: tuple[tuple[str, str], ...]) -> str:
     more = f" and {len(missing) - _SHOWN} more" if len(missing) > _SHOWN else ""
     return (
         f"No type face at hand has {letters} of the letters in: {shown}{more}. The record prints "
-        "their codes in brackets; --font FILE.ttf names a face that has them."
+        "their codes in brackets. pip install 'surveyapp[glyphs]' brings Arabic, Hebrew and Thai; "
+        "--font FILE.ttf, or a folder of faces, names what has the others."
     )

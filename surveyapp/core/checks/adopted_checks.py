@@ -16,6 +16,7 @@ from surveyapp.core.orientation.campaign_columns import LABELLED
 from surveyapp.core.orientation.session_digest import sessions_digest
 from surveyapp.domain.instrument import AdoptedEffect, Instrument
 from surveyapp.domain.project import OrientationSession, Project, ResultWarning
+from surveyapp.domain.subject import Subject
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Coefficient, Effect, SubjectId
@@ -234,7 +235,7 @@ def _told(project: Project, instrument: Instrument) -> list[ResultWarning]:
             "adopted effects reduce every azimuth"
         )
         found.append(ResultWarning("known_constant_at_reference", text))
-    return found
+    return [item.about(Subject.of("instrument", instrument.id)) for item in found]
 
 
 def _changed(
@@ -259,7 +260,8 @@ def _changed(
         f"{owner}the data that chose the adopted effect {adopted.id} {why}: diagnose again without "
         "it, and adopt anew"
     )
-    return [ResultWarning("adopted_data_changed", text)]
+    subject = None if session is None else Subject.session(session.id)
+    return [ResultWarning("adopted_data_changed", text, subject)]
 
 
 __all__ = ["check_adopted", "identity_of", "numbered", "occurrences"]

@@ -146,7 +146,7 @@ def refuse_other_convergence(
 
 def place_warnings(lines: Sequence[LineGeometry], grid: Grid | None) -> list[ResultWarning]:
     """Warn of lines too long to be sighted, and of stations beside the area of the grid."""
-    warnings: dict[str, ResultWarning] = {}
+    warnings: list[ResultWarning] = []
     for line in lines:
         name = f"{line.start.name}-{line.end.name}"
         if line.distance_m is not None and line.distance_m > LONGEST_LINE_M:
@@ -154,9 +154,8 @@ def place_warnings(lines: Sequence[LineGeometry], grid: Grid | None) -> list[Res
                 f"line {name} is {line.distance_m / 1000.0:.0f} km long by its coordinates: "
                 "are they in the right order, and in this grid?"
             )
-            warnings[name] = ResultWarning(
-                "line_long", text, Subject.side(line.start.name, line.end.name)
-            )
+            side = Subject.side(line.start.name, line.end.name)
+            warnings.append(ResultWarning("line_long", text, side))
         at = line.position
         if grid is None or at.latitude is None or at.longitude is None:
             continue
@@ -167,8 +166,8 @@ def place_warnings(lines: Sequence[LineGeometry], grid: Grid | None) -> list[Res
                 "coordinates in the right order, and is it the right crs?"
             )
             subject = Subject.of("station", line.start.name)
-            warnings[f"{line.start.name} of {name}"] = ResultWarning("outside_grid", text, subject)
-    return list({warning.text: warning for warning in warnings.values()}.values())
+            warnings.append(ResultWarning("outside_grid", text, subject))
+    return list(dict.fromkeys(warnings))
 
 
 def azimuth_warnings(line: LineResult) -> list[ResultWarning]:

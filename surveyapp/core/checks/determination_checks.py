@@ -18,6 +18,7 @@ from surveyapp.core.statistics.repeated import consistency
 from surveyapp.core.uncertain import Uncertain
 from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.results import Check
+from surveyapp.domain.station_line import StationLine
 from surveyapp.domain.subject import Subject
 from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, wrap_pi
 
@@ -31,7 +32,7 @@ def determination_checks(orientation: Orientation) -> list[Check]:
 
 
 def _agreement(orientation: Orientation) -> list[Check]:
-    groups: dict[tuple[str, str, int], list[Calibration]] = {}
+    groups: dict[tuple[str, StationLine, int], list[Calibration]] = {}
     for constant in orientation.constants:
         for item in constant.calibrations:
             key = (constant.instrument.id, item.line, item.block)

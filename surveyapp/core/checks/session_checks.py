@@ -82,7 +82,8 @@ def _point_name(item: ReducedSession, test: FitTest) -> str:
     points = item.reduction.points
     if test.point >= len(points):
         return f", passage {test.point - len(points) + 1}"
-    return f", turning point {test.point + 1} (seq {points[test.point].seq})"
+    point = points[test.point]  # counted as in alarm, diagnosis and record: with missed ones
+    return f", turning point {point.index + 1} (seq {point.seq})"
 
 
 def _fit_summary(item: ReducedSession) -> list[Check]:

@@ -78,11 +78,11 @@ def oriented_lines(
         sigma = _own_sigma(line)
         if not 0.0 < sigma < math.inf:
             text = f"gyro line {sight}: its sigma is not known, it is not used in the traverse"
-            warnings.append(ResultWarning("gyro_sigma_unknown", text))
+            warnings.append(ResultWarning("gyro_sigma_unknown", text, line.subject))
             continue
         if line.convergence is None:
             text = f"gyro line {sight}: without a CRS its convergence is taken as 0"
-            warnings.append(ResultWarning("convergence_unknown", text))
+            warnings.append(ResultWarning("convergence_unknown", text, line.subject))
         reduction = (line.convergence or 0.0) + line.deflection + (line.arc_to_chord or 0.0)
         value, common = shared.get(name, (line.constant or 0.0, line.constant_sigma))
         if line.constant is not None and line.constant_sigma is not None and common is not None:

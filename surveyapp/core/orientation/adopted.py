@@ -20,16 +20,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from surveyapp.core.geodesy import Position
-from surveyapp.core.orientation.campaign_columns import BLOCK_GAP_DAYS, LABELLED, Place
+from surveyapp.core.orientation.campaign_columns import BLOCK_GAP_DAYS, LABELLED, Name, Place
 from surveyapp.core.orientation.circumstances import (
     Circumstances,
     circumstances_of,
     columns_of,
+    name_of,
 )
 from surveyapp.core.swing.session import ReducedSession, TargetReduction
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import AdoptedEffect, Instrument
 from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.station_line import StationLine
+from surveyapp.domain.subject import Subject
 from surveyapp_models.angles import RHO_ARCSEC
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
@@ -122,13 +125,13 @@ def _not_moved(
     calibrations: Sequence[int],
 ) -> list[ResultWarning]:
     """Surveys of the very line that stands off: its offset is not the gyro's."""
-    line = dict(adopted.grid).get("line")
+    line = _named(adopted, facts).get("line")
     told = {
         sessions[i]: None
         for i in range(len(sessions))
         if i not in calibrations and facts[i].name("line") == line
     }
-    if not told:
+    if not told or not isinstance(line, StationLine):
         return []
     size = ", ".join(f"{value:+.1f} {unit}" for _, value, _, unit in adopted.coefficients)
     text = (
@@ -136,7 +139,7 @@ def _not_moved(
         f"effect {adopted.id}): its known azimuth, centring or deflection; a survey of it is not "
         "moved by that"
     )
-    return [ResultWarning("line_not_moved", text)]
+    return [ResultWarning("line_not_moved", text, Subject.side(line.station, line.target))]
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,7 +223,7 @@ def _columns(
     effect: Effect, adopted: AdoptedEffect, facts: Sequence[Circumstances]
 ) -> dict[str, Floats]:
     """The columns that an effect needs; a named line or block has the number 0."""
-    named = {name: str(value) for name, value in adopted.grid if name in LABELLED}
+    named = _named(adopted, facts)
     columns = columns_of(
         facts, known={name: [value] for name, value in named.items()}, time=adopted.time
     )
@@ -233,6 +236,15 @@ def _columns(
         within = (dates >= start) & (dates <= end)
         columns["block"] = np.where(np.isnan(dates), np.nan, np.where(within, 0.0, 1.0))
     return {need.name: columns[need.name] for need in effect.needs}
+
+
+def _named(adopted: AdoptedEffect, facts: Sequence[Circumstances]) -> dict[str, Name]:
+    """The line or block of an effect, found by its text among those that were observed."""
+    return {
+        column: name_of(str(text), [fact.name(column) for fact in facts])
+        for column, text in adopted.grid
+        if column in LABELLED
+    }
 
 
 def _grid(adopted: AdoptedEffect) -> dict[str, float]:
@@ -344,7 +356,7 @@ def _missing_warning(
         f'taken as {where}, and the most that it may differ, {excess * RHO_ARCSEC:.1f}", enters '
         "the sigma"
     )
-    return ResultWarning("effect_outside_range", text)
+    return ResultWarning("effect_outside_range", text, Subject.session(session))
 
 
 def _outside_warning(
@@ -359,7 +371,7 @@ def _outside_warning(
         text += f'what lies beyond, {excess * RHO_ARCSEC:.1f}", enters the sigma'
     else:
         text += "beyond it the effect does not change: the sigma stays"
-    return ResultWarning("effect_outside_range", text)
+    return ResultWarning("effect_outside_range", text, Subject.session(session))
 
 
 def _root(adopted: AdoptedEffect) -> Floats:

@@ -85,7 +85,7 @@ def calibrations_of(
 
 def _unusable(session: OrientationSession, target: str, why: str) -> ResultWarning:
     text = f"session {session.id}, line {session.station}-{target}: no constant from it: {why}"
-    return ResultWarning("calibration_unusable", text)
+    return ResultWarning("calibration_unusable", text, Subject.session(session.id, target))
 
 
 def _contradiction(
@@ -99,7 +99,7 @@ def _contradiction(
         f'the coordinates, which give {-apart * RHO_ARCSEC:+.1f}": '
         f"{abs(apart) * line.distance_m:.2f} m at the target"
     )
-    return [ResultWarning("azimuth_known_differs", text)]
+    return [ResultWarning("azimuth_known_differs", text, Subject.session(session.id))]
 
 
 def _assumed(session: OrientationSession, target: str, known: KnownError) -> list[ResultWarning]:

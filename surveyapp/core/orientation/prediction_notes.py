@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from surveyapp.core.orientation.circumstances import Circumstances
 from surveyapp.core.uncertain import Uncertain
 from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.station_line import StationLine
+from surveyapp.domain.subject import Subject
 from surveyapp_models.angles import RHO_ARCSEC
 
 ONE_TEMPERATURE_K = 3.0
@@ -20,13 +22,12 @@ class Wanted:
 
     Parameters
     ----------
-    name : str
-        For messages.
+    line : StationLine
     visits : tuple of (float, Circumstances)
         Weight (sum 1) and circumstances of each session.
     """
 
-    name: str
+    line: StationLine
     visits: tuple[tuple[float, Circumstances], ...]
 
 
@@ -39,22 +40,23 @@ def told_of(
     """What the reader of a predicted constant must know."""
     warnings = []
     for line in wanted:
+        subject = Subject.line(line.line.station, line.line.target, instrument)
         missing = sorted(
             name for name in gaps if any(_lacks(visit, name) for _, visit in line.visits)
         )
         if missing:
             text = (
-                f"line {line.name}: {', '.join(missing)} not told: the constant is predicted for "
+                f"line {line.line}: {', '.join(missing)} not told: the constant is predicted for "
                 "all that it may have been, and its interval is wider for it"
             )
-            warnings.append(ResultWarning("covariate_missing", text))
+            warnings.append(ResultWarning("covariate_missing", text, subject))
         beyond = _beyond(line, known)
         if beyond:
             text = (
-                f"line {line.name}: {' and '.join(beyond)}: the constant of {instrument} is "
+                f"line {line.line}: {' and '.join(beyond)}: the constant of {instrument} is "
                 "extrapolated, and its interval is wider for it"
             )
-            warnings.append(ResultWarning("prediction_extrapolated", text))
+            warnings.append(ResultWarning("prediction_extrapolated", text, subject))
     return warnings
 
 

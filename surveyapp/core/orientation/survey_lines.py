@@ -17,6 +17,7 @@ from surveyapp.core.statistics.repeated import RunScatter
 from surveyapp.core.swing.session import ReducedSession
 from surveyapp.core.uncertain import Uncertain
 from surveyapp.domain.project import Project, ResultWarning, Station, grid_distance_m
+from surveyapp.domain.subject import Subject
 from surveyapp.errors import Problem, SurveyError
 
 
@@ -103,7 +104,11 @@ class SurveyedLines:
                     agreement_of=[azimuth for _, azimuth in members],
                 )
             )
-            warnings += [warning for item in rounds for warning in item.chosen.warnings]
+            warnings += [
+                warning.about(Subject.session(item.session, target))
+                for item in rounds
+                for warning in item.chosen.warnings
+            ]
             warnings += _line_warnings(lines[-1])
         if problems:
             raise SurveyError(problems)
@@ -121,7 +126,7 @@ def _round(
     session = item.session
     constant, scatter, order = known
     choice = session.constant_choice or constant.choice
-    if choice == "predicted" and predicted is not None:
+    if choice.kind == "predicted" and predicted is not None:
         chosen = Chosen(predicted.constant, "predicted")
         own = predicted.scatter.applied(azimuth, session.id)
         return Round(session.id, own, chosen, rounds_of(item), own_centring(session))
@@ -129,11 +134,13 @@ def _round(
     def distance_to(name: str) -> float | None:
         return grid_distance_m(stations[session.station], stations[name])
 
-    running = running_constant(constant, choice, block=order.block(session.id))
+    running = None
+    if choice.kind == "running":
+        running = running_constant(constant, choice.count, block=order.block(session.id))
     if running is not None:
         own = scatter.applied(azimuth, session.id)
         return Round(
-            session.id, own, Chosen(running, choice), rounds_of(item), own_centring(session)
+            session.id, own, Chosen(running, str(choice)), rounds_of(item), own_centring(session)
         )
     chosen = choose(
         constant,
@@ -143,8 +150,8 @@ def _round(
         distance_to=distance_to,
         where=f"session {session.id}",
     )
-    if predicted is not None and chosen.value is not None and choice != "known":
-        told = leaves_out(choice, chosen.value, predicted.constant, f"session {session.id}")
+    if predicted is not None and chosen.value is not None and choice.kind != "known":
+        told = leaves_out(str(choice), chosen.value, predicted.constant, f"session {session.id}")
         chosen = replace(chosen, warnings=(*chosen.warnings, told))
     own = scatter.applied(azimuth, session.id)
     return Round(session.id, own, chosen, rounds_of(item), own_centring(session))

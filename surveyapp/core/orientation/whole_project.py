@@ -312,7 +312,9 @@ def _reduce_one(
             )
             subject = Subject.session(session.id, target.target)
             warnings.append(ResultWarning("one_face", text, subject))
-    return ReducedSession(session, reduction, targets, (*reduction.warnings, *warnings))
+    own = Subject.session(session.id)
+    told = tuple(item.about(own) for item in (*reduction.warnings, *warnings))
+    return ReducedSession(session, reduction, targets, told)
 
 
 def _latitude_warnings(

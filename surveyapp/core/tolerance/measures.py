@@ -118,7 +118,7 @@ def calibration_means_difference(orientation: Orientation) -> list[Measured]:
     for constant in orientation.constants:
         for line, _ in constant.lines:
             own = [item for item in constant.calibrations if item.line == line]
-            subject = Subject.line(own[0].station, own[0].target, constant.instrument.id)
+            subject = Subject.line(line.station, line.target, constant.instrument.id)
             if len(own) < 2:
                 found.append(_missing(name, subject, "a second calibration of this side"))
                 continue

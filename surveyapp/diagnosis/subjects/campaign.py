@@ -277,7 +277,7 @@ def _columns(
     for name, values in columns_of(facts).items():
         names = [fact.name(name) for fact in facts] if name in LABELLED else []
         if name == "block" and not all(names) and dated:
-            names = block_names([d.day for d in determinations])
+            names = [*block_names([d.day for d in determinations])]
         if name in LABELLED and all(names):
             columns[name], labels[name] = numbered(names)
         elif name == "elapsed_days":

@@ -14,6 +14,7 @@ import numpy as np
 
 from surveyapp.core.checks.adopted_checks import occurrences
 from surveyapp.core.orientation.adopted import SOURCE
+from surveyapp.core.orientation.campaign_columns import Name
 from surveyapp.core.orientation.circumstances import Circumstances, facts_of
 from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.core.statistics.repeated import SHARED
@@ -218,7 +219,7 @@ def _azimuths(
     by_key: dict[tuple[str, str], Circumstances],
 ) -> list[Determination]:
     """Repeated gyro azimuths of the most often observed line of an uncalibrated instrument."""
-    lines: dict[str, list[Determination]] = {}
+    lines: dict[Name, list[Determination]] = {}
     for item in orientation.sessions:
         if item.session.instrument != instrument:
             continue

@@ -128,7 +128,7 @@ def _figures(
         if len(points) < 2:
             continue
         frame = Frame(
-            axis([x for x, _ in points], count=10),
+            axis([x for x, _ in points], count=10, whole=True),
             axis([y for _, y in points], about_zero=True),
             height_mm=40.0,
         )

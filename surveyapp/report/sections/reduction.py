@@ -323,7 +323,8 @@ def _swing(item: SessionResult) -> Figure:
     observed = [(float(p.index + 1), minutes(p.observed)) for p in item.points]
     fitted = [(float(p.index + 1), minutes(p.fitted)) for p in item.points if p.fitted is not None]
     frame = Frame(
-        axis([x for x, _ in observed], count=10), axis([y for _, y in observed], about_zero=True)
+        axis([x for x, _ in observed], count=10, whole=True),
+        axis([y for _, y in observed], about_zero=True),
     )
     parts = frame.axes(said("turning point"), said("arcmin from gyro north as observed"))
     parts.append(frame.level(0.0, "mean"))
@@ -337,7 +338,9 @@ def _scale_swing(item: SessionResult) -> Figure:
     """Turning points on the scale, the fitted swing between them."""
     observed = [(float(p.index + 1), p.observed) for p in item.points]
     fitted = [(float(p.index + 1), p.fitted) for p in item.points if p.fitted is not None]
-    frame = Frame(axis([x for x, _ in observed], count=10), axis([y for _, y in observed]))
+    frame = Frame(
+        axis([x for x, _ in observed], count=10, whole=True), axis([y for _, y in observed])
+    )
     parts = frame.axes(said("turning point"), said("divisions"))
     middle = {name: value for name, value, _ in item.quantities}.get("middle of the swing")
     if middle is not None:
@@ -355,7 +358,9 @@ def _residuals(item: SessionResult, points: list[tuple[float, float]], unit: str
         sigma = item.reading_sigma * (RHO_ARCSEC if unit == "arcsec" else 1.0)
     values = [y for _, y in points] + ([2.0 * sigma] if sigma else [])
     frame = Frame(
-        axis([x for x, _ in points], count=10), axis(values, about_zero=True), height_mm=45.0
+        axis([x for x, _ in points], count=10, whole=True),
+        axis(values, about_zero=True),
+        height_mm=45.0,
     )
     parts = frame.axes(said("point"), unit)
     parts.append(frame.level(0.0, "axis"))

@@ -20,7 +20,7 @@ from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import SurveyError
 from surveyapp.observation.practice import Practice
-from surveyapp.observation.record import record_written, write_record
+from surveyapp.observation.record import record_outdated, record_written, write_record
 from surveyapp.tui import texts
 from surveyapp.tui.drafts import Draft
 from surveyapp.tui.entry_desk import problem_text
@@ -124,6 +124,8 @@ class ResultScreen(Screen[None]):
             self.query_one("#truth", Static).update(truth)
             self.query_one("#truth").display = bool(truth)
         self.show_sections()
+        if record_outdated(message.project):
+            self.post_message(self.Told(texts.RECORD_OLD))
 
     def on_resize(self) -> None:
         """The drawing takes the width that there is."""

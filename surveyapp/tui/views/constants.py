@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from surveyapp.domain.results import Check, ConstantResult, OrientationResult
+from surveyapp.domain.subject import Subject
 from surveyapp.tui import texts
 from surveyapp.tui.views.checks import quantity_text
 from surveyapp.tui.views.form import arcsec_text, number_text
@@ -16,7 +17,7 @@ CONSTANT_COLUMNS = (
     texts.COL_LENGTH,
 )
 
-CONSTANT_RULES = "constant."
+CONSTANT_TESTS = ("constant.lines", "constant.before_after", "constant.known")
 
 
 def constant_rows(result: OrientationResult) -> list[tuple[str, ...]]:
@@ -61,10 +62,9 @@ def constant_of(result: OrientationResult, row: int) -> ConstantResult | None:
 
 def tests_of(result: OrientationResult, constant: ConstantResult) -> tuple[Check, ...]:
     """The tests whether the constant of an instrument stands still."""
+    own = Subject.of("instrument", constant.instrument)
     return tuple(
-        check
-        for check in result.checks
-        if check.rule.startswith(CONSTANT_RULES) and check.where == constant.instrument
+        check for check in result.checks if check.rule in CONSTANT_TESTS and check.subject == own
     )
 
 
