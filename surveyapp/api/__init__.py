@@ -51,6 +51,13 @@ from surveyapp.api.penetration import (
     trial,
 )
 from surveyapp.api.pooling import diagnose_instrument
+from surveyapp.api.programmes import (
+    begin_programme,
+    finish_programme,
+    programme_state,
+    programmes,
+    record_programme,
+)
 from surveyapp.api.project import (
     SOFTWARE,
     Folder,
@@ -109,6 +116,7 @@ if TYPE_CHECKING:
     from surveyapp.domain.noise import AllanResult, FilterResult
     from surveyapp.domain.north import NorthResult
     from surveyapp.domain.penetration_result import Prediction
+    from surveyapp.domain.programme import ProgrammeResult, ProgrammeState
     from surveyapp.domain.project import ResultWarning
     from surveyapp.domain.records import Listing
     from surveyapp.domain.results import (
@@ -160,6 +168,8 @@ _TYPES: Final = {
     "NorthResult": "surveyapp.domain.north",
     "OpenedLog": "surveyapp.api.sensors",
     "Prediction": "surveyapp.domain.penetration_result",
+    "ProgrammeResult": "surveyapp.domain.programme",
+    "ProgrammeState": "surveyapp.domain.programme",
     "ReportResult": "surveyapp.report.written",
     "ResultWarning": "surveyapp.domain.project",
     "SensorDiagnosed": "surveyapp.workflows.diagnosing_sensor",
@@ -232,6 +242,11 @@ __all__ = [
     "preview_sensor_log",
     "add_sensor_log",
     "sensor_pictures",
+    "programmes",
+    "begin_programme",
+    "programme_state",
+    "record_programme",
+    "finish_programme",
     "batch",
     "batch_rows",
     "report",
@@ -303,4 +318,6 @@ __all__ = [
     "SensorDiagnosis",
     "LogPreview",
     "SensorPictures",
+    "ProgrammeResult",
+    "ProgrammeState",
 ]
