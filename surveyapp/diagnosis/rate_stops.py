@@ -13,15 +13,13 @@ from surveyapp.core.sensors.rate.hand_held import (
     fit_rates,
     turn_rows,
 )
+from surveyapp.core.sensors.rate.held_turns import ACCELEROMETERS, rest_rates, turns_between
 from surveyapp.core.sensors.rate.multi_position_log import (
-    ACCELEROMETERS,
     LEAST_STOPS,
     LEAST_TURNS,
     MultiPositionOptions,
     force_model,
     held_stops,
-    rest_rates,
-    turns_between,
 )
 from surveyapp.core.sensors.rate.position_log import (
     GYROS,
@@ -103,7 +101,7 @@ def _turned(
     log: SensorLog, stops: Sequence[HeldStop], model: ForceModel, latitude: float | None
 ) -> list[RateTurn]:
     """The turns between the stops, where there are enough for the gyros' own elements."""
-    turns = turns_between(log, stops, model, MultiPositionOptions(latitude))
+    turns = turns_between(log, stops, model, latitude)
     if len(turns) < LEAST_TURNS:
         return []
     inverse = fit_rates(turns).matrix

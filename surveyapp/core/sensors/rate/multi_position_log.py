@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -22,6 +21,14 @@ from surveyapp.core.sensors.rate.hand_held import (
     left_out,
     shifted_forces,
     with_frame,
+)
+from surveyapp.core.sensors.rate.held_turns import (
+    ACCELEROMETERS,
+    GYROS,
+    rest_rates,
+    turns_between,
+    ups_of,
+    with_g_sensitivity,
 )
 from surveyapp.core.sensors.rate.parameters import DEG_H, PPM
 from surveyapp.core.sensors.rate.still import (
@@ -47,10 +54,7 @@ from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2, SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
-from surveyapp_models.constants import EARTH_RATE
 
-GYROS = ("gyr_x_rad_s", "gyr_y_rad_s", "gyr_z_rad_s")
-ACCELEROMETERS = ("acc_x_m_s2", "acc_y_m_s2", "acc_z_m_s2")
 NEEDED = (*GYROS, *ACCELEROMETERS)
 LEAST_STOP_S = 1.0
 """A shorter stop does not average the noise of a hand."""
@@ -58,12 +62,6 @@ LEAST_STOPS = 5
 """Stops below which no model is determined: one more than bias and scale need."""
 LEAST_TURNS = 6
 """Turns below which the nine elements of the gyros are not determined."""
-LEAST_FOR_FORCES = 8
-"""Stops from which the sensitivity to gravity is carried through the turns: twice its elements."""
-WORST_CONDITION = 1e3
-"""Of the attitudes of the stops, for the same [forces in m/s2 beside 1]."""
-LONGEST_STEP = 1.5
-"""Samples between two neighbours from which one is missing."""
 GUARD_S = 0.1
 FEW_DOF = 3
 
@@ -128,7 +126,7 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
     models = _force_models(forces, options.gravity)
     held = {m.level: left_out(forces, level=m.level, gravity=options.gravity) for m in models}
     chosen = _chosen(models, held)
-    turns = turns_between(log, stops, chosen, options)
+    turns = turns_between(log, stops, chosen, options.latitude)
     bias, sigma_bias = _bias(stops, chosen, options)
     gyro = _fitted(stops, chosen, turns) if len(turns) >= LEAST_TURNS else None
     parameters = (
@@ -199,29 +197,6 @@ def _directions(gyro: RateModel, turns: Sequence[Turn], pulled: Sequence[Turn]) 
     }
 
 
-def with_g_sensitivity(
-    log: SensorLog, stops: Sequence[HeldStop], model: ForceModel, turns: Sequence[Turn]
-) -> list[Turn]:
-    """The turns with the sensitivity to gravity that the rests show carried through them.
-
-    Empty where the rests do not determine it: each gyro has a bias and three elements.
-    """
-    rests = model.corrected(np.array([s.force for s in stops]))
-    design = np.column_stack([np.ones(len(stops)), rests])
-    if len(stops) < LEAST_FOR_FORCES or float(np.linalg.cond(design)) > WORST_CONDITION:
-        return []
-    means = np.array([s.rate for s in stops])
-    pull = np.linalg.lstsq(design, means, rcond=None)[0][1:]
-    force = np.column_stack([log.columns[c] for c in ACCELEROMETERS])
-    found = []
-    for turn in turns:
-        k = turn.leaves
-        inside = model.corrected(force[stops[k].stop : stops[k + 1].start])
-        rest = 0.5 * (rests[k] + rests[k + 1])
-        found.append(replace(turn, rates=turn.rates - (inside - rest) @ pull))
-    return found
-
-
 def force_model(forces: Floats, options: MultiPositionOptions) -> ForceModel:
     """The accelerometer model that predicts left-out stops best.
 
@@ -252,68 +227,13 @@ def _chosen(models: Sequence[ForceModel], held: dict[str, float | None]) -> Forc
     return min(known, key=lambda m: held[m.level] or 0.0)
 
 
-def turns_between(
-    log: SensorLog,
-    stops: Sequence[HeldStop],
-    model: ForceModel,
-    options: MultiPositionOptions,
-) -> list[Turn]:
-    """Turns between the stops, their rates less the mean of the two rests about them.
-
-    A turn with a gap in it, or with a gyro at the end of its range, tells nothing and is left out.
-    The vertical earth rate turns nothing that the accelerometers feel and stays in the turn.
-    """
-    rate = np.column_stack([log.columns[c] for c in GYROS])
-    ups = _ups(stops, model)
-    rests = rest_rates(stops, ups, options.latitude)
-    interval = 1.0 / (log.rate_hz or 100.0)
-    turns = []
-    for k, (one, other) in enumerate(pairwise(stops)):
-        inside = slice(one.stop, other.start)
-        if other.start - one.stop < 2 or _broken(log, rate, one.stop, other.start):
-            continue
-        local = 0.5 * (rests[k] + rests[k + 1])  # a slow bias as the two rests show it
-        turns.append(Turn(rate[inside] - local, ups[k], ups[k + 1], interval, k))
-    return turns
-
-
-def _broken(log: SensorLog, rate: Floats, first: int, last: int) -> bool:
-    """Whether samples are missing in a turn, or a gyro stands at the end of its range."""
-    time = log.columns["time_s"]
-    interval = 1.0 / (log.rate_hz or 100.0)
-    if float(np.diff(time[first - 1 : last + 1]).max()) > LONGEST_STEP * interval:
-        return True
-    for i, name in enumerate(GYROS):
-        if name in log.clipped:
-            ends = rate[:, i].max(), rate[:, i].min()
-            part = rate[first:last, i]
-            # one sample alone may be the largest of the record
-            if max(int((part == end).sum()) for end in ends) > 1:
-                return True
-    return False
-
-
-def _ups(stops: Sequence[HeldStop], model: ForceModel) -> Floats:
-    """Direction of up in the body at each stop, shape (n, 3)."""
-    ups = np.array([model.corrected(s.force) for s in stops])
-    return np.asarray(ups / np.linalg.norm(ups, axis=1)[:, None])
-
-
 def _bias(
     stops: Sequence[HeldStop], model: ForceModel, options: MultiPositionOptions
 ) -> tuple[Floats, Floats]:
     """Bias of each gyro and its sigma from the scatter of the stops [rad/s]."""
-    means = rest_rates(stops, _ups(stops, model), options.latitude)
+    means = rest_rates(stops, ups_of(stops, model), options.latitude)
     sigma = means.std(axis=0, ddof=1) / math.sqrt(len(stops))
     return means.mean(axis=0), sigma * widened(len(stops) - 1)
-
-
-def rest_rates(stops: Sequence[HeldStop], ups: Floats, latitude: float | None) -> Floats:
-    """Mean rates at the stops, the vertical earth rate taken out where the latitude is known."""
-    means = np.array([s.rate for s in stops])
-    if latitude is None:
-        return means
-    return np.asarray(means - EARTH_RATE * math.sin(latitude) * ups)
 
 
 def _force_parameters(model: ForceModel) -> list[SensorParameter]:
