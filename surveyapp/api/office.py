@@ -8,6 +8,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,13 +18,14 @@ from surveyapp.api.network import adjust, network
 from surveyapp.api.orientation import Source, compute, orient
 from surveyapp.api.project import SOFTWARE, Folder
 from surveyapp.domain.advance import Advance, silent
-from surveyapp.errors import SurveyError
+from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import in_language
 
 if TYPE_CHECKING:
     from surveyapp.core.differences import Snapshot
     from surveyapp.domain.filing import ClosingResult, ComparisonResult, ExportResult
     from surveyapp.domain.project import Project
+    from surveyapp.io.minisign import SecretKey
     from surveyapp.report.blocks import Block, Document
     from surveyapp.report.record import Extra
     from surveyapp.report.written import ReportResult
@@ -34,6 +36,19 @@ def _local_now() -> datetime:
     return datetime.now().astimezone()
 
 
+def no_password() -> str:
+    """Where nobody can be asked: an encrypted key cannot be used.
+
+    Raises
+    ------
+    SurveyError
+        Always.
+    """
+    raise SurveyError(
+        Problem("this key is encrypted and nobody can be asked for its password", "key")
+    )
+
+
 def report(
     source: Source,
     output: Folder,
@@ -42,6 +57,8 @@ def report(
     extras: tuple[Extra, ...] = (),
     diagnosis: bool = False,
     language: str = "en",
+    key: Folder | None = None,
+    password: Callable[[], str] = no_password,
     advance: Advance = silent,
 ) -> ReportResult:
     """Write the survey record as PDF; the same input gives the same bytes.
@@ -60,6 +77,10 @@ def report(
         Diagnose every run and campaign of the project and show what was found.
     language : str
         Of the record: en | de | ru | zh.
+    key : path or None
+        Secret key in the format of minisign; the signature stands beside the PDF then.
+    password : callable
+        Asked for the password of an encrypted key.
     advance : callable
         Told how far it is.
 
@@ -68,12 +89,19 @@ def report(
     SurveyError
         If the project cannot be used, the face cannot be embedded or the file not be written.
     """
+    secret = None if key is None else _secret(key, password)
     found = compute(source, advance=advance)
     if diagnosis:
         extras = (*extras, *_diagnoses(found, advance))
     document, sections = _record(found, extras)
     with in_language(language):
-        return _write_document(document, sections, Path(output), font, advance)
+        made = _write_document(document, sections, Path(output), font, advance)
+    if secret is None:
+        return made
+    from surveyapp.io.filing.signatures import sign_file
+
+    path = Path(made.path)
+    return replace(made, signature=sign_file(path, path.read_bytes(), secret))
 
 
 def _traverses(found: Computed) -> tuple[Extra, ...]:
@@ -263,19 +291,48 @@ def close(
     session: str | None = None,
     by: str = "",
     note: str = "",
+    key: Folder | None = None,
+    password: Callable[[], str] = no_password,
     now: Callable[[], datetime] = _local_now,
 ) -> ClosingResult:
     """Close a project, or one session of it: files and ledger are sealed by a hash chain.
 
+    Parameters
+    ----------
+    folder : path
+    session : str or None
+        One session alone; None: the whole project.
+    by, note : str
+        Who closes it, and a sentence for the ledger.
+    key : path or None
+        Secret key in the format of minisign, with which the closing is signed.
+    password : callable
+        Asked for the password of an encrypted key.
+    now : callable
+        The clock.
+
     Raises
     ------
     SurveyError
-        If it cannot be read, is closed already, is open elsewhere, or cannot be written.
+        If it cannot be read, is closed already, is open elsewhere, or cannot be written, or if the
+        key cannot be used: nothing is closed then.
     """
     from surveyapp.io.filing.closing import close_project
 
+    secret = None if key is None else _secret(key, password)
     at = now().isoformat(timespec="seconds")
-    return close_project(Path(folder), session=session, by=by, note=note, at=at, software=SOFTWARE)
+    made = close_project(Path(folder), session=session, by=by, note=note, at=at, software=SOFTWARE)
+    if secret is None:
+        return made
+    from surveyapp.io.filing.signatures import sign_closing
+
+    return replace(made, signature=sign_closing(Path(folder), made.entry, secret))
+
+
+def _secret(key: Folder, password: Callable[[], str]) -> SecretKey:
+    from surveyapp.io.minisign import read_secret_key
+
+    return read_secret_key(Path(key), password)
 
 
 def reopen(
