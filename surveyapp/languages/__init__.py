@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Final
 
 from surveyapp.languages.po_file import read_po, translations
-from surveyapp.languages.said import Said, counted, joined, said, said_each
+from surveyapp.languages.said import Said, counted, joined, listed, said, said_each, term
 
 __all__ = [
     "LANGUAGES",
@@ -26,9 +26,11 @@ __all__ = [
     "current",
     "in_language",
     "joined",
+    "listed",
     "preferred",
     "said",
     "said_each",
+    "term",
     "shown",
     "translated",
     "use",

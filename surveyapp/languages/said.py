@@ -91,3 +91,16 @@ def joined(separator: str, parts: Iterable[str]) -> str:
         return Said("", {})
     literal = separator.replace("{", "{{").replace("}", "}}")
     return Said(literal.join(f"{{{name}}}" for name in fields), fields)
+
+
+def listed(parts: Iterable[str]) -> str:
+    """Texts in a row as in running text: ``a and b``."""
+    whole = ""
+    for part in parts:
+        whole = said("{before} and {last}", before=whole, last=part) if whole else part
+    return whole
+
+
+def term(text: str) -> str:
+    """A name from a table of the program (a source of error, a method) as a text."""
+    return Said(text, {})

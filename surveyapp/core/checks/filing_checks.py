@@ -8,9 +8,10 @@ from typing import Final
 from surveyapp.domain.closing import Closing, Filing
 from surveyapp.domain.results import Check
 from surveyapp.domain.subject import Subject
+from surveyapp.languages import said
 
 LEDGER: Final = "ledger.jsonl"
-_CLAUSE: Final = "closing of the project"
+_CLAUSE: Final = said("closing of the project")
 _SHOWN: Final = 5
 """More changes are counted and not listed."""
 
@@ -23,10 +24,10 @@ def filing_checks(filing: Filing) -> tuple[Check, ...]:
     ledger = Subject.of("ledger", LEDGER)
     checks = []
     if filing.faults or filing.closed_once:
-        good = f"{filing.entries} entries, the chain is whole"
+        good = said("{entries} entries, the chain is whole", entries=filing.entries)
         checks.append(_check("ledger.chain", filing.faults, ledger, good=good))
     if filing.unfinished_tail:
-        text = "the last line of the ledger was never finished and does not count"
+        text = said("the last line of the ledger was never finished and does not count")
         checks.append(_check("ledger.tail", [text], ledger, confirmed=False))
     checks += [
         _check(
@@ -34,7 +35,7 @@ def filing_checks(filing: Filing) -> tuple[Check, ...]:
             closing.changed,
             _subject(closing),
             where=closing.session or "project",
-            good=f"as closed at {closing.at}",
+            good=said("as closed at {at}", at=closing.at),
         )
         for closing in filing.closings
     ]
@@ -68,7 +69,7 @@ def _check(
     good: str = "",
     confirmed: bool = True,
 ) -> Check:
-    more = f" and {len(found) - _SHOWN} more" if len(found) > _SHOWN else ""
+    more = said(" and {number} more", number=len(found) - _SHOWN) if len(found) > _SHOWN else ""
     return Check(
         rule=rule,
         clause=_CLAUSE,

@@ -11,7 +11,7 @@ from surveyapp.domain.results import (
     TapeZeroResult,
     TargetResult,
 )
-from surveyapp.languages import said, said_each
+from surveyapp.languages import joined, said, said_each, term
 from surveyapp.report.blocks import Block, Figure, Heading, Paragraph, Table
 from surveyapp.report.numbers import (
     NOTHING,
@@ -48,14 +48,15 @@ def _session(project: Project, item: SessionResult) -> list[Block]:
     head = said_each("step", "value", '±"', '95 % ±"', "where it comes from")
     found: list[Block] = [
         Heading(
-            said("Session {id}: {line}, {method}", id=item.id, line=line, method=item.method), 2
+            said("Session {id}: {line}, {method}", id=item.id, line=line, method=term(item.method)),
+            2,
         ),
         Table(head, tuple(rows), "lrrrl", strong=frozenset(strong)),
         *_effects(project, session),
         _figures_of_merit(item),
     ]
     found += _points(item, unit)
-    found += [Paragraph(f"{w.code}: {w.text}", "warning") for w in item.warnings]
+    found += [Paragraph(joined(": ", (w.code, w.text)), "warning") for w in item.warnings]
     return found
 
 
@@ -87,7 +88,7 @@ def _north(item: SessionResult, unit: AngleUnit) -> list[Row]:
         if item.sigma_source
         else said("no sigma: nothing tells")
     )
-    text = f"{how}; {origin}" if how else origin
+    text = joined("; ", (how, origin)) if how else origin
     rows.append((said("= gyro north"), *with_sigma(north, unit), text))
     return rows
 
@@ -241,7 +242,7 @@ def _figures_of_merit(item: SessionResult) -> Table:
     if item.reading_sigma is not None and item.method in ("tracking", "automatic"):
         rows.append((said("sigma of one reading"), seconds(item.reading_sigma), said("arcsec")))
     rows += [
-        (name.replace("_", " "), _quantity(value, unit), unit)
+        (term(name.replace("_", " ")), _quantity(value, unit), unit)
         for name, value, unit in item.quantities
     ]
     known = tuple(row for row in rows if row[1] != NOTHING)
