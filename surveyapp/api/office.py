@@ -9,44 +9,26 @@ import hashlib
 import json
 from collections.abc import Callable
 from dataclasses import replace
-from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from surveyapp.api.closing import no_password, secret_of
 from surveyapp.api.judgement import diagnose, subjects
 from surveyapp.api.network import adjust, network
 from surveyapp.api.orientation import Source, compute, orient
 from surveyapp.api.project import SOFTWARE, Folder
 from surveyapp.domain.advance import Advance, silent
-from surveyapp.errors import Problem, SurveyError
+from surveyapp.errors import SurveyError
 from surveyapp.languages import in_language
 
 if TYPE_CHECKING:
     from surveyapp.core.differences import Snapshot
-    from surveyapp.domain.filing import ClosingResult, ComparisonResult, ExportResult
+    from surveyapp.domain.filing import ComparisonResult, ExportResult
     from surveyapp.domain.project import Project
-    from surveyapp.io.minisign import SecretKey
     from surveyapp.report.blocks import Block, Document
     from surveyapp.report.record import Extra
     from surveyapp.report.written import ReportResult
     from surveyapp.workflows.computing import Computed
-
-
-def _local_now() -> datetime:
-    return datetime.now().astimezone()
-
-
-def no_password() -> str:
-    """Where nobody can be asked: an encrypted key cannot be used.
-
-    Raises
-    ------
-    SurveyError
-        Always.
-    """
-    raise SurveyError(
-        Problem("this key is encrypted and nobody can be asked for its password", "key")
-    )
 
 
 def report(
@@ -89,7 +71,7 @@ def report(
     SurveyError
         If the project cannot be used, the face cannot be embedded or the file not be written.
     """
-    secret = None if key is None else _secret(key, password)
+    secret = None if key is None else secret_of(key, password)
     found = compute(source, advance=advance)
     if diagnosis:
         extras = (*extras, *_diagnoses(found, advance))
@@ -263,79 +245,6 @@ def _write_document(
     write_output(output, written.data)
     digest = hashlib.sha256(written.data).hexdigest()
     return ReportResult(str(output), written.pages, sections, digest, written.missing)
-
-
-def close(
-    folder: Folder,
-    *,
-    session: str | None = None,
-    by: str = "",
-    note: str = "",
-    key: Folder | None = None,
-    password: Callable[[], str] = no_password,
-    now: Callable[[], datetime] = _local_now,
-) -> ClosingResult:
-    """Close a project, or one session of it: files and ledger are sealed by a hash chain.
-
-    Parameters
-    ----------
-    folder : path
-    session : str or None
-        One session alone; None: the whole project.
-    by, note : str
-        Who closes it, and a sentence for the ledger.
-    key : path or None
-        Secret key in the format of minisign, with which the closing is signed.
-    password : callable
-        Asked for the password of an encrypted key.
-    now : callable
-        The clock.
-
-    Raises
-    ------
-    SurveyError
-        If it cannot be read, is closed already, is open elsewhere, or cannot be written, or if the
-        key cannot be used: nothing is closed then.
-    """
-    from surveyapp.io.filing.closing import close_project
-
-    secret = None if key is None else _secret(key, password)
-    at = now().isoformat(timespec="seconds")
-    made = close_project(Path(folder), session=session, by=by, note=note, at=at, software=SOFTWARE)
-    if secret is None:
-        return made
-    from surveyapp.io.filing.signatures import sign_closing
-
-    return replace(made, signature=sign_closing(Path(folder), made.entry, secret))
-
-
-def _secret(key: Folder, password: Callable[[], str]) -> SecretKey:
-    from surveyapp.io.minisign import read_secret_key
-
-    return read_secret_key(Path(key), password)
-
-
-def reopen(
-    folder: Folder,
-    *,
-    reason: str,
-    session: str | None = None,
-    by: str = "",
-    now: Callable[[], datetime] = _local_now,
-) -> ClosingResult:
-    """Reopen a closed project or session; reason and what was changed go into the ledger.
-
-    Raises
-    ------
-    SurveyError
-        If it is not closed, or no reason is given.
-    """
-    from surveyapp.io.filing.closing import reopen_project
-
-    at = now().isoformat(timespec="seconds")
-    return reopen_project(
-        Path(folder), session=session, by=by, reason=reason, at=at, software=SOFTWARE
-    )
 
 
 def export_zip(folder: Folder, output: Folder) -> ExportResult:

@@ -25,7 +25,7 @@ book = "observations/s1.csv"
 EFFECT = """
 [[orientation.effect]]
 id = "dry_friction"
-coefficients = { loss = { value = 5.0, sigma = 1.0, unit = "arcsec" } }
+coefficients = { loss = { value = 5.0, sigma = 1.0, unit = "arcsec/half swing" } }
 sessions = ["s1"]
 """
 Change = Callable[[Path], None]
