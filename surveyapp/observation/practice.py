@@ -190,9 +190,9 @@ def begin(
         card=_AUTOMATIC if method == "automatic" else _SUSPENDED,
         wanted=_WANTED[method],
     )
-    atomic_write(path / "project.toml", text.encode("utf-8"))
     header = ",".join(COLUMNS) + "\n"
     atomic_write(path / "observations" / f"{SESSION}.csv", header.encode("utf-8"))
+    atomic_write(path / "project.toml", text.encode("utf-8"))  # last: before, it is no project
     start, begun = local_now(), steady_seconds()
 
     def passed() -> float:
