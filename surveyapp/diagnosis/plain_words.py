@@ -202,7 +202,8 @@ def _consequence(result: Diagnosis) -> list[str]:
             apart = (quantity.value - result.averaged.value) / result.scale
             said.append(
                 f"With {datum.effect.replace('_', ' ')} in the model: {text} "
-                f"{_figure(result, apart, '+')}{_unit(result)} from the average."
+                f"{_figure(result, apart, '+')}{_unit(result)} from the average (sigma "
+                f"{_small(result, quantity.sigma)})."
             )
     return said
 
