@@ -139,5 +139,5 @@ def shown(text: str) -> str:
 
 
 def translated(text: str) -> str:
-    """A text of the catalogue by its English: for tables of texts kept as plain strings."""
-    return _translate(text, None, 0)
+    """A text of the catalogue by its English: for names and texts kept as plain strings."""
+    return shown(text) if isinstance(text, Said) else _translate(text, None, 0)
