@@ -10,7 +10,7 @@ from surveyapp.domain.project import Project
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import read_inside
 from surveyapp.io.guarded import checked_inside, is_regular
-from surveyapp.languages import current
+from surveyapp.languages import current, said
 from surveyapp.report.stamp import stamp_in, stamp_of
 
 RECORD: Final = "results/record.pdf"
@@ -29,7 +29,7 @@ def write_record(folder: api.Folder) -> str:
     try:
         path.mkdir(exist_ok=True)
     except OSError as error:
-        what = f"the record cannot be written ({error.strerror or error})"
+        what = said("the record cannot be written ({strerror})", strerror=error.strerror or error)
         raise SurveyError(Problem(what, str(path))) from None
     return str(api.report(folder, path / "record.pdf", language=current()).path)
 
@@ -63,4 +63,7 @@ def outdated_told(folder: api.Folder) -> str:
         outdated = record_written(folder)
     if not outdated:
         return ""
-    return f"{RECORD} is out of date: surveyapp report DIR -o DIR/{RECORD} makes it again"
+    return said(
+        "{record} is out of date: surveyapp report DIR -o DIR/{record} makes it again",
+        record=RECORD,
+    )

@@ -241,7 +241,9 @@ class Desk:
             found = self._understand(text)
         except EntryError as error:
             pattern = texts.REFUSED_EXPECTED if error.expected else texts.REFUSED
-            raise NotWrittenError(pattern.format(what=error, expected=error.expected)) from None
+            raise NotWrittenError(
+                pattern.format(what=shown(error.what), expected=shown(error.expected))
+            ) from None
         if found.questions and self.asked != text:
             self.asked = text
             question = " ".join(question_text(item) for item in found.questions)
