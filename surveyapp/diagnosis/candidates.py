@@ -164,6 +164,12 @@ def all_candidates(problem: Case, theta: Floats | None) -> tuple[Candidate, ...]
     return tuple(found)
 
 
+def single_effects(problem: Case, theta: Floats | None) -> tuple[Candidate, ...]:
+    """The named effects of a problem, each by itself: no shapes, no several slips at once."""
+    columns, root = swing_columns(problem, theta), problem.root_weights
+    return tuple(_named(effect, columns, root)[0] for effect in problem.effects)
+
+
 def _named(effect: Effect, columns: Mapping[str, Floats], root: Floats) -> list[Candidate]:
     empty = np.zeros((0, root.size, len(effect.coefficients)))
     missing = missing_columns(effect, columns)

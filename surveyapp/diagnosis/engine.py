@@ -27,6 +27,8 @@ from surveyapp.diagnosis.long_records.record import (
 )
 from surveyapp.diagnosis.loop import DEFAULT_DRAWS, Search, rivals_delta, search
 from surveyapp.diagnosis.next_observation import advice, worth_in_words
+from surveyapp.diagnosis.next_run import run_advice
+from surveyapp.diagnosis.outlook import Outlook
 from surveyapp.diagnosis.result import (
     Ambiguity,
     CandidateResult,
@@ -50,7 +52,11 @@ from surveyapp.domain.project import ResultWarning
 
 
 def diagnose(
-    problem: Case, *, confirm: Case | None = None, draws: int = DEFAULT_DRAWS
+    problem: Case,
+    *,
+    confirm: Case | None = None,
+    draws: int = DEFAULT_DRAWS,
+    advise: bool = True,
 ) -> Diagnosis:
     """Find what the model of a record lacks, and prove it.
 
@@ -63,6 +69,8 @@ def diagnose(
         A second, independent set of the same subject and instrument.
     draws : int
         Monte Carlo draws of each null distribution.
+    advise : bool
+        Whether to say what each next observation would be worth.
 
     Returns
     -------
@@ -78,9 +86,10 @@ def diagnose(
     if confirm is not None and is_long(confirm):
         confirm = reduce_record(confirm).problem
     if not is_long(problem):
-        return _diagnosed(problem, confirm, draws)
+        return _diagnosed(problem, confirm, draws, advise=advise)
     record = reduce_record(problem)
-    found = _diagnosed(record.problem, confirm, draws, record=record, digest=problem.digest())
+    digest = problem.digest()
+    found = _diagnosed(record.problem, confirm, draws, record=record, digest=digest)
     return with_lines(found, record)
 
 
@@ -91,6 +100,7 @@ def _diagnosed(
     *,
     record: LongRecord | None = None,
     digest: str | None = None,
+    advise: bool = True,
 ) -> Diagnosis:
     """Diagnose a record that is not too long, or the block means of one that is."""
     digest = problem.digest() if digest is None else digest
@@ -108,7 +118,7 @@ def _diagnosed(
         averaged = short_average(problem, base, named=bool(found.adopted))
     best = found.best if ambiguous else found.after
     models = [_model(problem, fit, confirm) for fit in (base, found.after, best)]
-    outlook = advice(problem, np.random.default_rng(int(digest[:15], 16)))
+    outlook = _outlook(problem, base, digest) if advise else None
     return Diagnosis(
         subject=problem.subject,
         identity=problem.identity,
@@ -144,6 +154,11 @@ def _diagnosed(
         if outlook is None
         else tuple(worth_in_words(outlook, scale=problem.scale, unit=problem.unit)),
     )
+
+
+def _outlook(problem: Case, base: Fit, digest: str) -> Outlook | None:
+    rng = np.random.default_rng(int(digest[:15], 16))
+    return run_advice(problem, base, rng) if problem.has_swing else advice(problem, rng)
 
 
 def _widened(problem: Case, found: Search, averaged: Value, verdict: Verdict) -> Value:

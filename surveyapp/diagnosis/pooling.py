@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surveyapp.diagnosis.candidates import Candidate, all_candidates
+from surveyapp.diagnosis.candidates import Candidate, single_effects
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.compare import orthonormal_design
 from surveyapp.diagnosis.fits import fit_members
@@ -179,7 +179,7 @@ def _columns(cases: Sequence[Case]) -> list[tuple[str, tuple[tuple[str, float], 
     found: dict[tuple[str, tuple[tuple[str, float], ...]], None] = {}
     for case in cases:
         base = fit_members(case, ())
-        for candidate in all_candidates(case, base.theta):
+        for candidate in single_effects(case, base.theta):
             if poolable(candidate):
                 for point in candidate.points:
                     found[candidate.id, tuple(sorted(point.items()))] = None
@@ -205,7 +205,7 @@ def _session(
     variances, heights = estimates.copy(), estimates.copy()
     sensitivity = np.full(size, np.nan)
     place = {name: i for i, name in enumerate(columns)}
-    for candidate in all_candidates(case, base.theta):
+    for candidate in single_effects(case, base.theta):
         if not poolable(candidate):
             continue
         for g, point in enumerate(candidate.points):

@@ -86,6 +86,34 @@ class Mixture:
         return 0.5 * (low + high)
 
 
+def half_widths(weights: Floats, means: Floats, variance: Floats, dof: float) -> Floats:
+    """Half-width of the 95 % interval of each of several mixtures about its own mean.
+
+    Parameters
+    ----------
+    weights, means, variance : ndarray, shape (draws, m)
+        Or what is repeated to it.
+    dof : float
+        Of the Student members.
+
+    Returns
+    -------
+    ndarray, shape (draws,)
+    """
+    centre = (weights * means).sum(axis=1, keepdims=True)
+    offsets = means - centre
+    scale = np.sqrt(np.maximum(variance, 1e-12))
+    low = np.zeros(weights.shape[0])
+    high = (np.abs(offsets) + 6.0 * scale).max(axis=1)
+    for _ in range(25):
+        middle = 0.5 * (low + high)
+        inside = student_cdf((middle[:, None] - offsets) / scale, dof)
+        inside -= student_cdf((-middle[:, None] - offsets) / scale, dof)
+        enough = (weights * inside).sum(axis=1) >= PROBABILITY
+        high, low = np.where(enough, middle, high), np.where(enough, low, middle)
+    return np.asarray(0.5 * (low + high))
+
+
 def normal_cdf(z: Floats) -> Floats:
     """Normal distribution function, error below 1e-7."""
     x = np.abs(z) / math.sqrt(2.0)
