@@ -53,7 +53,6 @@ QUANTITIES: Final = (
 VOCABULARY: Final = (
     *VERDICTS,
     *UNITS,
-    *COUNTS,
     *CHOICES,
     *ESTIMATORS,
     *SIGMA_SOURCES,
