@@ -17,13 +17,24 @@ from pathlib import Path
 from typing import Final
 
 from surveyapp.languages.po_file import read_po, translations
-from surveyapp.languages.said import Said, counted, joined, listed, said, said_each, term
+from surveyapp.languages.said import (
+    Said,
+    counted,
+    either,
+    joined,
+    listed,
+    said,
+    said_each,
+    sentence,
+    term,
+)
 
 __all__ = [
     "LANGUAGES",
     "Said",
     "counted",
     "current",
+    "either",
     "in_language",
     "joined",
     "listed",
@@ -31,6 +42,7 @@ __all__ = [
     "said",
     "said_each",
     "term",
+    "sentence",
     "shown",
     "translated",
     "use",
