@@ -10,6 +10,7 @@ import importlib
 from typing import TYPE_CHECKING, Any, Final
 
 from surveyapp.api.batch import batch, batch_rows
+from surveyapp.api.demonstrating import demo_sensors
 from surveyapp.api.importing import export_survey, import_file
 from surveyapp.api.instruments import follow_turn, read_instrument
 from surveyapp.api.judgement import check, diagnose, diagnose_sensor, subjects
@@ -101,6 +102,7 @@ if TYPE_CHECKING:
     from surveyapp.core.sensors.rate.stop_plan import StopPlan
     from surveyapp.diagnosis.sensors.diagnosis import SensorDiagnosis
     from surveyapp.domain.chart import SensorPictures
+    from surveyapp.domain.demonstrated import DemonstratedSensor
     from surveyapp.domain.filing import (
         BatchResult,
         BatchRow,
@@ -116,7 +118,7 @@ if TYPE_CHECKING:
     from surveyapp.domain.noise import AllanResult, FilterResult
     from surveyapp.domain.north import NorthResult
     from surveyapp.domain.penetration_result import Prediction
-    from surveyapp.domain.programme import ProgrammeResult, ProgrammeState
+    from surveyapp.domain.programme import Programme, ProgrammeResult, ProgrammeState
     from surveyapp.domain.project import ResultWarning
     from surveyapp.domain.records import Listing
     from surveyapp.domain.results import (
@@ -151,6 +153,7 @@ _TYPES: Final = {
     "Computed": "surveyapp.workflows.computing",
     "ConstantResult": "surveyapp.domain.results",
     "DemonstratedSample": "surveyapp.core.comparison",
+    "DemonstratedSensor": "surveyapp.domain.demonstrated",
     "Diagnosable": "surveyapp.workflows.choosing",
     "Diagnosed": "surveyapp.workflows.diagnosing",
     "ExportResult": "surveyapp.domain.filing",
@@ -168,6 +171,7 @@ _TYPES: Final = {
     "NorthResult": "surveyapp.domain.north",
     "OpenedLog": "surveyapp.api.sensors",
     "Prediction": "surveyapp.domain.penetration_result",
+    "Programme": "surveyapp.domain.programme",
     "ProgrammeResult": "surveyapp.domain.programme",
     "ProgrammeState": "surveyapp.domain.programme",
     "ReportResult": "surveyapp.report.written",
@@ -206,6 +210,7 @@ __all__ = [
     "compute",
     "orient",
     "demo",
+    "demo_sensors",
     "generator_of",
     "network",
     "adjust",
@@ -318,6 +323,8 @@ __all__ = [
     "SensorDiagnosis",
     "LogPreview",
     "SensorPictures",
+    "DemonstratedSensor",
+    "Programme",
     "ProgrammeResult",
     "ProgrammeState",
 ]

@@ -126,27 +126,6 @@ def _breakthrough(found: Computed) -> tuple[Extra, ...]:
     return (Extra("breakthrough", made),)
 
 
-def _sensor_logs(found: Computed) -> tuple[Extra, ...]:
-    """A section for every sensor log of the folder; one that cannot be used says why."""
-    from surveyapp.api.sensors import allan, calibrate
-    from surveyapp.report.record import Extra
-    from surveyapp.report.sections import sensors as section
-
-    extras = []
-    folder = found.project.path
-    for entry in found.project.sensor_logs:
-        try:
-            if entry.kind is None:  # nothing to calibrate is stated: its noise is told
-                made = section.allan_blocks(entry.id, allan(folder, sensor=entry.id))
-            else:
-                result = calibrate(entry.kind, folder, sensor=entry.id)
-                made = section.calibration_blocks(entry.id, result)
-        except SurveyError as error:
-            made = _refused(section.title_of(entry.id), error)
-        extras.append(Extra(f"sensor log {entry.id}", made))
-    return tuple(extras)
-
-
 def _refused(title: str, error: SurveyError) -> tuple[Block, ...]:
     """A section that says why there is nothing in it."""
     from surveyapp.report.blocks import Heading, Paragraph
@@ -208,6 +187,7 @@ def blank_form(
 
 
 def _record(found: Computed, extras: tuple[Extra, ...]) -> tuple[Document, tuple[str, ...]]:
+    from surveyapp.api.sensor_record import sensor_sections
     from surveyapp.io.files import visible
     from surveyapp.report.record import Record, SealShown, record_document
 
@@ -215,7 +195,7 @@ def _record(found: Computed, extras: tuple[Extra, ...]) -> tuple[Document, tuple
         *_shafts(found),
         *_traverses(found),
         *_breakthrough(found),
-        *_sensor_logs(found),
+        *sensor_sections(found),
         *extras,
     )
     seals = tuple(

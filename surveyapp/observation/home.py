@@ -8,6 +8,7 @@ from __future__ import annotations
 import csv
 import io
 import os
+import shutil
 from collections import Counter
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -255,11 +256,33 @@ def create_project(form: NewProject) -> str:
     SurveyError
         If the folder holds anything already, if the grid is none, or if a name stands twice.
     """
+    from surveyapp.io.template import need_own_folder
+
+    target = Path(form.folder).expanduser().absolute()
+    part = target.with_name(said(".{name}.part", name=target.name))
+    try:
+        need_own_folder(target)
+        if part.is_dir() and not part.is_symlink():
+            shutil.rmtree(part)  # of a program that ended before all of it was written
+        _make_project(part, form)
+        if target.exists():
+            shutil.rmtree(target)  # holds nothing, or what a killed ``new`` has left
+        part.rename(target)
+    except OSError as error:
+        what = said("the folder cannot be made ({strerror})", strerror=error.strerror or error)
+        raise SurveyError(Problem(what, str(target))) from None
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+    return str(target)
+
+
+def _make_project(target: Path, form: NewProject) -> None:
+    """Everything that a form says, in a folder that is nobody's project yet."""
     from surveyapp.io.writing import append_tables, set_value
 
     constant = _constant(form.constant)
     folder = api.new_project(
-        Path(form.folder).expanduser(),
+        target,
         name=form.name,
         crs=f"EPSG:{form.crs}" if form.crs.isdecimal() else form.crs or None,
         angle_unit=form.angle_unit,
@@ -278,7 +301,6 @@ def create_project(form: NewProject) -> str:
     tables += [("station", {key: getattr(item, key) for key in keys}) for item in form.stations]
     append_tables(path, tables)
     api.open_project(folder)
-    return str(folder)
 
 
 def _constant(text: str) -> dict[str, float] | None:
@@ -316,13 +338,8 @@ def create_session(folder: api.Folder, form: NewSession) -> None:
     book = _book_name(form.id)
     with ProjectLock(Path(folder)) as lock:
         if not lock.writable:
-            raise SurveyError(
-                Problem(
-                    said("this project cannot be written to now"),
-                    str(folder),
-                    said("it is open elsewhere"),
-                )
-            )
+            what = said("this project cannot be written to now")
+            raise SurveyError(Problem(what, str(folder), said("it is open elsewhere")))
         _new_book(Path(folder) / book)
         before = read_text(path, where=path.name)
         table = {
@@ -340,8 +357,9 @@ def create_session(folder: api.Folder, form: NewSession) -> None:
             append_table(path, "orientation", table)
             api.open_project(folder)
         except SurveyError:
-            atomic_write(path, before.encode("utf-8"))
             (Path(folder) / book).unlink()
+            if read_text(path, where=path.name) != before:
+                atomic_write(path, before.encode("utf-8"))
             raise
 
 

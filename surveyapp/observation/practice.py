@@ -175,11 +175,11 @@ def begin(
         card=_AUTOMATIC if method == "automatic" else _SUSPENDED,
         wanted=_WANTED[method],
     )
-    atomic_write(path / "project.toml", text.encode("utf-8"))
     header = ",".join(COLUMNS) + "\n"
     atomic_write(
         path / "observations" / said("{session}.csv", session=SESSION), header.encode("utf-8")
     )
+    atomic_write(path / "project.toml", text.encode("utf-8"))  # last: before, it is no project
     start, begun = local_now(), steady_seconds()
 
     def passed() -> float:

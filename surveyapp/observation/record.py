@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 from typing import Final
 
@@ -14,6 +15,8 @@ from surveyapp.languages import current, said
 from surveyapp.report.stamp import stamp_in, stamp_of
 
 RECORD: Final = "results/record.pdf"
+OLD_S: Final = 600.0
+"""A temporary file of this age [s] belongs to nobody any more."""
 
 
 def write_record(folder: api.Folder) -> str:
@@ -31,7 +34,16 @@ def write_record(folder: api.Folder) -> str:
     except OSError as error:
         what = said("the record cannot be written ({strerror})", strerror=error.strerror or error)
         raise SurveyError(Problem(what, str(path))) from None
+    _take_away_leftovers(path)
     return str(api.report(folder, path / "record.pdf", language=current()).path)
+
+
+def _take_away_leftovers(results: Path) -> None:
+    """Temporary files of a record that was interrupted; a young one may be another program's."""
+    now = time.time()
+    for item in results.glob(".record.pdf.*.tmp"):
+        if is_regular(item) and now - item.stat().st_mtime > OLD_S:
+            item.unlink(missing_ok=True)
 
 
 def record_written(folder: api.Folder) -> bool:

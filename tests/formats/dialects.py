@@ -290,6 +290,8 @@ def sdr(r: random.Random) -> Written:
             shot.hi, shot.ht = stand.hi, written
             empty = r.random() < 0.05
             sd_text, shot.sd = length(None if empty else shot.sd)
+            if shot.sd is not None and prism == "Not applied":
+                shot.sd -= 0.030
             v = 90.0 - shot.v if horizon else shot.v
             v_text, v = number(v / turn)
             shot.v = (90.0 - v * turn) % 360 if horizon else v * turn

@@ -68,6 +68,8 @@ def _sigma(row: TraverseRow, header: Traverse, lengths: Lengths) -> float | None
             return None
         own = math.hypot(header.sigma_mm * MM, header.sigma_ppm * 1e-6 * (row.value or 0.0))
         return math.sqrt(own**2 + header.instrument_m**2 + header.target_m**2)
+    if row.kind is K.ZENITH and header.sigma_zenith is not None:
+        return header.sigma_zenith
     if row.kind in (K.HEIGHT_DIFFERENCE, K.GYRO) or header.sigma_angle is None:
         return None
     fore = lengths.get((row.at, row.to))

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import chain
 
+from surveyapp.core.sensors.charts.results import slopes
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.noise import AllanChannel, AllanResult
 from surveyapp.domain.project import ResultWarning
@@ -178,6 +179,9 @@ def allan_figures(channel: AllanChannel) -> tuple[Figure, ...]:
     parts = frame.axes(said("averaging time [s]"), label, x_names)
     for x, low, high in bars:
         parts += frame.bar(x, low=low, high=high, cap_mm=0.8)
+    for guide in slopes(channel):
+        ends = [(math.log10(tau), math.log10(value)) for tau, value in guide.points]
+        parts.append(frame.curve(ends, "limit"))
     parts += [frame.curve(curve, "data"), *frame.marks(curve, "dot")]
     return (
         frame.figure(

@@ -105,7 +105,15 @@ def read_sdr(path: Path, options: ReadOptions) -> FieldFile:
         "SDR files do not say whether distances hold the atmospheric correction: enter "
         "atmosphere_applied in [[traverse]]",
     )
-    return state.gathered.finish(form=("sdr", shape.version), applied=(None, applied))
+    if applied is False:
+        state.gathered.warn(
+            "raw_distances", "distances are stored raw: the prism constant was added"
+        )
+    return state.gathered.finish(
+        form=("sdr", shape.version),
+        applied=(None, None if applied is None else True),
+        corrected=applied is False,
+    )
 
 
 def _constant(state: _State) -> bool | None:
