@@ -10,7 +10,7 @@ import io
 import os
 import shutil
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -111,23 +111,6 @@ def remember(folder: str) -> Settings:
     settings = read_settings().with_recent(str(Path(folder).resolve()))
     write_settings(settings)
     return settings
-
-
-def keep_theme(theme: str) -> None:
-    """Remember the theme."""
-    write_settings(replace(read_settings(), theme=theme))
-
-
-def keep_sound(*, sound: bool) -> Settings:
-    """Remember whether the countdown may be heard."""
-    settings = replace(read_settings(), sound=sound)
-    write_settings(settings)
-    return settings
-
-
-def keep_language(language: str) -> bool:
-    """Remember the language of screens and record; False where that is not possible."""
-    return write_settings(replace(read_settings(), language=language))
 
 
 def samples() -> tuple[str, ...]:
@@ -259,7 +242,7 @@ def create_project(form: NewProject) -> str:
     from surveyapp.io.template import need_own_folder
 
     target = Path(form.folder).expanduser().absolute()
-    part = target.with_name(said(".{name}.part", name=target.name))
+    part = target.with_name(f".{target.name}.part")
     try:
         need_own_folder(target)
         if part.is_dir() and not part.is_symlink():
