@@ -12,6 +12,7 @@ from surveyapp.diagnosis.battery import run_battery
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.checks import check_input
 from surveyapp.diagnosis.compare import Level
+from surveyapp.diagnosis.datum import datum_with_rivals
 from surveyapp.diagnosis.events import event_notes
 from surveyapp.diagnosis.fits import Fit, unit_variance
 from surveyapp.diagnosis.gate import GATE
@@ -43,7 +44,6 @@ from surveyapp.diagnosis.run_average import is_short, short_average
 from surveyapp.diagnosis.run_value import (
     Value,
     averaged_value,
-    datum_values,
     out_of_range,
     rms,
     value_of,
@@ -118,7 +118,7 @@ def _diagnosed(
     if found.levels[-1].depth > 0 and is_short(problem, named=bool(found.adopted)):
         averaged = short_average(problem, base, named=bool(found.adopted))
     best = found.best if ambiguous else found.after
-    models = [_model(problem, fit, confirm) for fit in (base, found.after, best)]
+    models = [_model(problem, fit, confirm, found.near) for fit in (base, found.after, best)]
     outlook = _outlook(problem, base, digest) if advise else None
     return Diagnosis(
         subject=problem.subject,
@@ -192,11 +192,11 @@ def _quantity(problem: Case, value: Value) -> Estimate:
     return Estimate(problem.offset + value.value, value.sigma, value.interval95)
 
 
-def _model(problem: Case, fit: Fit, confirm: Case | None) -> ModelResult:
+def _model(problem: Case, fit: Fit, confirm: Case | None, near: tuple[Fit, ...]) -> ModelResult:
     error = rms(problem, fit)
     dof = problem.size - fit.parameters
     sigma0 = math.sqrt(fit.sum_of_squares / dof) if dof > 0 else None
-    states = datum_values(problem, fit)
+    states = datum_with_rivals(problem, fit, near)
     datum = None
     if states:
         datum = DatumValue(states[0][0], tuple((t, _quantity(problem, v)) for _, t, v in states))

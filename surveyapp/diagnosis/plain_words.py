@@ -268,11 +268,13 @@ def _consequence(result: Diagnosis) -> list[str]:
             apart = (quantity.value - result.averaged.value) / result.scale
             sentences.append(
                 said(
-                    "With {replace} in the model: {text} {result}{result2} from the average.",
-                    replace=datum.effect.replace("_", " "),
+                    "With {effect} in the model: {text} {apart}{unit} from the average (sigma "
+                    "{sigma}).",
+                    effect=term(datum.effect.replace("_", " ")),
                     text=text,
-                    result=_figure(result, apart, "+"),
-                    result2=_unit(result),
+                    apart=_figure(result, apart, "+"),
+                    unit=_unit(result),
+                    sigma=_small(result, quantity.sigma),
                 )
             )
     return sentences
