@@ -68,12 +68,8 @@ def record_outdated(project: Project) -> bool:
 
 
 def outdated_told(folder: api.Folder) -> str:
-    """A sentence about a record that is out of date, empty where there is none."""
-    try:
-        outdated = record_outdated(api.open_project(folder))
-    except SurveyError:
-        outdated = record_written(folder)
-    if not outdated:
+    """A sentence about a record that a closing or reopening makes out of date; else empty."""
+    if not record_written(folder):
         return ""
     return said(
         "{record} is out of date: surveyapp report DIR -o DIR/{record} makes it again",
