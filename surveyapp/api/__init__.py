@@ -10,6 +10,7 @@ import importlib
 from typing import TYPE_CHECKING, Any, Final
 
 from surveyapp.api.batch import batch, batch_rows
+from surveyapp.api.closing import close, reopen
 from surveyapp.api.demonstrating import demo_sensors
 from surveyapp.api.importing import export_survey, import_file
 from surveyapp.api.instruments import follow_turn, read_instrument
@@ -24,13 +25,11 @@ from surveyapp.api.network import (
 )
 from surveyapp.api.office import (
     blank_form,
-    close,
     compare,
     export_csv,
     export_gkf,
     export_json,
     export_zip,
-    reopen,
     report,
     report_text,
 )

@@ -6,6 +6,7 @@ import argparse
 import sys
 
 from surveyapp.cli.output import print_json
+from surveyapp.cli.password import asked_password
 from surveyapp.domain.filing import ClosingResult
 
 
@@ -15,6 +16,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--session", metavar="ID", help="this session alone")
     parser.add_argument("--by", default="", metavar="NAME", help="who closes")
     parser.add_argument("--note", default="", metavar="TEXT", help="a sentence for the ledger")
+    parser.add_argument("--key", metavar="FILE.key", help="secret key of minisign, to sign with")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 
@@ -22,7 +24,14 @@ def run(options: argparse.Namespace) -> int:
     """Close and say what stands in the ledger."""
     from surveyapp import api
 
-    result = api.close(options.folder, session=options.session, by=options.by, note=options.note)
+    result = api.close(
+        options.folder,
+        session=options.session,
+        by=options.by,
+        note=options.note,
+        key=options.key,
+        password=asked_password,
+    )
     return tell(result, as_json=options.json, folder=options.folder)
 
 
@@ -41,6 +50,8 @@ def tell(result: ClosingResult, *, as_json: bool, folder: str) -> int:
         print(f"{what} closed, {result.files} files sealed")
         print(f"  at    {result.at}\n  seal  {result.head}")
         print(f"  surveyapp check DIR --seal {result.head} verifies it")
+        if result.signature:
+            print(f"  signed {result.signature}")
     else:
         print(f"{what} reopened: {result.reason}\n  at    {result.at}")
         for text in result.found:

@@ -44,6 +44,8 @@ class ReportResult:
     missing : tuple of (str, str)
         Texts that hold letters no type face at hand has, and those letters: they are printed as
         their codes.
+    signature : str
+        File of the signature with a key; empty without a key.
     """
 
     path: str
@@ -51,6 +53,7 @@ class ReportResult:
     sections: tuple[str, ...]
     sha256: str
     missing: tuple[tuple[str, str], ...] = ()
+    signature: str = ""
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON, schema ``surveyapp.report/1``."""
@@ -60,6 +63,7 @@ class ReportResult:
             "pages": self.pages,
             "sections": list(self.sections),
             "sha256": self.sha256,
+            "signature": self.signature or None,
             "missing_glyphs": [
                 {"text": text, "characters": [f"U+{ord(letter):04X}" for letter in letters]}
                 for text, letters in self.missing

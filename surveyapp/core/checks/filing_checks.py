@@ -56,6 +56,24 @@ def seal_check(head: str, found: Sequence[str], good: str) -> Check:
     return _check("closing.seal", found, Subject.of("ledger", LEDGER), where=head, good=good)
 
 
+def signature_check(rule: str, where: str, found: Sequence[str], key: str) -> Check:
+    """Whether a closing or a file is signed by a key.
+
+    Parameters
+    ----------
+    rule : str
+        ``closing.signature`` or ``record.signature``.
+    where : str
+        The session, ``project``, or the name of the file.
+    found : sequence of str
+        Why it is not; empty where it is.
+    key : str
+        Number of the public key.
+    """
+    good = said("signed by the key {key}", key=key)
+    return _check(rule, found, Subject.of("ledger", LEDGER), where=where, good=good)
+
+
 def _subject(closing: Closing) -> Subject:
     return Subject.session(closing.session) if closing.session else Subject.project()
 
