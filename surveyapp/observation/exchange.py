@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import shlex
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
@@ -179,6 +180,7 @@ def hand_over(form: str, folder: str, path: str) -> ExportResult:
     """
     if Path(path).exists():
         raise SurveyError(Problem("a file of this name exists", path, "", "a name that is free"))
+    others: dict[str, Callable[[str, str], ExportResult]]
     others = {"gkf": api.export_gkf, "csv": api.export_csv, "zip": api.export_zip}
     if form in others:
         return others[form](folder, path)
