@@ -49,6 +49,7 @@ from surveyapp.diagnosis.run_value import (
     value_of,
 )
 from surveyapp.domain.project import ResultWarning
+from surveyapp.languages import said
 
 
 def diagnose(
@@ -259,9 +260,12 @@ def _candidates(problem: Case, found: Search) -> tuple[CandidateResult, ...]:
         elif identity in refused:
             verdict = "candidate"
         elif identity in found.implausible and identity not in near:
-            verdict, reason = "implausible", "the coefficient lies outside its physical range"
+            verdict, reason = "implausible", said("the coefficient lies outside its physical range")
             if not out_of_range(problem, found.implausible[identity], identity):
-                verdict, reason = "not_separable", "not determinable: its sigma exceeds its range"
+                verdict, reason = (
+                    "not_separable",
+                    said("not determinable: its sigma exceeds its range"),
+                )
         elif identity in near or p is None:
             verdict = "not_separable"
         elif family is not None and family <= 0.05:
@@ -304,25 +308,30 @@ def _warnings(problem: Case, found: Search) -> list[ResultWarning]:
         result.append(
             ResultWarning(
                 "stated_sigmas",
-                f"only {problem.size} observations: the stated sigmas serve for the noise",
+                said(
+                    "only {size} observations: the stated sigmas serve for the noise",
+                    size=problem.size,
+                ),
             )
         )
     if problem.size < 8:
         result.append(
-            ResultWarning("no_names", f"no effect is named from {problem.size} observations")
+            ResultWarning(
+                "no_names", said("no effect is named from {size} observations", size=problem.size)
+            )
         )
     if problem.size < 12 and problem.resolution > 0.0:
         result.append(
             ResultWarning(
                 "coarse_readings",
-                "from fewer than 12 rounded readings false alarms are more frequent than 5 %",
+                said("from fewer than 12 rounded readings false alarms are more frequent than 5 %"),
             )
         )
     if len(found.levels) - 1 > 2:
         result.append(
             ResultWarning(
                 "deep_search",
-                "three and more effects are named only where a second set confirms them",
+                said("three and more effects are named only where a second set confirms them"),
             )
         )
     result += [

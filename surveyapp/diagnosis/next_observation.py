@@ -23,6 +23,7 @@ from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.later_visits import campaign_data, is_campaign
 from surveyapp.diagnosis.outlook import ActionResult, Outlook
 from surveyapp.domain.priors import DEFAULT_PRIORS, GROSS, Priors
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 DRAWS = 200
@@ -112,7 +113,7 @@ def _outlook(
         for place, action in enumerate(actions)
     ]
     results.sort(key=lambda item: (-item.information, item.interval95))
-    later = f"a line in {HORIZON_DAYS:.0f} days at"
+    later = said("a line in {horizon_days:.0f} days at", horizon_days=HORIZON_DAYS)
     now = float(share.max() / share.sum())
     return Outlook(now, interval * found.unit, tuple(results), later)
 
@@ -180,17 +181,28 @@ def worth_in_words(outlook: Outlook, *, scale: float, unit: str) -> list[str]:
     now = f"+-{outlook.interval / scale:.1f}{sign}"
 
     def told(item: ActionResult) -> str:
-        return (
-            f"{item.text}: the likeliest cause would then stand at {item.separation:.0%} on "
-            f"average, and {outlook.wanted} "
-            f"+-{item.interval95 / scale:.1f}{sign} (95 %)"
+        return said(
+            "{text}: the likeliest cause would then stand at {separation:.0%} on "
+            "average, and {wanted} +-{interval95:.1f}{sign} (95 %)",
+            text=item.text,
+            separation=item.separation,
+            wanted=outlook.wanted,
+            interval95=item.interval95 / scale,
+            sign=sign,
         )
 
-    said = [f"Next, best: {told(best)}; today it stands at {outlook.now:.0%} and {now}."]
+    sentences = [
+        said(
+            "Next, best: {best}; today it stands at {now:.0%} and {now2}.",
+            best=told(best),
+            now=outlook.now,
+            now2=now,
+        )
+    ]
     others = [told(item) for item in outlook.actions[1:3]]
     if others:
-        said.append(f"Else: {'; or '.join(others)}.")
-    return said
+        sentences.append(said("Else: {others}.", others="; or ".join(others)))
+    return sentences
 
 
 __all__ = ["Outlook", "advice", "worth_in_words"]

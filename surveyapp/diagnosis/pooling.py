@@ -22,6 +22,7 @@ from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.compare import orthonormal_design
 from surveyapp.diagnosis.fits import fit_members
 from surveyapp.domain.priors import NU0
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 SPREADS = (0.05, 0.3, 1.0)
@@ -147,7 +148,7 @@ def pool(cases: Sequence[Case], rng: np.random.Generator) -> Pooled:
     noises = np.sum([item.noises for item in told], axis=0)
     split = len(WALKS)
     for name, values in zip(NOISES, (noises[:split], noises[split:]), strict=True):
-        title = {"random_walk": "a north that wanders", "ar1": "correlated noise"}[name]
+        title = {"random_walk": said("a north that wanders"), "ar1": said("correlated noise")}[name]
         found.append(PooledEffect(name, title, _log_mean(values), None, None, None, "", len(cases)))
     found = [item for item in found if _plausible(cases, item)]
     found.sort(key=lambda item: -item.evidence)

@@ -11,7 +11,7 @@ from surveyapp.domain.project import Project
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import read_inside
 from surveyapp.io.guarded import checked_inside, is_regular
-from surveyapp.languages import current
+from surveyapp.languages import current, said
 from surveyapp.report.stamp import stamp_in, stamp_of
 
 RECORD: Final = "results/record.pdf"
@@ -32,7 +32,7 @@ def write_record(folder: api.Folder) -> str:
     try:
         path.mkdir(exist_ok=True)
     except OSError as error:
-        what = f"the record cannot be written ({error.strerror or error})"
+        what = said("the record cannot be written ({strerror})", strerror=error.strerror or error)
         raise SurveyError(Problem(what, str(path))) from None
     _take_away_leftovers(path)
     return str(api.report(folder, path / "record.pdf", language=current()).path)
@@ -71,4 +71,7 @@ def outdated_told(folder: api.Folder) -> str:
     """A sentence about a record that a closing or reopening makes out of date; else empty."""
     if not record_written(folder):
         return ""
-    return f"{RECORD} is out of date: surveyapp report DIR -o DIR/{RECORD} makes it again"
+    return said(
+        "{record} is out of date: surveyapp report DIR -o DIR/{record} makes it again",
+        record=RECORD,
+    )
