@@ -32,7 +32,7 @@ def simulate() -> None:
     import platformdirs.unix  # noqa: F401
     import reportlab.lib.utils  # noqa: F401
 
-    filelock.FileLock = filelock.SoftFileLock  # type: ignore[misc,assignment]
+    filelock.FileLock = filelock.SoftFileLock
     for name in AWAY:
         if hasattr(os, name):
             delattr(os, name)
