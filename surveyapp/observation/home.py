@@ -9,7 +9,7 @@ import csv
 import io
 import os
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final
 
@@ -18,6 +18,7 @@ from surveyapp.domain.project import Method, Purpose
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.io.settings import Settings, read_settings, write_settings
+from surveyapp.observation.owner_entries import OwnerEntries
 
 OBSERVATIONS: Final = "observations"
 LONGEST_ID: Final = 80
@@ -69,6 +70,8 @@ class NewProject:
     constant : str
         Known instrument constant of the first of them and its sigma, two numbers in arc-seconds;
         empty where calibration sessions are to tell it.
+    owner : OwnerEntries
+        What the owner has determined of the first of them.
     """
 
     folder: str
@@ -81,6 +84,7 @@ class NewProject:
     stations: tuple[NewStation, ...] = ()
     instruments: tuple[tuple[str, str, str], ...] = ()
     constant: str = ""
+    owner: OwnerEntries = field(default_factory=OwnerEntries)
 
 
 @dataclass(frozen=True, slots=True)
@@ -255,6 +259,7 @@ def create_project(form: NewProject) -> str:
     from surveyapp.io.writing import append_tables, set_value
 
     constant = _constant(form.constant)
+    owner = form.owner.overrides()
     folder = api.new_project(
         Path(form.folder).expanduser(),
         name=form.name,
@@ -270,7 +275,8 @@ def create_project(form: NewProject) -> str:
     tables: list[tuple[str, dict[str, object]]] = []
     for number, (identity, card, serial) in enumerate(form.instruments):
         table = {"id": identity, "card": card, "serial": serial or None}
-        tables.append(("instrument", {**table, "constant": constant if number == 0 else None}))
+        first = {"constant": constant, **owner} if number == 0 else {}
+        tables.append(("instrument", {**table, **first}))
     keys = ("name", "e", "n", "lat", "lon", "h")
     tables += [("station", {key: getattr(item, key) for key in keys}) for item in form.stations]
     append_tables(path, tables)

@@ -11,14 +11,14 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
-from surveyapp.core.orientation.repeated_runs import Groups
+from surveyapp.core.orientation.repeated_runs import OWN_SCATTER, Groups
 from surveyapp.core.swing.session import ReducedSession
 from surveyapp.core.uncertain import Source, Uncertain, aligned
 from surveyapp.domain.project import Project, ResultWarning
 from surveyapp.domain.subject import Subject
 from surveyapp_models.angles import RHO_ARCSEC
 
-NAME = "scatter of determinations"
+NAME = OWN_SCATTER
 
 
 def with_scatter_sigma(
