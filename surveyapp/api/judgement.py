@@ -11,16 +11,21 @@ from surveyapp.api.project import SOFTWARE, Folder, opened
 from surveyapp.domain.advance import Advance, silent
 from surveyapp.domain.project import Project
 from surveyapp.domain.records import Listing
-from surveyapp.domain.results import Verdicts
-from surveyapp.errors import Problem, SurveyError
+from surveyapp.domain.results import Check, Verdicts
 
 if TYPE_CHECKING:
     from surveyapp.workflows.choosing import Diagnosable
     from surveyapp.workflows.diagnosing import Diagnosed
-    from surveyapp.workflows.diagnosing_sensor import SensorDiagnosed
 
 
-def check(source: Source, *, seal: str | None = None, advance: Advance = silent) -> Verdicts:
+def check(
+    source: Source,
+    *,
+    seal: str | None = None,
+    key: Folder | None = None,
+    signed: tuple[Folder, ...] = (),
+    advance: Advance = silent,
+) -> Verdicts:
     """Apply every limit and test that the project's data can answer.
 
     The same verdicts stand in the result of ``orient``, on the screens and in the record.
@@ -31,6 +36,11 @@ def check(source: Source, *, seal: str | None = None, advance: Advance = silent)
     seal : str or None
         A head that a signed record prints: one check more tells whether the ledger holds it and
         what was sealed then is as it was.
+    key : path or None
+        Public key in the format of minisign: one check more for every closing in force, and for
+        every file of ``signed``, tells whether it is signed by this key.
+    signed : tuple of paths
+        Files with a signature beside them, such as the record.
 
     Raises
     ------
@@ -53,7 +63,26 @@ def check(source: Source, *, seal: str | None = None, advance: Advance = silent)
 
         folder = Path(found.project.path)
         checks = (*checks, seal_check(*sealed_by(folder, seal)))
+    if key is not None:
+        checks = (*checks, *_signature_checks(Path(found.project.path), key, signed))
     return Verdicts(checks, told)
+
+
+def _signature_checks(folder: Path, key: Folder, signed: tuple[Folder, ...]) -> tuple[Check, ...]:
+    from surveyapp.core.checks.filing_checks import signature_check
+    from surveyapp.io.filing.signatures import closing_faults, file_faults
+    from surveyapp.io.minisign import read_public_key
+
+    public = read_public_key(Path(key))
+    closings = [
+        signature_check("closing.signature", name or "project", found, public.id)
+        for name, found in closing_faults(folder, public).items()
+    ]
+    files = [
+        signature_check("record.signature", Path(p).name, file_faults(Path(p), public), public.id)
+        for p in signed
+    ]
+    return (*closings, *files)
 
 
 def diagnose(
@@ -121,51 +150,3 @@ def subjects(source: Source) -> Listing[Diagnosable]:
 
     kept = without_unfinished(opened(source))
     return Listing("surveyapp.subjects/1", "subjects", subjects_of(kept))
-
-
-def diagnose_sensor(
-    folder: Folder,
-    sensor: str,
-    *,
-    effects: Folder | None = None,
-    allow_outside: bool = False,
-    log: bool = True,
-) -> SensorDiagnosed:
-    """Find which effect the model of a sensor lacks, and prove it on left-out stops.
-
-    Parameters
-    ----------
-    folder : path
-        Of a project.
-    sensor : str
-        Id of a ``[[sensor_log]]``.
-    effects : path or None
-        A Python file with a tuple ``EFFECTS`` of the user's own effects.
-    allow_outside : bool
-        Whether the log may lie outside the project folder.
-    log : bool
-        Append the diagnosis to the project's ledger where it can be written.
-
-    Raises
-    ------
-    SurveyError
-        For an unknown sensor, a kind without a diagnosis, or too few stops.
-    """
-    from surveyapp.api.project import open_project
-    from surveyapp.api.sensors import open_sensor_log
-    from surveyapp.io.user_effects.loading import load_effects
-    from surveyapp.workflows.diagnosing_sensor import diagnose_sensor as diagnose_log
-
-    own = () if effects is None else load_effects(Path(effects))
-    opened = open_sensor_log(folder, sensor=sensor, allow_outside=allow_outside)
-    if opened.entry is None:
-        raise SurveyError(
-            Problem("a sensor is a log of a project", "sensor", str(folder), "a project folder")
-        )
-    return diagnose_log(
-        opened.file,
-        opened.entry,
-        project=open_project(folder) if log else None,
-        software=SOFTWARE,
-        own=own,
-    )

@@ -165,23 +165,25 @@ def with_line(found: Computed, line: str | tuple[str, str]) -> OrientationResult
     from dataclasses import replace
 
     from surveyapp.core.orientation.line_names import resolve_line
+    from surveyapp.domain.station_line import StationLine
 
     result = found.result
     stations = [item.name for item in found.project.stations]
     told = [item.text for item in result.warnings if item.code == "session_unfinished"]
-    station, target = resolve_line(line, stations, result.lines, more="; ".join(told))
-    own = tuple(x for x in result.lines if (x.station, x.target) == (station, target))
+    found_line = resolve_line(line, stations, result.lines, more="; ".join(told))
+    own = tuple(x for x in result.lines if StationLine(x.station, x.target) == found_line)
     if all(item.true_azimuth is None for item in own):
         raise SurveyError(
             Problem(
-                what=f"the azimuth of line {station}-{target} cannot be determined",
+                what=f"the azimuth of line {found_line} cannot be determined",
                 where=", ".join(f"instrument {item.instrument}" for item in own),
                 found="no instrument constant",
                 expected="calibration sessions on a known line, or a known constant",
                 hint="Add a calibration session, or constant = { arcsec, sigma_arcsec }.",
             )
         )
-    sides = tuple(x for x in result.combined if {x.station, x.target} == {station, target})
+    ends = {found_line.station, found_line.target}
+    sides = tuple(x for x in result.combined if {x.station, x.target} == ends)
     return replace(result, lines=own, combined=sides)
 
 

@@ -213,6 +213,7 @@ def checks_text(checks: Sequence[Check], *, told: Sequence[ResultWarning] = ()) 
     if not checks:
         return ""
     rows = []
+    loud = {(warning.code, warning.subject) for warning in told}
     answered = [check for check in checks if check.passed is not None]
     for check in answered:
         limit = "-" if check.limit is None else f"{check.limit:.4g}"
@@ -225,8 +226,8 @@ def checks_text(checks: Sequence[Check], *, told: Sequence[ResultWarning] = ()) 
         for check in checks
         if check.passed is False
         and check.text
-        and not check.rule.startswith("fit.")  # the parts of the test of fit, told by it
-        and not any(check.text in warning.text for warning in told)
+        and not check.is_part
+        and (check.warning_code, check.subject) not in loud
     ]
     parts += _open(checks)
     clauses: dict[str, dict[str, None]] = {}

@@ -9,6 +9,7 @@ import math
 from dataclasses import dataclass, field
 from typing import Literal
 
+from surveyapp.domain.constant_choice import ConstantChoice
 from surveyapp.domain.priors import Priors
 from surveyapp_models.angles import RHO_ARCSEC
 
@@ -275,8 +276,7 @@ class Instrument:
     serial : str
     known_constant : tuple of (float, float) or None
         Instrument constant known beforehand and its sigma [rad].
-    constant_choice : str or None
-        predicted | pooled | interpolated | nearest | running:5 | line:A-B | known;
+    constant_choice : ConstantChoice or None
         None = nobody chose: predicted where there are determinations enough, else pooled.
     effects : tuple of AdoptedEffect
     priors : Priors or None
@@ -287,6 +287,6 @@ class Instrument:
     card: InstrumentCard
     serial: str = ""
     known_constant: tuple[float, float] | None = None
-    constant_choice: str | None = None
+    constant_choice: ConstantChoice | None = None
     effects: tuple[AdoptedEffect, ...] = ()
     priors: Priors | None = None

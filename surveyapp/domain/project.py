@@ -6,11 +6,12 @@ Read from a folder by ``surveyapp.io.project``; nothing here touches a file.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import date
 from typing import Any, Literal
 
 from surveyapp.domain.closing import Filing
+from surveyapp.domain.constant_choice import ConstantChoice
 from surveyapp.domain.instrument import AdoptedEffect, Instrument
 from surveyapp.domain.mine_grid import MineGrid, StatedConvergence
 from surveyapp.domain.penetration import PenetrationTable
@@ -137,7 +138,7 @@ class OrientationSession:
         Known grid azimuth of the line [rad].
     azimuth_known_sigma : float or None
         Its standard deviation [rad]; None: from the coordinates' sigma.
-    constant_choice : str or None
+    constant_choice : ConstantChoice or None
         Overrides the instrument's.
     date : datetime.date or None
     order : float or None
@@ -177,7 +178,7 @@ class OrientationSession:
     target: str | None = None
     azimuth_known: float | None = None
     azimuth_known_sigma: float | None = None
-    constant_choice: str | None = None
+    constant_choice: ConstantChoice | None = None
     date: date | None = None
     order: float | None = None
     circle_shift: float | None = None
@@ -220,6 +221,10 @@ class ResultWarning:
     code: str
     text: str
     subject: Subject | None = None
+
+    def about(self, subject: Subject) -> ResultWarning:
+        """The same warning about this subject, where it does not say what it is about."""
+        return self if self.subject is not None else replace(self, subject=subject)
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""

@@ -51,6 +51,10 @@ __all__ = [
 ResultTable = Literal["lines", "sessions", "constants", "combined", "checks", "warnings"]
 
 
+LOUD = {"fit": "lack_of_fit", "constant": "constant_unstable", "line": "rounds_disagree"}
+"""A run that the model does not fit, a constant that moved: codes of the warnings, by family."""
+
+
 @dataclass(frozen=True, slots=True)
 class Check:
     """One limit or test, applied.
@@ -85,6 +89,21 @@ class Check:
     where: str = ""
     text: str = ""
     subject: Subject = field(kw_only=True)
+
+    @property
+    def family(self) -> str:
+        """What the rule belongs to: of ``constant.lines`` ``constant``, of a rule book its id."""
+        return self.rule.partition(".")[0]
+
+    @property
+    def is_part(self) -> bool:
+        """Whether it is one of the tests behind the test of fit, which tells it."""
+        return self.family == "fit" and self.rule != self.family
+
+    @property
+    def warning_code(self) -> str:
+        """Code of the warning that tells it again where it is not met; empty where none does."""
+        return "" if self.passed is not False or self.is_part else LOUD.get(self.family, "")
 
     @property
     def verdict(self) -> str:

@@ -203,13 +203,15 @@ def _read_tables(top: _Top, repair: bool | None) -> Project:
         unit=unit,
     )
     instruments = [
-        with_priors(instrument, card, files)
+        replace(
+            with_priors(instrument, card, files),
+            constant_choice=names.read_choice(card, instrument.id),
+        )
         for instrument, card in zip(instruments, cards, strict=True)
     ]
     orientations = top.tables("orientation")
     sessions = read_sessions(orientations, files, names, repair=repair)
     for instrument, card in zip(instruments, cards, strict=True):
-        names.check_choice(card, instrument.constant_choice or "pooled", instrument.id)
         if instrument.card.id and is_path(str(card.get("card"))):
             files.read(str(card.get("card")), card.where)
     rule_book, rules = _rules(top)

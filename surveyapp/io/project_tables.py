@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Literal, cast
 
-from surveyapp.domain.constant_choice import CHOICES, running_count
+from surveyapp.domain.constant_choice import CHOICES, FORMS, LINE, ConstantChoice, word_of
 from surveyapp.domain.instrument import Instrument, InstrumentCard
 from surveyapp.domain.project import (
     DEFAULT_DEFLECTION_SIGMA,
@@ -26,6 +26,7 @@ from surveyapp.domain.project import (
     Station,
 )
 from surveyapp.domain.readings import FieldBook
+from surveyapp.domain.station_line import meanings
 from surveyapp.errors import Problem, nearest_names
 from surveyapp.io.adopted_effects import read_effect
 from surveyapp.io.cards import CARD_KEYS, load_card
@@ -80,31 +81,40 @@ class Names:
                     )
                 )
 
-    def check_choice(self, table: Table, choice: str, instrument: str) -> None:
-        """A constant choice is a known word or names a line between two stations."""
-        if choice == "known" and instrument not in self.known_constants:
+    def read_choice(self, table: Table, instrument: str) -> ConstantChoice | None:
+        """The constant choice of a table: a known word, or a line between two stations."""
+        text = table.text("constant_choice")
+        if not text:
+            return None
+        if text == "known" and instrument not in self.known_constants:
             table.problem(
                 "constant_choice is known, but the instrument has no constant",
-                choice,
+                text,
                 "constant = { arcsec = ..., sigma_arcsec = ... } in [[instrument]]",
             )
-        if choice in CHOICES or running_count(choice) is not None:
-            return
-        expected = " | ".join(CHOICES) + " | running:5 | line:A-B"
-        if not choice.startswith("line:"):
-            hint = nearest_names(choice, CHOICES)
-            table.problem("constant_choice is not known", choice, expected, hint)
-        elif split_line(choice[5:], self.stations) is None:
-            hint = nearest_names(choice[5:].partition("-")[0], self.stations)
-            table.problem("constant_choice names no line between stations", choice, expected, hint)
+        choice = word_of(text)
+        if choice is None and not text.startswith(LINE):
+            table.problem("constant_choice is not known", text, FORMS, nearest_names(text, CHOICES))
+        elif choice is None:
+            choice = self._named_line(table, text)
+        return choice
 
-
-def split_line(line: str, stations: Sequence[str]) -> tuple[str, str] | None:
-    """Split ``A-B`` into two stations; their names may hold hyphens themselves."""
-    for index, character in enumerate(line):
-        if character == "-" and line[:index] in stations and line[index + 1 :] in stations:
-            return line[:index], line[index + 1 :]
-    return None
+    def _named_line(self, table: Table, text: str) -> ConstantChoice | None:
+        name = text.removeprefix(LINE)
+        found = meanings(name, self.stations)
+        if len(found) == 1:
+            return ConstantChoice("line", line=found[0])
+        if found:
+            table.problem(
+                "constant_choice means several lines",
+                text,
+                " or ".join(f"{LINE}{line.unmistakable}" for line in found),
+                "Write the station and the target with a comma between them.",
+            )
+        else:
+            hint = nearest_names(name.partition("-")[0], self.stations)
+            table.problem("constant_choice names no line between stations", text, FORMS, hint)
+        return None
 
 
 def unique(names: Sequence[str], kind: str, findings: Findings) -> tuple[str, ...]:
@@ -198,7 +208,7 @@ def read_centring(table: Table) -> Centring | None:
 
 
 def read_instrument(table: Table, folder: Path) -> Instrument:
-    """One [[instrument]]: its card with what the project overrides."""
+    """One [[instrument]]: its card with what the project overrides, still without its choice."""
     identity = table.text("id", required=True) or ""
     name = table.text("card", required=True)
     override = {key: table.get(key) for key in CARD_KEYS if key in table}
@@ -220,10 +230,10 @@ def read_instrument(table: Table, folder: Path) -> Instrument:
         card=card or InstrumentCard("", "", "suspended", ""),
         serial=_serial(table),
         known_constant=known,
-        constant_choice=table.text("constant_choice") or None,
         effects=tuple(read_effect(t) for t in table.tables("effect")),
     )
-    table.get("note")
+    for key in ("note", "constant_choice"):  # the choice may name a line between stations
+        table.get(key)
     table.warn_unknown(*CARD_KEYS, "priors")
     return instrument
 
@@ -241,8 +251,8 @@ def read_session(table: Table, names: Names) -> OrientationSession:
     station = table.text("station", required=True) or ""
     target = table.text("target")
     instrument = table.text("instrument", required=True) or ""
-    choice = table.text("constant_choice")
-    _check_names(table, names, (station, target, instrument), choice)
+    choice = names.read_choice(table, instrument)
+    _check_names(table, names, (station, target, instrument))
     method = table.choice("method", METHODS, required=True)
     purpose = table.choice("purpose", PURPOSES)
     azimuth = table.angle("azimuth_known", names.unit)
@@ -287,9 +297,7 @@ def read_session(table: Table, names: Names) -> OrientationSession:
     return session
 
 
-def _check_names(
-    table: Table, names: Names, used: tuple[str, str | None, str], choice: str | None
-) -> None:
+def _check_names(table: Table, names: Names, used: tuple[str, str | None, str]) -> None:
     """Everything that a session refers to is declared."""
     station, target, instrument = used
     names.check_station(table, station, "the session stands on no station")
@@ -299,8 +307,6 @@ def _check_names(
     if instrument and instrument not in names.instruments:
         hint = nearest_names(instrument, names.instruments)
         table.problem("there is no such instrument", instrument, "an id of [[instrument]]", hint)
-    if choice is not None:
-        names.check_choice(table, choice, instrument)
 
 
 def _session_override(table: Table) -> tuple[tuple[str, object], ...]:

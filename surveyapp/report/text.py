@@ -107,8 +107,11 @@ def table_text(table: Table, width: int = WIDTH, *, indent: int = 2) -> str:
     widths = [max(display_width(row[i]) for row in everything) for i in range(len(align))]
     room = width - indent - _GAP * (len(align) - 1)
     words = [max(_longest_word(row[i]) for row in everything) for i in range(len(align))]
-    for floors in ([max(_NARROWEST, word) for word in words], [_NARROWEST] * len(align)):
-        _squeeze(widths, align, floors, room)
+    _squeeze(widths, align, [max(_NARROWEST, word) for word in words], room)
+    narrow = list(widths)
+    _squeeze(narrow, align, [_NARROWEST] * len(align), room)
+    if sum(narrow) <= room:  # words are broken only where that helps
+        widths = narrow
     lines = []
     for row in everything:
         cells = [_wrapped(c, w) for c, w in zip(row, widths, strict=True)]

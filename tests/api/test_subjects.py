@@ -9,7 +9,14 @@ import pytest
 
 from surveyapp import api
 from surveyapp.cli.main import main
-from surveyapp.core.orientation.line_names import meanings, resolve_line
+from surveyapp.core.orientation.circumstances import (
+    Circumstances,
+    columns_of,
+    name_of,
+    numbered,
+)
+from surveyapp.core.orientation.line_names import resolve_line
+from surveyapp.domain.station_line import StationLine, meanings
 from surveyapp.errors import SurveyError
 from tests.api.projects import GYRO, TM, azimuths, session, station, write
 
@@ -114,7 +121,10 @@ def test_hyphens_in_station_names_are_resolved_or_told(tmp_path: Path) -> None:
 
 
 def test_meanings_are_pairs_of_stations_that_exist() -> None:
-    assert meanings("A-B-C", ["A", "B-C", "A-B", "C"]) == (("A", "B-C"), ("A-B", "C"))
+    assert meanings("A-B-C", ["A", "B-C", "A-B", "C"]) == (
+        StationLine("A", "B-C"),
+        StationLine("A-B", "C"),
+    )
     assert meanings("A-B", ["A", "C"]) == ()
     with pytest.raises(SurveyError, match="no oriented line"):
         resolve_line("A-B", ["A", "B"], ())
@@ -154,3 +164,54 @@ def test_every_check_of_the_samples_says_what_it_is_about() -> None:
                 assert check.subject.id in sessions
             if check.subject.kind in ("instrument", "line"):
                 assert (check.subject.instrument or check.subject.id) in instruments
+
+
+ALIKE = [("cal-1", "A-B", "C", "G1", "36-50-00"), ("cal-2", "A", "B-C", "G1", "30-50-20")]
+
+
+def two_lines_of_one_text(folder: Path, choice: str) -> Path:
+    """Calibrations on A-B to C and on A to B-C, which both read A-B-C, and one survey line."""
+    toml = GYRO.replace('id = "G1"', f'id = "G1"\n{choice}') + HYPHENS
+    toml += station("D", e=1900.0, n=5200900.0)
+    for name, at, to, _, _ in ALIKE:
+        toml += session(name, at, to, more=['purpose = "calibration"', "sigma_arcsec = 5.0"])
+    toml += session("run", "A", "D", more=SURVEY)
+    books = {name: azimuths(value) for name, _, _, _, value in ALIKE}
+    return write(folder, toml, books | {"run": azimuths("353-30-00")}, head=TM)
+
+
+def test_calibration_lines_of_one_text_are_two_lines(tmp_path: Path) -> None:
+    result = api.orient(two_lines_of_one_text(tmp_path, 'constant_choice = "pooled"'))
+    lines = result.constants[0].by_line
+    assert [(x.station, x.target, x.count) for x in lines] == [("A-B", "C", 1), ("A", "B-C", 1)]
+
+
+def test_a_constant_of_a_line_is_that_of_its_two_stations(tmp_path: Path) -> None:
+    with pytest.raises(SurveyError, match="means several lines") as caught:
+        api.orient(two_lines_of_one_text(tmp_path / "text", 'constant_choice = "line:A-B-C"'))
+    assert caught.value.problems[0].expected == "line:A,B-C or line:A-B,C"
+    values = {}
+    for typed in ("A-B,C", "A,B-C"):
+        folder = two_lines_of_one_text(tmp_path / typed, f'constant_choice = "line:{typed}"')
+        result = api.orient(folder)
+        values[typed] = result.lines[0].constant
+        assert result.lines[0].constant_choice == "line:A-B-C"
+        of_line = {f"{x.station},{x.target}": x.value for x in result.constants[0].by_line}
+        assert values[typed] == of_line[typed]
+    assert values["A-B,C"] != values["A,B-C"]
+
+
+def test_a_campaign_numbers_lines_by_their_stations_and_prints_them_apart() -> None:
+    facts = [
+        Circumstances.of({"line": StationLine(at, to)})
+        for at, to in (("A-B", "C"), ("A", "B-C"), ("A-B", "C"))
+    ]
+    assert columns_of(facts)["line"].tolist() == [0.0, 1.0, 0.0]
+    numbers, texts = numbered([fact.name("line") for fact in facts])
+    assert numbers.tolist() == [0.0, 1.0, 0.0]
+    assert texts == {0.0: "A-B,C", 1.0: "A,B-C"}
+    lines = [fact.name("line") for fact in facts]
+    assert name_of("A,B-C", lines) == StationLine("A", "B-C")
+    with pytest.raises(SurveyError, match="means several lines"):
+        name_of("A-B-C", lines)
+    assert name_of("A-B-C", lines[:1]) == StationLine("A-B", "C")

@@ -5,7 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from surveyapp.domain.constant_choice import ConstantChoice
 from surveyapp.domain.project import Centring, Project
+from surveyapp.domain.station_line import StationLine
 from surveyapp.errors import SurveyError
 from surveyapp.io.files import MAX_BYTES
 from surveyapp.io.project import read_project
@@ -165,7 +167,7 @@ def test_the_session_holds_everything(tmp_path: Path) -> None:
     assert session.order == 2.0
     assert session.eccentric is not None
     assert (session.eccentric.distance_m, session.eccentric.at) == (0.5, "target")
-    assert session.constant_choice == "line:30-83-3082"
+    assert session.constant_choice == ConstantChoice("line", line=StationLine("30-83", "3082"))
     override = dict(session.override)
     assert (override["rounds"], override["sigma_arcsec"], override["weather"]) == (3, 4.5, "dry")
     assert override["centring"] == Centring(0.001, 0.003, known=True)

@@ -21,10 +21,13 @@ from surveyapp.domain.observations import CorrelatedBlock, Observation, Observat
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network
 from surveyapp.domain.traverse_book import Traverse
+from surveyapp.languages import said
 from surveyapp_models.angles import wrap_pi
 from surveyapp_models.arrays import Floats
 
 K = ObservationKind
+Lengths = Mapping[tuple[str, str], float]
+"""Horizontal lengths of sides by their two stations [m]."""
 _KINDS = frozenset({K.DIRECTION, K.DISTANCE, K.SLOPE_DISTANCE, K.ZENITH})
 
 
@@ -43,7 +46,7 @@ def setup_of(text: str) -> str:
 
 
 def setup_blocks(
-    traverse: Traverse, known: Mapping[int, Observation], lengths: Mapping[str, float]
+    traverse: Traverse, known: Mapping[int, Observation], lengths: Lengths
 ) -> tuple[dict[int, Observation], list[tuple[tuple[int, ...], Floats]]]:
     """Observations with the sigma of their heights, and the covariances of each set-up.
 
@@ -53,7 +56,7 @@ def setup_blocks(
     known : mapping
         Observations by the place of their row, centring in their sigma.
     lengths : mapping
-        Horizontal lengths of sides by ``a|b`` [m].
+        Horizontal lengths of sides by their two stations [m].
 
     Returns
     -------
@@ -87,7 +90,7 @@ def setup_blocks(
     return changed, blocks
 
 
-def _targets(found: Sequence[Observation], lengths: Mapping[str, float]) -> dict[str, _Target]:
+def _targets(found: Sequence[Observation], lengths: Lengths) -> dict[str, _Target]:
     """Where each target of a set-up lies, from its first readings."""
     azimuths: dict[str, float] = {}
     turns: dict[str, float] = {}
@@ -108,9 +111,7 @@ def _targets(found: Sequence[Observation], lengths: Mapping[str, float]) -> dict
     zeniths = {o.to: o.value for o in reversed(found) if o.kind is K.ZENITH}
     at = found[0].at
     return {
-        name: _Target(
-            azimuths.get(name), lengths.get(f"{at}|{name}"), zeniths.get(name, math.pi / 2)
-        )
+        name: _Target(azimuths.get(name), lengths.get((at, name)), zeniths.get(name, math.pi / 2))
         for name in dict.fromkeys(obs.to for obs in found)
     }
 
@@ -167,8 +168,8 @@ def without_setup_blocks(network: Network) -> tuple[Network, tuple[ResultWarning
     )
     if len(kept) == len(network.blocks):
         return network, ()
-    text = (
-        "what the rounds of a set-up share (centring, heights) is written as independent: the "
-        "sigmas that others adjust from it are smaller than ours"
+    text = said(
+        "what the rounds of a set-up share (centring, heights) is written as "
+        "independent: the sigmas that others adjust from it are smaller than ours"
     )
     return replace(network, blocks=kept), (ResultWarning("correlation_lost", text),)

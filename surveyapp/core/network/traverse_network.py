@@ -17,13 +17,16 @@ from typing import Final
 import numpy as np
 
 from surveyapp.core.network.centring import angle_centring, direction_centring
-from surveyapp.core.network.setups import as_blocks, setup_blocks
+from surveyapp.core.network.setups import Lengths, as_blocks, setup_blocks
 from surveyapp.core.network.touched import touched
 from surveyapp.domain.observations import CorrelatedBlock, Observation, ObservationKind
 from surveyapp.domain.project import Project, ResultWarning, Station
+from surveyapp.domain.station_line import StationLine
+from surveyapp.domain.subject import Subject
 from surveyapp.domain.traverse import GyroConstant, Network, NetworkPoint, OrientedLine, Status
 from surveyapp.domain.traverse_book import Traverse, TraverseRow
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import said
 
 K = ObservationKind
 MM: Final = 1e-3
@@ -31,29 +34,31 @@ _HORIZONTAL = frozenset({K.ANGLE, K.DIRECTION, K.AZIMUTH, K.GYRO})
 _LENGTHS = frozenset({K.DISTANCE, K.SLOPE_DISTANCE})
 
 
-def _lengths(rows: Sequence[TraverseRow], stations: Mapping[str, Station]) -> dict[str, float]:
-    """Horizontal side lengths by ``a|b``, from distances and, failing those, coordinates."""
+def _lengths(
+    rows: Sequence[TraverseRow], stations: Mapping[str, Station]
+) -> dict[tuple[str, str], float]:
+    """Horizontal side lengths by two stations, from distances and, failing those, coordinates."""
     zeniths = {(row.at, row.to): row.value for row in rows if row.kind is K.ZENITH}
-    found: dict[str, float] = {}
+    found: dict[tuple[str, str], float] = {}
     for row in rows:
         if row.kind not in _LENGTHS or row.value is None or row.value <= 0.0:
             continue
         steep = zeniths.get((row.at, row.to)) if row.kind is K.SLOPE_DISTANCE else None
         length = row.value * (1.0 if steep is None else math.sin(steep))
-        found[f"{row.at}|{row.to}"] = found[f"{row.to}|{row.at}"] = length
+        found[row.at, row.to] = found[row.to, row.at] = length
     for row in rows:
         for name in (row.to, row.back):
             a, b = stations.get(row.at), stations.get(name)
-            if a is None or b is None or f"{row.at}|{name}" in found:
+            if a is None or b is None or (row.at, name) in found:
                 continue
             if a.e is None or a.n is None or b.e is None or b.n is None:
                 continue
             if (length := math.hypot(b.e - a.e, b.n - a.n)) > 0.0:
-                found[f"{row.at}|{name}"] = length
+                found[row.at, name] = length
     return found
 
 
-def _sigma(row: TraverseRow, header: Traverse, lengths: Mapping[str, float]) -> float | None:
+def _sigma(row: TraverseRow, header: Traverse, lengths: Lengths) -> float | None:
     """Standard deviation of a row [rad] or [m], None where nothing states one."""
     if row.sigma is not None:
         return row.sigma
@@ -63,11 +68,13 @@ def _sigma(row: TraverseRow, header: Traverse, lengths: Mapping[str, float]) -> 
             return None
         own = math.hypot(header.sigma_mm * MM, header.sigma_ppm * 1e-6 * (row.value or 0.0))
         return math.sqrt(own**2 + header.instrument_m**2 + header.target_m**2)
+    if row.kind is K.ZENITH and header.sigma_zenith is not None:
+        return header.sigma_zenith
     if row.kind in (K.HEIGHT_DIFFERENCE, K.GYRO) or header.sigma_angle is None:
         return None
-    fore = lengths.get(f"{row.at}|{row.to}")
+    fore = lengths.get((row.at, row.to))
     if row.kind is K.ANGLE:
-        back = lengths.get(f"{row.at}|{row.back}")
+        back = lengths.get((row.at, row.back))
         extra = (
             0.0
             if back is None or fore is None
@@ -153,8 +160,10 @@ def book_observations(
             continue
         sigma = _sigma(row, traverse, lengths)
         if sigma is None:
-            where = f"{traverse.book}, line {row.line}"
-            expected = "a sigma in the row, or sigma_angle_arcsec / sigma_distance in [[traverse]]"
+            where = said("{book}, line {line}", book=traverse.book, line=row.line)
+            expected = said(
+                "a sigma in the row, or sigma_angle_arcsec / sigma_distance in [[traverse]]"
+            )
             problems.append(
                 Problem("an observation without a standard deviation", where, "nothing", expected)
             )
@@ -256,33 +265,48 @@ def _points(
     first = next((i for i in with_height if points[i].h is not None), with_height[0])
     height = points[first].h or 0.0
     points[first] = replace(points[first], h=height, status_h=Status.FIXED)
-    text = f"no height is fixed: heights count from {points[first].name} = {height:g} m"
-    return points, [ResultWarning("heights_relative", text)]
+    text = said(
+        "no height is fixed: heights count from {name} = {height:g} m",
+        name=points[first].name,
+        height=height,
+    )
+    return points, [
+        ResultWarning("heights_relative", text, Subject.of("station", points[first].name))
+    ]
 
 
 def _header_warnings(header: Traverse) -> list[ResultWarning]:
     warnings = []
+    subject = Subject.of("traverse", header.name)
     for flag, what in (
         (header.atmosphere_applied, "atmosphere"),
         (header.constant_applied, "constant"),
     ):
         if flag is False:
-            text = (
-                f"traverse {header.name}: the {what} correction was not applied by the instrument "
-                "and is not applied here: enter corrected distances"
+            text = said(
+                "traverse {name}: the {what} correction was not applied by the instrument "
+                "and is not applied here: enter corrected distances",
+                name=header.name,
+                what=what,
             )
-            warnings.append(ResultWarning(f"{what}_not_applied", text))
+            warnings.append(ResultWarning(f"{what}_not_applied", text, subject))
     seen: dict[tuple[str, str, str], tuple[float, float]] = {}
     unlike = {}
     for row in header.rows:
         if row.kind in (K.ZENITH, K.SLOPE_DISTANCE):
             heights = seen.setdefault((row.at, row.to, row.set), (row.hi, row.ht))
             if heights != (row.hi, row.ht):
-                unlike[f"{row.at}-{row.to}"] = row.line
+                unlike[StationLine(row.at, row.to)] = row.line
     if unlike:
-        places = ", ".join(f"{sight} (line {line})" for sight, line in list(unlike.items())[:6])
-        text = f"zenith angle and distance of a sight have other heights hi, ht: {places}"
-        warnings.append(ResultWarning("heights_disagree", text))
+        places = ", ".join(
+            said("{sight} (line {line})", sight=sight, line=line)
+            for sight, line in list(unlike.items())[:6]
+        )
+        text = said(
+            "zenith angle and distance of a sight have other heights hi, ht: {places}",
+            places=places,
+        )
+        warnings.append(ResultWarning("heights_disagree", text, subject))
     return warnings
 
 

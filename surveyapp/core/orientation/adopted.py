@@ -20,22 +20,26 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from surveyapp.core.geodesy import Position
-from surveyapp.core.orientation.campaign_columns import BLOCK_GAP_DAYS, LABELLED, Place
+from surveyapp.core.orientation.campaign_columns import BLOCK_GAP_DAYS, LABELLED, Name, Place
 from surveyapp.core.orientation.circumstances import (
     Circumstances,
     circumstances_of,
     columns_of,
+    name_of,
 )
 from surveyapp.core.swing.session import ReducedSession, TargetReduction
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import AdoptedEffect, Instrument
 from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.station_line import StationLine
+from surveyapp.domain.subject import Subject
+from surveyapp.languages import joined, listed, said
 from surveyapp_models.angles import RHO_ARCSEC
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Effect
 
-SOURCE = "adopted effect"
+SOURCE = said("adopted effect")
 STEPS = 25
 """Values of a missing column that are tried over its range for the largest effect."""
 
@@ -122,21 +126,25 @@ def _not_moved(
     calibrations: Sequence[int],
 ) -> list[ResultWarning]:
     """Surveys of the very line that stands off: its offset is not the gyro's."""
-    line = dict(adopted.grid).get("line")
+    line = _named(adopted, facts).get("line")
     told = {
         sessions[i]: None
         for i in range(len(sessions))
         if i not in calibrations and facts[i].name("line") == line
     }
-    if not told:
+    if not told or not isinstance(line, StationLine):
         return []
     size = ", ".join(f"{value:+.1f} {unit}" for _, value, _, unit in adopted.coefficients)
-    text = (
-        f"{', '.join(told)}: the line {line} stands off by {size} in its calibrations (adopted "
-        f"effect {adopted.id}): its known azimuth, centring or deflection; a survey of it is not "
-        "moved by that"
+    text = said(
+        "{told}: the line {line} stands off by {size} in its calibrations (adopted "
+        "effect {id}): its known azimuth, centring or deflection; a survey of it "
+        "is not moved by that",
+        told=joined(", ", told),
+        line=line,
+        size=size,
+        id=adopted.id,
     )
-    return [ResultWarning("line_not_moved", text)]
+    return [ResultWarning("line_not_moved", text, Subject.side(line.station, line.target))]
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,7 +195,7 @@ def effect_shifts(
             for k, part in enumerate(rows.inside[i] @ root)
         }
         shift = Uncertain(float(rows.inside[i] @ values), parts)
-        beyond = f"{SOURCE} outside its range"
+        beyond = said("{source} outside its range", source=SOURCE)
         if rows.missing[i]:
             excess = _largest(effect, adopted, columns, (i, rows), values)
             shift = shift.with_part(Source(beyond, session, detail=name), excess)
@@ -220,7 +228,7 @@ def _columns(
     effect: Effect, adopted: AdoptedEffect, facts: Sequence[Circumstances]
 ) -> dict[str, Floats]:
     """The columns that an effect needs; a named line or block has the number 0."""
-    named = {name: str(value) for name, value in adopted.grid if name in LABELLED}
+    named = _named(adopted, facts)
     columns = columns_of(
         facts, known={name: [value] for name, value in named.items()}, time=adopted.time
     )
@@ -233,6 +241,15 @@ def _columns(
         within = (dates >= start) & (dates <= end)
         columns["block"] = np.where(np.isnan(dates), np.nan, np.where(within, 0.0, 1.0))
     return {need.name: columns[need.name] for need in effect.needs}
+
+
+def _named(adopted: AdoptedEffect, facts: Sequence[Circumstances]) -> dict[str, Name]:
+    """The line or block of an effect, found by its text among those that were observed."""
+    return {
+        column: name_of(str(text), [fact.name(column) for fact in facts])
+        for column, text in adopted.grid
+        if column in LABELLED
+    }
 
 
 def _grid(adopted: AdoptedEffect) -> dict[str, float]:
@@ -338,28 +355,40 @@ def _missing_warning(
     session: str, adopted: AdoptedEffect, missing: Sequence[str], excess: float
 ) -> ResultWarning:
     known = {name for name, _ in adopted.reference}
-    where = "at its reference" if known.issuperset(missing) else "in the middle of its range"
-    text = (
-        f"session {session}: {' and '.join(missing)} missing: the adopted effect {adopted.id} is "
-        f'taken as {where}, and the most that it may differ, {excess * RHO_ARCSEC:.1f}", enters '
-        "the sigma"
+    where = (
+        said("at its reference")
+        if known.issuperset(missing)
+        else said("in the middle of its range")
     )
-    return ResultWarning("effect_outside_range", text)
+    text = said(
+        "session {session}: {missing} missing: the adopted effect {id} is taken as "
+        '{where}, and the most that it may differ, {excess:.1f}", enters the sigma',
+        session=session,
+        missing=listed(missing),
+        id=adopted.id,
+        where=where,
+        excess=excess * RHO_ARCSEC,
+    )
+    return ResultWarning("effect_outside_range", text, Subject.session(session))
 
 
 def _outside_warning(
     session: str, adopted: AdoptedEffect, outside: Sequence[str], excess: float
 ) -> ResultWarning:
     ranges = {name: f"{name} {low:.6g} to {high:.6g}" for name, low, high in adopted.valid}
-    text = (
-        f"session {session} lies outside the range of the adopted effect {adopted.id} "
-        f"({', '.join(ranges[name] for name in outside)}): the correction is that of the edge, and "
-    )
+    beyond = said("beyond it the effect does not change: the sigma stays")
     if excess > 0.0:
-        text += f'what lies beyond, {excess * RHO_ARCSEC:.1f}", enters the sigma'
-    else:
-        text += "beyond it the effect does not change: the sigma stays"
-    return ResultWarning("effect_outside_range", text)
+        size = excess * RHO_ARCSEC
+        beyond = said('what lies beyond, {size:.1f}", enters the sigma', size=size)
+    text = said(
+        "session {session} lies outside the range of the adopted effect {id} ({ranges}): the "
+        "correction is that of the edge, and {beyond}",
+        session=session,
+        id=adopted.id,
+        ranges=", ".join(ranges[name] for name in outside),
+        beyond=beyond,
+    )
+    return ResultWarning("effect_outside_range", text, Subject.session(session))
 
 
 def _root(adopted: AdoptedEffect) -> Floats:

@@ -20,6 +20,7 @@ from surveyapp.core.orientation.sequence import session_timestamp
 from surveyapp.core.swing.session import ReducedSession, TargetReduction
 from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import SWING_KINDS, ReadingKind
+from surveyapp.domain.station_line import StationLine
 from surveyapp_models.arrays import Floats
 
 SECONDS_PER_DAY = 86400.0
@@ -55,7 +56,9 @@ class Place:
         return self.item.session
 
 
-Told = float | str | None
+Name = str | StationLine
+"""A name: a line is its two stations, never the text that people read."""
+Told = float | Name | None
 """What a project tells of one determination: a number, a name, or nothing."""
 Example = Callable[[np.random.Generator, int], Floats]
 """Made-up values of a column: generator, how many."""
@@ -120,9 +123,9 @@ def day_of(place: Place) -> float | None:
     return None if stamp is None else stamp / SECONDS_PER_DAY
 
 
-def line_of(place: Place) -> str:
-    """``station-target``."""
-    return f"{place.session.station}-{place.target.target}"
+def line_of(place: Place) -> StationLine:
+    """The line that was observed."""
+    return StationLine(place.session.station, place.target.target)
 
 
 def block_names(days: Sequence[float | None]) -> list[str]:

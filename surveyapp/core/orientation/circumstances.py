@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
 from surveyapp.core.geodesy import Position
-from surveyapp.core.orientation.campaign_columns import BY_NAME, COLUMNS, Place
+from surveyapp.core.orientation.campaign_columns import BY_NAME, COLUMNS, Name, Place, Told
 from surveyapp.core.swing.session import ReducedSession
+from surveyapp.domain.station_line import StationLine
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp_models.arrays import Floats
 
@@ -24,17 +26,15 @@ class Circumstances:
     ----------
     order : float or None
         As stated: it stands in for time where no determination has a date.
-    told : mapping of column to float or str
+    told : mapping of column to float or name
         By the names of ``COLUMNS``; what the project does not tell is not in it.
     """
 
     order: float | None
-    told: Mapping[str, float | str]
+    told: Mapping[str, float | Name]
 
     @classmethod
-    def of(
-        cls, columns: Mapping[str, float | str | None], order: float | None = None
-    ) -> Circumstances:
+    def of(cls, columns: Mapping[str, Told], order: float | None = None) -> Circumstances:
         """Circumstances by the names of the columns, each in the unit of its column.
 
         Raises
@@ -48,7 +48,7 @@ class Circumstances:
             if column is None:
                 hint = nearest_names(name, BY_NAME)
                 problems.append(Problem("no such column of a campaign", name, name, "", hint))
-            elif value is not None and isinstance(value, str) != column.named:
+            elif value is not None and isinstance(value, str | StationLine) != column.named:
                 expected = "a name" if column.named else f"a number [{column.unit}]"
                 problems.append(
                     Problem("a column of a campaign has another kind", name, str(value), expected)
@@ -60,11 +60,12 @@ class Circumstances:
     def number(self, column: str) -> float | None:
         """A number in the unit of its column, None where it is not told."""
         value = self.told.get(column)
-        return None if isinstance(value, str) else value
+        return None if isinstance(value, str | StationLine) else value
 
-    def name(self, column: str) -> str:
+    def name(self, column: str) -> Name:
         """A name, empty where it is not told."""
-        return str(self.told.get(column, ""))
+        value = self.told.get(column, "")
+        return value if isinstance(value, str | StationLine) else ""
 
     def undated(self, order: float | None) -> Circumstances:
         """Without the day, and with another order where one is given."""
@@ -103,23 +104,55 @@ def facts_of(
     }
 
 
-def numbered(names: Sequence[str], known: Sequence[str] = ()) -> tuple[Floats, dict[float, str]]:
-    """A column of names as numbers, in the order in which they come, and the name of each number.
+def numbered(names: Sequence[Name], known: Sequence[Name] = ()) -> tuple[Floats, dict[float, str]]:
+    """A column of names as numbers, in the order in which they come, and the text of each number.
 
     Parameters
     ----------
-    names : sequence of str
-    known : sequence of str
+    names : sequence of name
+    known : sequence of name
         Names that have the first numbers.
     """
     order = {name: float(i) for i, name in enumerate(dict.fromkeys([*known, *names]))}
-    return np.array([order[name] for name in names]), {i: name for name, i in order.items()}
+    texts = texts_of(order)
+    return np.array([order[name] for name in names]), {i: texts[name] for name, i in order.items()}
+
+
+def texts_of(names: Iterable[Name]) -> dict[Name, str]:
+    """A text for each name, no two alike: lines that both read A-B-C are A,B-C and A-B,C."""
+    every = dict.fromkeys(names)
+    count = Counter(str(name) for name in every)
+    alike = {name for name in every if count[str(name)] > 1}
+    return {
+        name: name.unmistakable if name in alike and isinstance(name, StationLine) else str(name)
+        for name in every
+    }
+
+
+def name_of(text: str, names: Iterable[Name]) -> Name:
+    """The one name that a text means; the text itself where it means none of them.
+
+    Raises
+    ------
+    SurveyError
+        If it means several lines.
+    """
+    found = [
+        name
+        for name in dict.fromkeys(names)
+        if str(name) == text or (isinstance(name, StationLine) and name.unmistakable == text)
+    ]
+    if len(found) > 1:
+        expected = " or ".join(x.unmistakable for x in found if isinstance(x, StationLine))
+        hint = "Write the station and the target with a comma between them."
+        raise SurveyError(Problem("this name means several lines", "line", text, expected, hint))
+    return found[0] if found else text
 
 
 def columns_of(
     items: Sequence[Circumstances],
     *,
-    known: Mapping[str, Sequence[str]] | None = None,
+    known: Mapping[str, Sequence[Name]] | None = None,
     time: Literal["days", "order", ""] = "",
 ) -> dict[str, Floats]:
     """Columns of a basis, one row for each determination; a gap is NaN.

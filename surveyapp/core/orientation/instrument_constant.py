@@ -14,16 +14,21 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from surveyapp.core.orientation.agreement import Agreement, agreement_text
 from surveyapp.core.statistics.distributions import f_tail, student_quantile
 from surveyapp.core.statistics.levels import CONSISTENT
 from surveyapp.core.statistics.repeated import SHARED, weighted_mean
 from surveyapp.core.uncertain import Source, Uncertain, combine
+from surveyapp.domain.constant_choice import LINE, ConstantChoice
 from surveyapp.domain.instrument import Instrument
 from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.station_line import StationLine
 from surveyapp.errors import Problem, SurveyError
-from surveyapp_models.angles import RHO_ARCSEC
+from surveyapp.languages import counted, said
 
 Phase = Literal["before", "between", "after"]
+POOLED = ConstantChoice("pooled")
+PREDICTED = ConstantChoice("predicted")
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,36 +66,9 @@ class Calibration:
     block: int = 0
 
     @property
-    def line(self) -> str:
-        """Name of the line as ``constant_choice`` writes it."""
-        return f"{self.station}-{self.target}"
-
-
-@dataclass(frozen=True, slots=True)
-class Agreement:
-    """Comparison of group means.
-
-    Parameters
-    ----------
-    difference : float
-        Largest difference between two groups [rad].
-    limit : float
-        What chance makes at the 5 % level [rad] (two groups), else NaN-free 0.
-    agree : bool
-    scatter : float
-        Standard deviation to be added to the pooled mean where they do not agree [rad].
-    dof : int
-    probability : float
-    names : tuple of str
-    """
-
-    difference: float
-    limit: float
-    agree: bool
-    scatter: float
-    dof: int
-    probability: float
-    names: tuple[str, ...]
+    def line(self) -> StationLine:
+        """The line on which it was made."""
+        return StationLine(self.station, self.target)
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +79,7 @@ class InstrumentConstant:
     ----------
     instrument : Instrument
     calibrations : tuple of Calibration
-    lines : tuple of (name, Uncertain)
+    lines : tuple of (StationLine, Uncertain)
         Mean of each line.
     line_agreement, phase_agreement : Agreement or None
     known : Uncertain or None
@@ -115,7 +93,7 @@ class InstrumentConstant:
 
     instrument: Instrument
     calibrations: tuple[Calibration, ...]
-    lines: tuple[tuple[str, Uncertain], ...]
+    lines: tuple[tuple[StationLine, Uncertain], ...]
     line_agreement: Agreement | None
     phase_agreement: Agreement | None
     known: Uncertain | None
@@ -123,11 +101,11 @@ class InstrumentConstant:
     average: Uncertain | None = None
 
     @property
-    def choice(self) -> str:
+    def choice(self) -> ConstantChoice:
         """What its sessions use if they say nothing else."""
         if self.instrument.constant_choice is not None:
             return self.instrument.constant_choice
-        return "pooled" if self.average is None else "predicted"
+        return POOLED if self.average is None else PREDICTED
 
     @property
     def stable(self) -> bool | None:
@@ -174,12 +152,12 @@ def compare_groups(groups: Sequence[tuple[str, Uncertain]]) -> Agreement | None:
 
 def determine(instrument: Instrument, calibrations: Sequence[Calibration]) -> InstrumentConstant:
     """Group the determinations by line and by epoch and test their agreement."""
-    by_line: dict[str, list[Uncertain]] = {}
+    by_line: dict[StationLine, list[Uncertain]] = {}
     by_block: dict[int, list[Calibration]] = {}
     for item in calibrations:
         by_line.setdefault(item.line, []).append(item.value)
         by_block.setdefault(item.block, []).append(item)
-    lines = tuple((name, weighted_mean(items)) for name, items in by_line.items())
+    lines = tuple((line, weighted_mean(items)) for line, items in by_line.items())
     epochs = [
         (_epoch_name(number, by_block), weighted_mean([item.value for item in by_block[number]]))
         for number in sorted(by_block)
@@ -189,7 +167,7 @@ def determine(instrument: Instrument, calibrations: Sequence[Calibration]) -> In
     if instrument.known_constant is not None:
         value, sigma = instrument.known_constant
         known = Uncertain(value, {Source("known constant", instrument.id): sigma})
-    of_lines = compare_groups(lines)
+    of_lines = compare_groups([(str(line), mean) for line, mean in lines])
     of_epochs = compare_groups(epochs) if same_lines else None
     pooled = None
     if calibrations:
@@ -221,7 +199,7 @@ def _epoch_name(number: int, blocks: Mapping[int, Sequence[Calibration]]) -> str
     """before, after, or the place of a block between surveys."""
     phase = blocks[number][0].phase
     between = [n for n in sorted(blocks) if blocks[n][0].phase == "between"]
-    return f"between {between.index(number) + 1}" if phase == "between" else phase
+    return said("between {index}", index=between.index(number) + 1) if phase == "between" else phase
 
 
 @dataclass(frozen=True, slots=True)
@@ -235,7 +213,7 @@ class Chosen:
 
 def choose(
     constant: InstrumentConstant,
-    choice: str,
+    choice: ConstantChoice,
     *,
     moment: float | None,
     block: int,
@@ -247,9 +225,9 @@ def choose(
     Parameters
     ----------
     constant : InstrumentConstant
-    choice : str
-        predicted | pooled | interpolated | nearest | line:A-B | known. What is predicted for each
-        line is made elsewhere; who asks for it here has too few determinations.
+    choice : ConstantChoice
+        Not running, which is made elsewhere, as is what is predicted for each line: who asks for
+        that here has too few determinations.
     moment : float or None
         When the survey session took place.
     block : int
@@ -264,21 +242,19 @@ def choose(
     SurveyError
         If the choice names a line on which the instrument was not calibrated, or is no choice.
     """
-    if choice.startswith("line:"):
-        return Chosen(_named_line(constant, choice, where), choice)
-    if choice == "known" or (not constant.calibrations and constant.known is not None):
+    if choice.kind == "line":
+        return Chosen(_named_line(constant, choice, where), str(choice))
+    if choice.kind == "known" or (not constant.calibrations and constant.known is not None):
         if constant.known is None:
             raise SurveyError(_unknown_choice(constant, choice, where))
         return Chosen(constant.known, "known")
-    if choice == "predicted":
+    if choice.kind == "predicted":
         return _not_predicted(constant, where)
-    if choice not in ("pooled", "interpolated", "nearest"):
-        raise SurveyError(_unknown_choice(constant, choice, where))
     if not constant.calibrations:
         return Chosen(None, None)
-    if choice == "interpolated":
+    if choice.kind == "interpolated":
         return _interpolated(constant, moment, where, block=block)
-    if choice == "nearest":
+    if choice.kind == "nearest":
         return _nearest(constant, distance_to, where)
     return Chosen(constant.pooled, "pooled")
 
@@ -287,28 +263,33 @@ def _not_predicted(constant: InstrumentConstant, where: str) -> Chosen:
     count = len(constant.calibrations)
     if not count:
         return Chosen(None, None)
-    text = (
-        f"{where}: the constant of {constant.instrument.id} cannot be predicted from {count} "
-        f"determination{'s' if count > 1 else ''}: all are pooled with their stated sigmas"
+    text = counted(
+        "{where}: the constant of {id} cannot be predicted from {count} determination: all are "
+        "pooled with their stated sigmas",
+        "{where}: the constant of {id} cannot be predicted from {count} determinations: all are "
+        "pooled with their stated sigmas",
+        count=count,
+        where=where,
+        id=constant.instrument.id,
     )
     return Chosen(constant.pooled, "pooled", (ResultWarning("prediction_impossible", text),))
 
 
-def _named_line(constant: InstrumentConstant, choice: str, where: str) -> Uncertain:
-    for name, value in constant.lines:
-        if name == choice.removeprefix("line:"):
+def _named_line(constant: InstrumentConstant, choice: ConstantChoice, where: str) -> Uncertain:
+    for line, value in constant.lines:
+        if line == choice.line:
             return value
     raise SurveyError(_unknown_choice(constant, choice, where))
 
 
-def _unknown_choice(constant: InstrumentConstant, choice: str, where: str) -> Problem:
-    known = [f"line:{name}" for name, _ in constant.lines]
+def _unknown_choice(constant: InstrumentConstant, choice: ConstantChoice, where: str) -> Problem:
+    known = [f"{LINE}{line}" for line, _ in constant.lines]
     if constant.known is not None:
         known.append("known")
     return Problem(
         what="the constant asked for does not exist",
         where=f"{where}, instrument {constant.instrument.id}, constant_choice",
-        found=choice,
+        found=str(choice),
         expected=", ".join(["predicted", "pooled", "interpolated", "nearest", *known]),
         hint="Name a line with a calibration session, written station-target.",
     )
@@ -323,11 +304,14 @@ def _nearest(
         if (distance := distance_to(item.station)) is not None
     }
     if not distances:
-        text = f"{where}: no positions tell which calibration line is nearest: all are pooled"
+        text = said(
+            "{where}: no positions tell which calibration line is nearest: all are pooled",
+            where=where,
+        )
         warning = ResultWarning("nearest_unknown", text)
         return Chosen(constant.pooled, "pooled", (warning,))
     nearest = min(distances, key=distances.__getitem__)
-    return Chosen(dict(constant.lines)[nearest], f"nearest (line:{nearest})")
+    return Chosen(dict(constant.lines)[nearest], f"nearest ({LINE}{nearest})")
 
 
 def _interpolated(
@@ -365,21 +349,13 @@ def _interpolated(
 
 
 def _not_interpolated(constant: InstrumentConstant, where: str) -> Chosen:
-    text = (
-        f"{where}: the constant cannot be interpolated: it needs calibrations before and after, "
-        "and times, dates or order on every session; all determinations are pooled"
+    text = said(
+        "{where}: the constant cannot be interpolated: it needs calibrations "
+        "before and after, and times, dates or order on every session; all "
+        "determinations are pooled",
+        where=where,
     )
     return Chosen(constant.pooled, "pooled", (ResultWarning("interpolation_impossible", text),))
-
-
-def agreement_text(test: Agreement, what: str) -> str:
-    """Tell an agreement or disagreement in one sentence."""
-    verdict = "agree" if test.agree else "disagree"
-    names = " and ".join(test.names) if len(test.names) < 4 else f"{len(test.names)} {what}"
-    return (
-        f'constants of {names} {verdict}: {test.difference * RHO_ARCSEC:.2f}" apart, '
-        f'chance makes {test.limit * RHO_ARCSEC:.2f}" (p = {test.probability:.3g})'
-    )
 
 
 __all__ = [

@@ -5,21 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 
 from surveyapp.domain.results import LineResult
+from surveyapp.domain.station_line import StationLine, meanings
 from surveyapp.errors import Problem, SurveyError, nearest_names
-
-SEPARATORS = ("-", ",")
-"""``A-B`` as people write it; ``A,B`` where hyphens in the names leave two meanings."""
-
-
-def meanings(text: str, stations: Collection[str]) -> tuple[tuple[str, str], ...]:
-    """Every pair of existing stations that a text may mean, in order."""
-    known = set(stations)
-    pairs = [
-        (text[:place].strip(), text[place + 1 :].strip())
-        for place, letter in enumerate(text)
-        if letter in SEPARATORS
-    ]
-    return tuple(dict.fromkeys(p for p in pairs if p[0] in known and p[1] in known))
 
 
 def resolve_line(
@@ -28,8 +15,8 @@ def resolve_line(
     lines: Sequence[LineResult],
     *,
     more: str = "",
-) -> tuple[str, str]:
-    """Station and target that a text means.
+) -> StationLine:
+    """The line that a text means.
 
     Parameters
     ----------
@@ -46,9 +33,9 @@ def resolve_line(
     SurveyError
         If no oriented line is meant, or several are.
     """
-    pairs = (line,) if isinstance(line, tuple) else meanings(line, stations)
-    oriented = {(item.station, item.target): None for item in lines}
-    found = [pair for pair in pairs if pair in oriented]
+    asked = (StationLine(*line),) if isinstance(line, tuple) else meanings(line, stations)
+    oriented = dict.fromkeys(StationLine(item.station, item.target) for item in lines)
+    found = [item for item in asked if item in oriented]
     if len(found) == 1:
         return found[0]
     shown = "-".join(line) if isinstance(line, tuple) else line
@@ -58,11 +45,11 @@ def resolve_line(
                 what="this name means several lines",
                 where="line",
                 found=shown,
-                expected=" or ".join(f"{a},{b}" for a, b in found),
+                expected=" or ".join(item.unmistakable for item in found),
                 hint="Write the station and the target with a comma between them.",
             )
         )
-    names = [f"{a}-{b}" for a, b in oriented]
+    names = [str(item) for item in oriented]
     raise SurveyError(
         Problem(
             what="there is no oriented line of this name",

@@ -23,6 +23,7 @@ from surveyapp.domain.results import (
     TargetResult,
 )
 from surveyapp.domain.subject import Subject
+from surveyapp.languages import said
 
 
 def outcome(
@@ -49,7 +50,7 @@ def outcome(
     for item in shown:
         warnings += item.warnings
     predicted = frozenset(
-        c.instrument.id for c in orientation.constants if c.choice == "predicted" and c.average
+        c.instrument.id for c in orientation.constants if c.choice.kind == "predicted" and c.average
     )
     warnings += _loud(checks, predicted)
     return OrientationResult(
@@ -65,29 +66,26 @@ def outcome(
     )
 
 
-_CHOOSE = (
-    "; nothing is averaged silently: the pooled sigma contains the disagreement; "
-    "choose with constant_choice = pooled, nearest, interpolated or line:A-B"
+_CHOOSE = said(
+    "; nothing is averaged silently: the pooled sigma contains the "
+    "disagreement; choose with constant_choice = pooled, nearest, interpolated "
+    "or line:A-B"
 )
-_INSTEAD = (
-    "; the constant is predicted for each line, averaged over what may be behind it, and the "
-    "interval contains that"
+_INSTEAD = said(
+    "; the constant is predicted for each line, averaged over what may be "
+    "behind it, and the interval contains that"
 )
 
 
 def _loud(checks: Sequence[Check], predicted: frozenset[str]) -> list[ResultWarning]:
     """A run that the model does not fit, a constant that moved: said again as a warning."""
-    codes = {"fit": "lack_of_fit", "constant": "constant_unstable", "line": "rounds_disagree"}
     found: dict[tuple[str, Subject], list[str]] = {}
     for check in checks:
-        family = check.rule.split(".")[0]
-        if check.rule.startswith("fit."):
-            continue
-        if check.passed is False and family in codes:
+        if check.warning_code:
             text = check.text
             if check.rule == "constant.lines":
-                text += _INSTEAD if check.subject.instrument in predicted else _CHOOSE
-            found.setdefault((codes[family], check.subject), []).append(text)
+                text += _INSTEAD if check.subject.id in predicted else _CHOOSE
+            found.setdefault((check.warning_code, check.subject), []).append(text)
     return [
         ResultWarning(code, f"{subject.text}: " + "; ".join(texts), subject)
         for (code, subject), texts in found.items()
@@ -163,17 +161,17 @@ def target_result(item: TargetReduction) -> TargetResult:
 def constant_result(orientation: Orientation, constant: InstrumentConstant) -> ConstantResult:
     """The result of one instrument's constant."""
     value = constant.pooled if constant.pooled is not None else constant.known
-    if constant.choice == "predicted" and constant.average is not None:
+    if constant.choice.kind == "predicted" and constant.average is not None:
         value = constant.average
     calibrations = constant.calibrations
     keys = session_moments(orientation.project, constant.instrument.id)
     lines = []
-    for name, mean in constant.lines:
-        own = [item for item in calibrations if item.line == name]
+    for line, mean in constant.lines:
+        own = [item for item in calibrations if item.line == line]
         lines.append(
             LineConstant(
-                station=own[0].station,
-                target=own[0].target,
+                station=line.station,
+                target=line.target,
                 value=mean.value,
                 sigma=mean.sigma,
                 count=len(own),
@@ -189,7 +187,7 @@ def constant_result(orientation: Orientation, constant: InstrumentConstant) -> C
         interval95=value.interval95 if value is not None and finite else None,
         count=len(calibrations),
         stable=constant.stable,
-        choice=constant.choice if calibrations or value is None else "known",
+        choice=str(constant.choice) if calibrations or value is None else "known",
         by_line=tuple(lines),
         determinations=tuple(
             Determination(

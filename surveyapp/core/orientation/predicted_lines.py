@@ -15,6 +15,8 @@ from surveyapp.core.swing.session import ReducedSession
 from surveyapp.core.uncertain import Uncertain, aligned
 from surveyapp.domain.priors import DEFAULT_PRIORS
 from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.station_line import StationLine
+from surveyapp.domain.subject import Subject
 
 Key = tuple[str, str, str]
 """Station, target and instrument of a line."""
@@ -78,8 +80,8 @@ def predicted_lines(
         scatter = seen if seen.sigma > result.scatter.sigma else result.scatter
         for key, value in zip(own, result.lines, strict=True):
             lines[key] = PredictedLine(value, scatter)
-        if constant.instrument.constant_choice in (None, "predicted"):
-            warnings += result.warnings
+        if constant.choice.kind == "predicted" or constant.instrument.constant_choice is None:
+            warnings += [item.about(Subject.of("instrument", name)) for item in result.warnings]
         found.append(replace(constant, average=result.average))
     return tuple(found), lines, warnings
 
@@ -88,4 +90,4 @@ def _wanted(key: Key, members: Members, facts: Mapping[tuple[str, str], Circumst
     station, target, _ = key
     weights = weights_of(aligned([azimuth for _, azimuth in members]))
     visits = [facts[item.session.id, target] for item, _ in members]
-    return Wanted(f"{station}-{target}", tuple(zip(weights, visits, strict=True)))
+    return Wanted(StationLine(station, target), tuple(zip(weights, visits, strict=True)))

@@ -13,22 +13,20 @@ from surveyapp.core.orientation.instrument_constant import (
 )
 from surveyapp.core.statistics.repeated import weighted_mean
 from surveyapp.core.uncertain import Uncertain
-from surveyapp.domain.constant_choice import running_count
 
 
-def running_constant(constant: InstrumentConstant, choice: str, *, block: int) -> Uncertain | None:
+def running_constant(constant: InstrumentConstant, count: int, *, block: int) -> Uncertain | None:
     """Mean of the nearest determinations before and after a survey session.
 
     Parameters
     ----------
     constant : InstrumentConstant
-    choice : str
-        ``running:5``: how many on either side.
+    count : int
+        How many on either side.
     block : int
         Number of survey sessions before this one.
     """
-    count = running_count(choice)
-    if count is None or not constant.calibrations:
+    if not constant.calibrations:
         return None
     ordered = sorted(constant.calibrations, key=_place)
     before = [item.value for item in ordered if item.block <= block][-count:]

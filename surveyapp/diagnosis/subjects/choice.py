@@ -14,6 +14,7 @@ import numpy as np
 
 from surveyapp.core.checks.adopted_checks import occurrences
 from surveyapp.core.orientation.adopted import SOURCE
+from surveyapp.core.orientation.campaign_columns import Name
 from surveyapp.core.orientation.circumstances import Circumstances, facts_of
 from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.core.statistics.repeated import SHARED
@@ -37,6 +38,7 @@ from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.domain.subject import Subject
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import said
 from surveyapp_models.angles import wrap_pi
 from surveyapp_models.effects.effect import Effect
 
@@ -188,7 +190,7 @@ def determinations(orientation: Orientation, instrument: str) -> tuple[Determina
     for calibration in constant.calibrations:
         facts = by_key[calibration.session, calibration.target]
         own = calibration.value.without(
-            *SHARED, "run-to-run scatter", f"{SOURCE} outside its range"
+            *SHARED, said("run-to-run scatter"), said("{source} outside its range", source=SOURCE)
         )
         label = f"{calibration.session} ({calibration.line})"
         subject = Subject.session(calibration.session, calibration.target)
@@ -218,7 +220,7 @@ def _azimuths(
     by_key: dict[tuple[str, str], Circumstances],
 ) -> list[Determination]:
     """Repeated gyro azimuths of the most often observed line of an uncalibrated instrument."""
-    lines: dict[str, list[Determination]] = {}
+    lines: dict[Name, list[Determination]] = {}
     for item in orientation.sessions:
         if item.session.instrument != instrument:
             continue

@@ -43,7 +43,7 @@ def _combined(project: Project, sides: Sequence[CombinedResult]) -> tuple[Block,
     for side in sides:
         test = f"{plain(side.chi_square, 2)} ({side.dof})"
         verdict = said("agree") if side.agree else said("disagree, not combined")
-        lines = "; ".join(f"{of.name} {_share(of.weight)}" for of in side.lines)
+        lines = joined("; ", [joined(" ", (of.name, _share(of.weight))) for of in side.lines])
         name = f"{side.station} - {side.target}"
         value = with_sigma(side.grid_azimuth, project.angle_unit)
         rows.append((name, *value, test, verdict, lines))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from surveyapp.domain.results import Check, OrientationResult
-from surveyapp.languages import said, said_each
+from surveyapp.languages import joined, said, said_each, term
 from surveyapp.report.blocks import Block, Heading, Paragraph, Table
 from surveyapp.report.numbers import four_digits
 
@@ -24,7 +24,9 @@ def blocks(result: OrientationResult) -> tuple[Block, ...]:
         ]
     if result.warnings:
         found.append(Heading(said("Warnings"), 2))
-        found += [Paragraph(f"{item.code}: {item.text}", "warning") for item in result.warnings]
+        found += [
+            Paragraph(joined(": ", (item.code, item.text)), "warning") for item in result.warnings
+        ]
     return tuple(found)
 
 
@@ -38,11 +40,11 @@ def _rule(check: Check) -> str:
 def _answered(checks: list[Check]) -> Table:
     rows = tuple(
         (
-            check.verdict,
+            term(check.verdict),
             check.where,
             four_digits(check.value),
             four_digits(check.limit),
-            check.unit,
+            term(check.unit),
             check.text,
             _rule(check),
             check.clause,
@@ -61,7 +63,7 @@ def _open(checks: list[Check]) -> Table:
         (
             check.where,
             four_digits(check.limit),
-            check.unit,
+            term(check.unit),
             check.text,
             _rule(check),
             check.clause,

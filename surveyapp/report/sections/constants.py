@@ -6,7 +6,7 @@ import math
 
 from surveyapp.core.orientation.constant_axis import EPOCH, calendar_moment
 from surveyapp.domain.results import ConstantResult, Determination, OrientationResult, to_arcsec
-from surveyapp.languages import said, said_each
+from surveyapp.languages import said, said_each, term
 from surveyapp.report.blocks import Block, Figure, Heading, KeyValues, Table
 from surveyapp.report.numbers import NOTHING, plain, seconds
 from surveyapp.report.plots import Axis, Frame, axis
@@ -43,7 +43,7 @@ def _constant(constant: ConstantResult) -> list[Block]:
                     f'{seconds(constant.value, sign=True)}" ± {seconds(constant.sigma)}"',
                 ),
                 (said("95 % interval"), f'± {seconds(constant.interval95)}"'),
-                (said("choice"), constant.choice),
+                (said("choice"), term(constant.choice)),
                 (said("determinations"), str(constant.count)),
                 (said("stability"), _STABLE[constant.stable]),
             )
@@ -78,7 +78,7 @@ def _determinations(constant: ConstantResult) -> Table:
             (
                 item.session,
                 f"{item.station} - {item.target}",
-                item.phase,
+                term(item.phase),
                 seconds(item.value, sign=True),
                 seconds(item.sigma),
                 NOTHING if difference is None else seconds(difference, sign=True),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from surveyapp.domain.results import Check, OrientationResult
+from surveyapp.languages import shown, translated
 from surveyapp.tui import texts
 
 CHECK_COLUMNS = (
@@ -24,9 +25,9 @@ def check_rows(result: OrientationResult) -> list[tuple[str, ...]]:
     """Each check in one row, what is not met first."""
     return [
         (
-            check.verdict,
+            translated(check.verdict),
             check.rule,
-            check.where,
+            shown(check.where),
             quantity_text(check.value, check.unit),
             quantity_text(check.limit, check.unit),
         )
@@ -36,14 +37,14 @@ def check_rows(result: OrientationResult) -> list[tuple[str, ...]]:
 
 def check_texts(result: OrientationResult) -> list[str]:
     """Sentence and clause of each check, in the order of ``check_rows``."""
-    return [f"{check.text}\n{check.clause}" for check in ordered_checks(result)]
+    return [f"{shown(check.text)}\n{shown(check.clause)}" for check in ordered_checks(result)]
 
 
 def quantity_text(value: float | None, unit: str) -> str:
     """A value or limit with its unit."""
     if value is None:
         return texts.NOT_DETERMINED
-    mark = {"arcsec": '"'}.get(unit, f" {unit}" if unit else "")
+    mark = {"arcsec": '"'}.get(unit, f" {translated(unit)}" if unit else "")
     return f"{value:.4g}{mark}"
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from surveyapp.domain.results import Check, ConstantResult, OrientationResult
+from surveyapp.domain.subject import Subject
+from surveyapp.languages import shown, translated
 from surveyapp.tui import texts
 from surveyapp.tui.views.checks import quantity_text
 from surveyapp.tui.views.form import arcsec_text, number_text
@@ -16,7 +18,7 @@ CONSTANT_COLUMNS = (
     texts.COL_LENGTH,
 )
 
-CONSTANT_RULES = "constant."
+CONSTANT_TESTS = ("constant.lines", "constant.before_after", "constant.known")
 
 
 def constant_rows(result: OrientationResult) -> list[tuple[str, ...]]:
@@ -39,7 +41,7 @@ def constant_rows(result: OrientationResult) -> list[tuple[str, ...]]:
             rows.append(
                 (
                     constant.instrument,
-                    f"{constant.choice} {stable}".strip(),
+                    f"{translated(constant.choice or '')} {stable}".strip(),
                     arcsec_text(constant.value, 2, sign=True),
                     arcsec_text(constant.sigma, 2),
                     str(constant.count),
@@ -61,17 +63,16 @@ def constant_of(result: OrientationResult, row: int) -> ConstantResult | None:
 
 def tests_of(result: OrientationResult, constant: ConstantResult) -> tuple[Check, ...]:
     """The tests whether the constant of an instrument stands still."""
+    own = Subject.of("instrument", constant.instrument)
     return tuple(
-        check
-        for check in result.checks
-        if check.rule.startswith(CONSTANT_RULES) and check.where == constant.instrument
+        check for check in result.checks if check.rule in CONSTANT_TESTS and check.subject == own
     )
 
 
 def constant_told(result: OrientationResult, constant: ConstantResult) -> list[str]:
     """The value in force with its interval, then each test with its verdict."""
     value = texts.CONSTANT_VALUE.format(
-        choice=constant.choice,
+        choice=translated(constant.choice or ""),
         value=arcsec_text(constant.value, 2, sign=True),
         sigma=arcsec_text(constant.sigma, 2),
         interval=arcsec_text(constant.interval95),
@@ -82,8 +83,8 @@ def constant_told(result: OrientationResult, constant: ConstantResult) -> list[s
 
 def _test(check: Check) -> str:
     """A test in words, with its numbers where the words do not tell them."""
-    text = check.text or check.rule
+    text = shown(check.text) or check.rule
     value, limit = quantity_text(check.value, check.unit), quantity_text(check.limit, check.unit)
     if '"' not in text:
         text = texts.CONSTANT_NUMBERS.format(text=text, value=value, limit=limit)
-    return texts.CONSTANT_TEST.format(verdict=check.verdict, text=text)
+    return texts.CONSTANT_TEST.format(verdict=translated(check.verdict), text=text)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from surveyapp.core.improvement import most_helpful
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import AngleResult, BudgetLine, LineResult, OrientationResult
+from surveyapp.languages import translated
 from surveyapp.tui import texts
 from surveyapp.tui.views.form import (
     angle_text,
@@ -47,9 +48,9 @@ def chain_rows(project: Project, line: LineResult) -> list[Row]:
     rows = [_angle(texts.D_GYRO, line.gyro_azimuth, unit, rounds)]
     if line.constant is not None:
         value, sigma = small_text(line.constant), arcsec_text(line.constant_sigma)
-        rows.append((texts.D_PLUS_CONSTANT, value, sigma, line.constant_choice or ""))
+        rows.append((texts.D_PLUS_CONSTANT, value, sigma, translated(line.constant_choice or "")))
     if line.true_azimuth is not None:
-        reference = (line.true_azimuth.reference or "").lower()
+        reference = translated((line.true_azimuth.reference or "").lower())
         rows.append(_angle(texts.D_TRUE.format(reference=reference), line.true_azimuth, unit, ""))
     if line.grid_azimuth is not None:
         known = project.station(line.station).deflection.known
@@ -85,7 +86,8 @@ def _small(label: str, value: float | None, source: str) -> Row:
 def budget_rows(line: LineResult) -> list[tuple[str, str, str]]:
     """The budget: source, sigma, share."""
     return [
-        (item.source, arcsec_text(item.sigma, 2), f"{item.share:.0%}") for item in _counted(line)
+        (translated(item.source), arcsec_text(item.sigma, 2), f"{item.share:.0%}")
+        for item in _counted(line)
     ]
 
 
@@ -99,7 +101,7 @@ def helps_text(line: LineResult) -> str:
     found = most_helpful(line.budget)
     if found is None:
         return ""
-    advice = texts.IMPROVE.get(found.source, found.source)
+    advice = texts.IMPROVE.get(found.source, translated(found.source))
     if found.at_calibration:
         advice = texts.R_AT_CALIBRATION.format(advice=advice)
     if len(_counted(line)) == 1:

@@ -6,6 +6,7 @@ from rich.text import Text
 
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
+from surveyapp.languages import shown
 from surveyapp.tui import texts
 from surveyapp.tui.views.checks import CHECK_COLUMNS, check_rows, check_texts
 from surveyapp.tui.views.lines import LINE_COLUMNS, budget_rows, chain_rows, helps_text, line_rows
@@ -39,7 +40,7 @@ def details_of(project: Project, result: OrientationResult, page: str, row: int)
         return _line(project, result, row)
     if page == "checks":
         return Text(check_texts(result)[row])
-    return Text(result.warnings[row].text)
+    return Text(shown(result.warnings[row].text))
 
 
 def _session(project: Project, result: OrientationResult, wanted: str) -> Text:

@@ -14,7 +14,9 @@ from surveyapp.domain.results import (
     OrientationResult,
     SessionResult,
 )
+from surveyapp.languages import shown, translated
 from surveyapp.tui import texts
+from surveyapp.tui.cells import columns, padded
 from surveyapp.tui.views.checks import ordered_checks, quantity_text
 from surveyapp.tui.views.constants import constant_told
 from surveyapp.tui.views.form import (
@@ -45,7 +47,9 @@ def result_headline(result: OrientationResult, session: str, unit: AngleUnit) ->
         if line.grid_azimuth is not None:
             return _headline(name, texts.COL_GRID, line.grid_azimuth, unit)
         if line.true_azimuth is not None:
-            label = texts.R_TRUE.format(reference=(line.true_azimuth.reference or "").lower())
+            label = texts.R_TRUE.format(
+                reference=translated((line.true_azimuth.reference or "").lower())
+            )
             return _headline(name, label, line.true_azimuth, unit)
         return _headline(name, texts.COL_AZIMUTH, line.gyro_azimuth, unit)
     own = next(item for item in result.sessions if item.id == session)
@@ -81,7 +85,7 @@ def result_sections(
         for constant in result.constants
         if constant.value is not None
     ]
-    warnings = "\n".join(warning.text for warning in result.warnings)
+    warnings = "\n".join(shown(warning.text) for warning in result.warnings)
     sections.append((texts.R_WARNINGS, Text(warnings)))
     sections.append((texts.R_POINTS, table_text(_points(own, unit))))
     return [section for section in sections if section[1]]
@@ -98,9 +102,10 @@ def _constant(result: OrientationResult, constant: ConstantResult, width: int) -
 def _checks(result: OrientationResult) -> Text:
     """Each check with its verdict, value and limit, and below it what it says and its clause."""
     checks = ordered_checks(result)
+    width = max((columns(translated(check.verdict)) for check in checks), default=0)
     rows = [
         (
-            f"{check.verdict:<8}{check.rule}",
+            f"{padded(translated(check.verdict), width)} {check.rule}",
             quantity_text(check.value, check.unit),
             texts.R_LIMIT.format(limit=quantity_text(check.limit, check.unit)),
         )
@@ -109,8 +114,8 @@ def _checks(result: OrientationResult) -> Text:
     text = Text()
     for check, line in zip(checks, table_text(rows).plain.splitlines(), strict=True):
         text.append(f"{line}\n", style="bold" if check.passed is False else "")
-        said = f"{check.text}\n" if check.passed is False and check.text else ""
-        text.append(f"{said}[{check.clause}]\n" if check.clause else said)
+        words = f"{shown(check.text)}\n" if check.passed is False and check.text else ""
+        text.append(f"{words}[{shown(check.clause)}]\n" if check.clause else words)
     return text
 
 
@@ -154,5 +159,5 @@ def truth_text(outcome: PracticeOutcome | None, unit: AngleUnit) -> str:
         interval=arcsec_text(outcome.interval95),
         verdict=verdict,
     )
-    hidden = texts.PRACTICE_HIDDEN.format(effect=outcome.effect.replace("_", " "))
+    hidden = texts.PRACTICE_HIDDEN.format(effect=translated(outcome.effect.replace("_", " ")))
     return f"{truth}\n{hidden if outcome.effect else texts.PRACTICE_CLEAN}"

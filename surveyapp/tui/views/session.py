@@ -5,6 +5,7 @@ from __future__ import annotations
 from surveyapp.core.observing.steps import current_step
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult, SessionResult
+from surveyapp.languages import translated
 from surveyapp.tui import texts
 from surveyapp.tui.views.form import angle_text, arcsec_text, number_text, sigma_text, small_text
 from surveyapp_models.angles import AngleUnit
@@ -33,14 +34,14 @@ def session_rows(project: Project, result: OrientationResult) -> list[tuple[str,
         name = texts.CLOSED_MARK.format(id=item.id) if whole or item.id in closed else item.id
         if session is None:
             step = current_step(item.book, item.method)
-            rows.append((name, item.method, "", texts.STEP_NAMES[step], "", ""))
+            rows.append((name, translated(item.method), "", texts.STEP_NAMES[step], "", ""))
             continue
         main = session.main
         azimuth = None if main is None else main.gyro_azimuth
         rows.append(
             (
                 name,
-                session.method,
+                translated(session.method),
                 str(session.points_used),
                 angle_text(session.gyro_north, unit),
                 angle_text(azimuth, unit),
@@ -56,7 +57,7 @@ def session_details(session: SessionResult, unit: AngleUnit) -> Pairs:
         (texts.D_STATION, session.station),
         (texts.D_INSTRUMENT, session.instrument),
         (texts.D_PURPOSE, texts.PURPOSES.get(session.purpose, session.purpose)),
-        (texts.D_ESTIMATOR, session.estimator),
+        (texts.D_ESTIMATOR, translated(session.estimator or "")),
         (texts.D_POINTS, f"{session.points_used}, {session.dof}"),
     ]
     if session.gyro_north is not None:
@@ -88,7 +89,7 @@ def _swing(session: SessionResult, unit: AngleUnit) -> Pairs:
     if session.interval95 is not None:
         pairs.append((texts.D_INTERVAL, f'±{arcsec_text(session.interval95)}"'))
     if session.sigma_source is not None:
-        pairs.append((texts.D_SIGMA_SOURCE, session.sigma_source))
+        pairs.append((texts.D_SIGMA_SOURCE, translated(session.sigma_source)))
     if session.residual_rms is not None:
         pairs.append((texts.D_RMS, f'{arcsec_text(session.residual_rms)}"'))
     if session.amplitude is not None:

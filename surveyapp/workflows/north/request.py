@@ -81,12 +81,13 @@ class NorthRequest:
 
     def latitude(self, problems: list[Problem], *, required: bool = True) -> float | None:
         """Latitude [rad], of the command line or of the log's entry."""
+        before = len(problems)
         if self.options.get("latitude") is None and self.entry is not None:
             degrees = self.entry.latitude_deg
         else:
             degrees = self.number("latitude", problems)
         if degrees is None:
-            if required and not any(p.where == "--latitude" for p in problems):
+            if required and len(problems) == before:
                 what = "the latitude is not stated"
                 problems.append(Problem(what, "--latitude", "", "degrees", _LATITUDE_HINT))
             return None
