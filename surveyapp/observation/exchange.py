@@ -204,6 +204,7 @@ def hand_over(form: str, folder: str, path: str) -> ExportResult:
         raise SurveyError(
             Problem(said("a file of this name exists"), path, "", said("a name that is free"))
         )
+    others: dict[str, Callable[[str, str], ExportResult]]
     others = {"gkf": api.export_gkf, "csv": api.export_csv, "zip": api.export_zip}
     if form in others:
         return others[form](folder, path)
