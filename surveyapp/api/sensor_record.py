@@ -17,6 +17,7 @@ def sensor_sections(found: Computed) -> tuple[Extra, ...]:
     """A section for every sensor log of the folder; one that cannot be used says why."""
     from surveyapp.report.blocks import Heading, Paragraph
     from surveyapp.report.record import Extra
+    from surveyapp.report.sections.sensor_results import adopted_blocks
     from surveyapp.report.sections.sensors import title_of
 
     extras = []
@@ -25,7 +26,7 @@ def sensor_sections(found: Computed) -> tuple[Extra, ...]:
             body = _body(found.project.path, entry)
         except SurveyError as error:
             body = tuple(Paragraph(str(problem), "warning") for problem in error.problems)
-        blocks = (Heading(title_of(entry.id)), *_note(entry), *body)
+        blocks = (Heading(title_of(entry.id)), *_note(entry), *body, *adopted_blocks(entry))
         extras.append(Extra(f"sensor log {entry.id}", blocks))
     return tuple(extras)
 
