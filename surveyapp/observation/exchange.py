@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import shlex
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
@@ -187,6 +188,7 @@ def hand_over(form: str, folder: str, path: str) -> ExportResult:
         raise SurveyError(
             Problem(said("a file of this name exists"), path, "", said("a name that is free"))
         )
+    others: dict[str, Callable[[str, str], ExportResult]]
     others = {"gkf": api.export_gkf, "csv": api.export_csv, "zip": api.export_zip}
     if form in others:
         return others[form](folder, path)
