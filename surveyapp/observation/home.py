@@ -18,6 +18,7 @@ from surveyapp import api
 from surveyapp.domain.project import Method, Purpose
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.filing.lock import ProjectLock
+from surveyapp.io.guarded import is_reserved
 from surveyapp.io.settings import Settings, read_settings, write_settings
 from surveyapp.languages import said
 
@@ -349,6 +350,7 @@ def create_session(folder: api.Folder, form: NewSession) -> None:
 def _book_name(identity: str) -> str:
     """Path of the book of a session; the id names a file, so it must be able to."""
     usable = identity.isprintable() and not set(identity) & set('/\\:*?"<>|')
+    usable = usable and not is_reserved(identity)
     if not usable or identity.startswith(".") or len(identity.encode("utf-8")) > LONGEST_ID:
         raise SurveyError(
             Problem(
