@@ -17,6 +17,7 @@ from typing import Final
 from surveyapp import api
 from surveyapp.domain.project import Method, Purpose
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.filing.dependencies import project_data, rows_of
 from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.io.guarded import is_reserved
 from surveyapp.io.settings import Settings, read_settings, write_settings
@@ -324,6 +325,10 @@ def create_session(folder: api.Folder, form: NewSession) -> None:
         if not lock.writable:
             what = said("this project cannot be written to now")
             raise SurveyError(Problem(what, str(folder), said("it is open elsewhere")))
+        rows = rows_of(project_data(Path(folder)), "orientation")
+        if any(form.id == row.get("id") or book == row.get("book") for row in rows):
+            what = said("a session of this id exists already")
+            raise SurveyError(Problem(what, "id", form.id, said("a new session id")))
         _new_book(Path(folder) / book)
         before = read_text(path, where=path.name)
         table = {
