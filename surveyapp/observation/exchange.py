@@ -133,8 +133,23 @@ def told_options(text: str) -> Told:
     )
 
 
-def bring(entry: Entry, folder: str, options: str, *, preview: bool) -> ImportResult:
+def bring(
+    entry: Entry,
+    folder: str,
+    options: str,
+    *,
+    preview: bool,
+    progress: Callable[[float], None] | None = None,
+) -> ImportResult:
     """Preview a field file, or take it into the project.
+
+    Parameters
+    ----------
+    entry : Entry
+    folder, options : str
+    preview : bool
+    progress : callable or None
+        Told which part of the file has been read, 0 to 1.
 
     Raises
     ------
@@ -156,6 +171,7 @@ def bring(entry: Entry, folder: str, options: str, *, preview: bool) -> ImportRe
         skip_damaged=told.skip_damaged,
         lines=told.lines,
         preview=preview,
+        progress=progress,
     )
 
 
