@@ -333,8 +333,7 @@ def create_session(folder: api.Folder, form: NewSession) -> None:
             raise SurveyError(Problem(what, str(folder), said("it is open elsewhere")))
         rows = rows_of(project_data(Path(folder)), "orientation")
         if any(form.id == row.get("id") or book == row.get("book") for row in rows):
-            what = said("a session of this id exists already")
-            raise SurveyError(Problem(what, "id", form.id, said("a new session id")))
+            raise SurveyError(Problem(said("a session of this id exists already"), "id", form.id))
         _new_book(Path(folder) / book)
         before = read_text(path, where=path.name)
         table = {
