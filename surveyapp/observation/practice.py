@@ -65,6 +65,8 @@ scale_value_arcsec = 600.0
 period = { latitude_deg = 47.0, tracking_s = 425.4, clamped_s = 388.3, unspun_s = 146.0 }
 sigma = { reversal_arcsec = 6.0, scale_div = 0.05, azimuth_arcsec = 15.0, time_s = 0.3 }"""
 _AUTOMATIC: Final = """\
+card = "gyromat-2000"
+sigma = { azimuth_arcsec = 8.0 }"""
 _WANTED: Final = {"tracking": 10.0, "amplitude": 40.0, "transit": 40.0, "automatic": 10.0}
 """95 % interval that a dozen readings reach [arcsec]."""
 
@@ -193,9 +195,7 @@ def begin(
         wanted=_WANTED[method],
     )
     header = ",".join(COLUMNS) + "\n"
-    atomic_write(
-        path / "observations" / f"{SESSION}.csv", header.encode("utf-8")
-    )
+    atomic_write(path / "observations" / f"{SESSION}.csv", header.encode("utf-8"))
     atomic_write(path / "project.toml", text.encode("utf-8"))  # last: before, it is no project
     start, begun = local_now(), steady_seconds()
 
