@@ -15,7 +15,8 @@ import pytest
 from textual.widgets._footer import FooterKey
 
 from surveyapp import languages
-from tests.tui.helpers_tui import SMALL, make_project
+from surveyapp.core.simulate.session import book_text
+from tests.tui.helpers_tui import SMALL, make_project, simulated
 
 ROOT = Path(__file__).resolve().parents[2]
 SCREENS = "surveyapp.tui"
@@ -99,6 +100,10 @@ async def test_keys_and_titles_fit(language: str, tmp_path: Path) -> None:
     session = make_project(tmp_path / "ramp-3")
     text = await seen(SurveyApp(str(session)), ("enter",))
     assert languages.translated("sights before") in text
+    book = session / "observations" / "r1.csv"
+    for rows in (9, 17):  # the footer of the turning points is the fullest
+        book.write_text(book_text(simulated(points=12).rows[:rows]), encoding="utf-8")
+        await seen(SurveyApp(str(session)), ("enter",))
 
 
 async def test_results_are_told_and_not_only_menus(language: str, tmp_path: Path) -> None:
