@@ -13,11 +13,17 @@ from surveyapp import api, languages
 from surveyapp.report.text import display_width
 from surveyapp.tui.texts import help_texts
 from surveyapp.tui.texts import session as session_texts
+from surveyapp.workflows.computing import Computed
 
 ROOT = Path(__file__).resolve().parents[2]
 OTHERS = ("de", "ru", "zh")
 WIDEST_HELP, LONGEST_HELP = 74, 18
 LETTERS = {"de": "äöüÄÖÜß", "ru": "абвгдежзийклмнопрстуфхцчшщъыьэюя", "zh": "陀螺方位角检核"}
+
+
+@pytest.fixture(scope="module")
+def computed() -> Computed:
+    return api.compute(ROOT / "projects" / "tongjin-2015")
 
 
 def test_catalogues_are_complete_and_fit() -> None:
@@ -78,13 +84,12 @@ def test_names_of_kinds_are_split_as_in_english(language: str) -> None:
 
 
 @pytest.mark.parametrize("language", OTHERS)
-def test_the_record_in_every_language_reads_back(language: str, tmp_path: Path) -> None:
+def test_the_record_in_every_language_reads_back(
+    language: str, tmp_path: Path, computed: Computed
+) -> None:
     """The PDF holds the words of the language and the numbers and names of the English one."""
-    computed = api.compute(ROOT / "projects" / "tongjin-2015")
     written = api.report(computed, tmp_path / "record.pdf", language=language)
     assert written.warnings == ()
-    again = api.report(computed, tmp_path / "again.pdf", language=language)
-    assert again.sha256 == written.sha256
     reader = PdfReader(io.BytesIO((tmp_path / "record.pdf").read_bytes()))
     text = "\n".join(page.extract_text() for page in reader.pages)
     whole = "".join(text.split())
