@@ -19,6 +19,7 @@ IMPROVE: Final = {
     "clamp reading": "read the clamped circle several times",
     "constant instability": "calibrate near the survey, before and after it",
     "constant: cause not known": "calibrate again as the diagnosis advises",
+    "constant: scatter in the archive": "determine the constant four times and more",
     "constant: scatter of the determinations": "calibrate more often",
     "damping": "read more turning points",
     "deflection": "have the deflection of the vertical determined there",
