@@ -208,10 +208,10 @@ NAMES = {"gyro": "gyro azimuth", "grid": "grid azimuth", "combined": "side, comb
 
 
 def method_rows(place: int) -> list[str]:
-    """Rows of the method at a place of ``METHODS``: 2000 runs."""
+    """Rows of the method at a place of ``METHODS``: 1000 runs."""
     method = METHODS[place]
     both = zip(
-        ("gyro north", "gyro azimuth"), campaign(method, 2000, 20261122 + place), strict=True
+        ("gyro north", "gyro azimuth"), campaign(method, 1000, 20261122 + place), strict=True
     )
     return [row_of(method.replace("_", " "), name, item) for name, item in both]
 
@@ -236,6 +236,6 @@ def page(rows: list[str]) -> list[str]:
 
 
 def run() -> list[str]:
-    """The whole campaign: 2000 runs a method, 1000 a further line; writes the page."""
+    """The whole campaign: 1000 runs a line; writes the page."""
     rows = [row for place in range(len(METHODS)) for row in method_rows(place)]
     return page(rows + [row for place in range(len(FURTHER)) for row in further_rows(place)])
