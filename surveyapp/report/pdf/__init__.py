@@ -36,6 +36,7 @@ from surveyapp.report.blocks import (
     Block,
     Document,
     Figure,
+    ForWidth,
     Heading,
     KeyValues,
     PageBreak,
@@ -258,6 +259,8 @@ def _block(block: Block, faces: Faces) -> list[Flowable]:
             return [KeepTogether([*figure_flowables(block, faces), Spacer(0, 2.0 * mm)])]
         case Signature():
             return [KeepTogether([_signature(block, faces)])]
+        case ForWidth():
+            return [flowable for item in block.page for flowable in _block(item, faces)]
         case PageBreak():
             return [NewPage()]
 

@@ -11,31 +11,74 @@ from surveyapp.domain.results import (
     TapeZeroResult,
     TargetResult,
 )
-from surveyapp.languages import said, said_each
+from surveyapp.languages import joined, said, said_each
 from surveyapp.report.blocks import Block, Figure, Heading, Paragraph, Table
 from surveyapp.report.numbers import (
     NOTHING,
     direction,
+    line_name,
     plain,
     seconds,
     signed_angle,
     with_sigma,
 )
 from surveyapp.report.plots import Frame, axis, half_wave
+from surveyapp.report.sections.azimuths import STEPS
 from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, wrap_pi, wrap_two_pi
 
 Row = tuple[str, str, str, str, str]
 
 
 def blocks(project: Project, result: OrientationResult) -> tuple[Block, ...]:
-    """Blocks of every session."""
-    found: list[Block] = []
-    for item in result.sessions:
-        found += _session(project, item)
-    return (Heading(said("Reduction")), *found) if found else ()
+    """All sessions, then the reduction of each."""
+    found = [block for item in result.sessions for block in session_blocks(project, item)]
+    return (*summary(project, result), *found)
 
 
-def _session(project: Project, item: SessionResult) -> list[Block]:
+SUMMARY = said_each("session", "method", "points", "gyro north", "azimuth", '±"', 'rms "')
+"""Columns of ``summary``."""
+
+
+def summary(project: Project, result: OrientationResult) -> tuple[Block, ...]:
+    """Each session in one row, then each sight of a target in one row."""
+    unit = project.angle_unit
+    rows = tuple(summary_row(item, unit) for item in result.sessions)
+    if not rows:
+        return ()
+    found: list[Block] = [Heading(said("Sessions")), Table(SUMMARY, rows, "llrrrrr")]
+    sights = tuple(
+        (
+            item.id,
+            item.purpose,
+            line_name(item.station, target.target),
+            with_sigma(target.line_reading, unit)[0],
+            *with_sigma(target.gyro_azimuth, unit)[:2],
+        )
+        for item in result.sessions
+        for target in item.targets
+    )
+    if sights:
+        head = said_each("session", "purpose", "line", "line reading", "gyro azimuth", '±"')
+        found.append(Table(head, sights, "lllrrr"))
+    return tuple(found)
+
+
+def summary_row(item: SessionResult, unit: AngleUnit) -> tuple[str, ...]:
+    """One session: what it was reduced from, gyro north, and the azimuth of its target."""
+    azimuth = None if item.main is None else item.main.gyro_azimuth
+    return (
+        item.id,
+        joined(", ", (item.method, item.estimator)),
+        str(item.points_used),
+        with_sigma(item.gyro_north, unit)[0],
+        with_sigma(azimuth, unit)[0],
+        with_sigma(azimuth or item.gyro_north, unit)[1],
+        seconds(item.residual_rms, 1),
+    )
+
+
+def session_blocks(project: Project, item: SessionResult) -> tuple[Block, ...]:
+    """The reduction of one session: every step, figures of merit, its points and warnings."""
     unit = project.angle_unit
     session = project.session(item.id)
     rows = [*_north(item, unit)]
@@ -44,19 +87,18 @@ def _session(project: Project, item: SessionResult) -> list[Block]:
         rows += _target(session, target, unit)
         if target.gyro_azimuth is not None:
             strong.add(len(rows) - 1)
-    line = item.station if item.target is None else f"{item.station} - {item.target}"
-    head = said_each("step", "value", '±"', '95 % ±"', "where it comes from")
+    line = line_name(item.station, item.target)
     found: list[Block] = [
         Heading(
             said("Session {id}: {line}, {method}", id=item.id, line=line, method=item.method), 2
         ),
-        Table(head, tuple(rows), "lrrrl", strong=frozenset(strong)),
+        Table(STEPS, tuple(rows), "lrrrl", strong=frozenset(strong)),
         *_effects(project, session),
         _figures_of_merit(item),
     ]
     found += _points(item, unit)
     found += [Paragraph(f"{w.code}: {w.text}", "warning") for w in item.warnings]
-    return found
+    return tuple(found)
 
 
 def _north(item: SessionResult, unit: AngleUnit) -> list[Row]:
