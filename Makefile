@@ -7,7 +7,7 @@ export PYTHONPATH := .:models
 
 .PHONY: help demo test check bench docs format clean
 help:
-	@echo "make demo    orient the three measured samples: printed against computed"
+	@echo "make demo    the measured samples: printed against computed, before and after"
 	@echo "make test    the test suite"
 	@echo "make check   format, lint, types, layers, generated docs"
 	@echo "make bench   speed as ratios against a peer, and the full Monte Carlo campaigns"

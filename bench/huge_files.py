@@ -17,7 +17,7 @@ from pathlib import Path
 from tests.formats.field_writers import TABLE_MAP, gsi, jobxml, sdr, simulated, table
 
 BYTES = 100_000_000
-LIMIT_MB = 600.0
+LIMIT_MB = 300.0
 _STATIONS = 50
 _CHILD = """
 import json, resource, sys

@@ -73,7 +73,7 @@ def judged(name: str, pairs: Sequence[tuple[Diagnosis, float]], effect: str, per
 def evaluate(truth: Truth, runs: int, seed: int, draws: int = DRAWS) -> Line:
     """Diagnose every run of a line."""
     made, north = problems(truth, runs, seed)
-    results = [diagnose(problem, draws=draws) for problem in made]
+    results = [diagnose(problem, draws=draws, advise=False) for problem in made]
     pairs = list(zip(results, north.tolist(), strict=True))
     line = judged(truth.name, pairs, truth.effect, 2.0 * np.pi)
     return Line(
@@ -85,7 +85,7 @@ def evaluate(truth: Truth, runs: int, seed: int, draws: int = DRAWS) -> Line:
 def evaluate_campaign(truth: CampaignTruth, runs: int, seed: int, draws: int = DRAWS) -> Line:
     """Diagnose every campaign of a line."""
     made = [campaign_problem(truth, seed + i) for i in range(runs)]
-    pairs = [(diagnose(problem, draws=draws), value) for problem, value in made]
+    pairs = [(diagnose(problem, draws=draws, advise=False), value) for problem, value in made]
     return judged(truth.name, pairs, truth.effect, 1e9)
 
 
@@ -255,7 +255,7 @@ def seconds(make: Callable[[int], Case], count: int) -> float:
     diagnose(made[0], draws=100)
     begin = time.perf_counter()
     for problem in made[1:]:
-        diagnose(problem, draws=4000)
+        diagnose(problem, draws=4000, advise=False)
     return (time.perf_counter() - begin) / count
 
 

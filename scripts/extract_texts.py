@@ -14,16 +14,17 @@ import ast
 import json
 import string
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from importlib import import_module
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, get_args
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "models")]
 
 from surveyapp.languages import LANGUAGES  # noqa: E402
 from surveyapp.languages.po_file import read_po  # noqa: E402
+from surveyapp.languages.vocabulary import VOCABULARY  # noqa: E402
 
 Key = tuple[str, str | None]
 FOLDER: Final = ROOT / "surveyapp" / "languages"
@@ -95,8 +96,30 @@ def _screens() -> Iterator[tuple[str, str]]:
 
 
 def _tables() -> Iterator[tuple[str, str]]:
-    """Texts of tables below the languages: the models know no catalogue."""
-    yield from ()
+    """Names that the screens and the record print in words, from the tables that hold them."""
+    from surveyapp.core.orientation.terms import TERMS
+    from surveyapp.core.penetration.covariance import Source
+    from surveyapp.core.tolerance.quantities import UNITS
+    from surveyapp.domain.observations import ObservationKind
+    from surveyapp.domain.penetration import STEP_TITLES
+    from surveyapp.domain.project import Method, Purpose
+    from surveyapp.domain.shaft import CHECK_IDS
+    from surveyapp_models.effects import CATALOGUE
+
+    tables: dict[str, Iterable[str]] = {
+        "core/orientation/terms.py": TERMS,
+        "core/penetration/covariance.py": get_args(Source),
+        "core/tolerance/quantities.py": UNITS,
+        "domain/observations.py": [kind.value for kind in ObservationKind],
+        "domain/penetration.py": STEP_TITLES,
+        "domain/project.py": (*get_args(Method), *get_args(Purpose)),
+        "domain/shaft.py": CHECK_IDS,
+        "models/effects": [text for effect in CATALOGUE for text in (effect.id, effect.title)],
+        "languages/vocabulary.py": VOCABULARY,
+    }
+    for place, names in tables.items():
+        for name in names:
+            yield name.replace("_", " "), f"surveyapp/{place}"
 
 
 def _strings(value: Any) -> Iterator[str]:

@@ -10,6 +10,8 @@ import importlib
 from typing import TYPE_CHECKING, Any, Final
 
 from surveyapp.api.batch import batch, batch_rows
+from surveyapp.api.closing import close, reopen
+from surveyapp.api.demonstrating import demo_sensors
 from surveyapp.api.importing import export_survey, import_file
 from surveyapp.api.instruments import follow_turn, read_instrument
 from surveyapp.api.judgement import check, diagnose, diagnose_sensor, subjects
@@ -23,13 +25,11 @@ from surveyapp.api.network import (
 )
 from surveyapp.api.office import (
     blank_form,
-    close,
     compare,
     export_csv,
     export_gkf,
     export_json,
     export_zip,
-    reopen,
     report,
     report_text,
 )
@@ -51,6 +51,13 @@ from surveyapp.api.penetration import (
     trial,
 )
 from surveyapp.api.pooling import diagnose_instrument
+from surveyapp.api.programmes import (
+    begin_programme,
+    finish_programme,
+    programme_state,
+    programmes,
+    record_programme,
+)
 from surveyapp.api.project import (
     SOFTWARE,
     Folder,
@@ -94,6 +101,7 @@ if TYPE_CHECKING:
     from surveyapp.core.sensors.rate.stop_plan import StopPlan
     from surveyapp.diagnosis.sensors.diagnosis import SensorDiagnosis
     from surveyapp.domain.chart import SensorPictures
+    from surveyapp.domain.demonstrated import DemonstratedSensor
     from surveyapp.domain.filing import (
         BatchResult,
         BatchRow,
@@ -109,6 +117,7 @@ if TYPE_CHECKING:
     from surveyapp.domain.noise import AllanResult, FilterResult
     from surveyapp.domain.north import NorthResult
     from surveyapp.domain.penetration_result import Prediction
+    from surveyapp.domain.programme import Programme, ProgrammeResult, ProgrammeState
     from surveyapp.domain.project import ResultWarning
     from surveyapp.domain.records import Listing
     from surveyapp.domain.results import (
@@ -143,6 +152,7 @@ _TYPES: Final = {
     "Computed": "surveyapp.workflows.computing",
     "ConstantResult": "surveyapp.domain.results",
     "DemonstratedSample": "surveyapp.core.comparison",
+    "DemonstratedSensor": "surveyapp.domain.demonstrated",
     "Diagnosable": "surveyapp.workflows.choosing",
     "Diagnosed": "surveyapp.workflows.diagnosing",
     "ExportResult": "surveyapp.domain.filing",
@@ -160,6 +170,9 @@ _TYPES: Final = {
     "NorthResult": "surveyapp.domain.north",
     "OpenedLog": "surveyapp.api.sensors",
     "Prediction": "surveyapp.domain.penetration_result",
+    "Programme": "surveyapp.domain.programme",
+    "ProgrammeResult": "surveyapp.domain.programme",
+    "ProgrammeState": "surveyapp.domain.programme",
     "ReportResult": "surveyapp.report.written",
     "ResultWarning": "surveyapp.domain.project",
     "SensorDiagnosed": "surveyapp.workflows.diagnosing_sensor",
@@ -196,6 +209,7 @@ __all__ = [
     "compute",
     "orient",
     "demo",
+    "demo_sensors",
     "generator_of",
     "network",
     "adjust",
@@ -232,6 +246,11 @@ __all__ = [
     "preview_sensor_log",
     "add_sensor_log",
     "sensor_pictures",
+    "programmes",
+    "begin_programme",
+    "programme_state",
+    "record_programme",
+    "finish_programme",
     "batch",
     "batch_rows",
     "report",
@@ -303,4 +322,8 @@ __all__ = [
     "SensorDiagnosis",
     "LogPreview",
     "SensorPictures",
+    "DemonstratedSensor",
+    "Programme",
+    "ProgrammeResult",
+    "ProgrammeState",
 ]

@@ -11,7 +11,7 @@ from surveyapp.api.project import SOFTWARE, Folder, opened
 from surveyapp.domain.advance import Advance, silent
 from surveyapp.domain.project import Project
 from surveyapp.domain.records import Listing
-from surveyapp.domain.results import Verdicts
+from surveyapp.domain.results import Check, Verdicts
 from surveyapp.errors import Problem, SurveyError
 
 if TYPE_CHECKING:
@@ -20,7 +20,14 @@ if TYPE_CHECKING:
     from surveyapp.workflows.diagnosing_sensor import SensorDiagnosed
 
 
-def check(source: Source, *, seal: str | None = None, advance: Advance = silent) -> Verdicts:
+def check(
+    source: Source,
+    *,
+    seal: str | None = None,
+    key: Folder | None = None,
+    signed: tuple[Folder, ...] = (),
+    advance: Advance = silent,
+) -> Verdicts:
     """Apply every limit and test that the project's data can answer.
 
     The same verdicts stand in the result of ``orient``, on the screens and in the record.
@@ -31,6 +38,11 @@ def check(source: Source, *, seal: str | None = None, advance: Advance = silent)
     seal : str or None
         A head that a signed record prints: one check more tells whether the ledger holds it and
         what was sealed then is as it was.
+    key : path or None
+        Public key in the format of minisign: one check more for every closing in force, and for
+        every file of ``signed``, tells whether it is signed by this key.
+    signed : tuple of paths
+        Files with a signature beside them, such as the record.
 
     Raises
     ------
@@ -53,7 +65,26 @@ def check(source: Source, *, seal: str | None = None, advance: Advance = silent)
 
         folder = Path(found.project.path)
         checks = (*checks, seal_check(*sealed_by(folder, seal)))
+    if key is not None:
+        checks = (*checks, *_signature_checks(Path(found.project.path), key, signed))
     return Verdicts(checks, told)
+
+
+def _signature_checks(folder: Path, key: Folder, signed: tuple[Folder, ...]) -> tuple[Check, ...]:
+    from surveyapp.core.checks.filing_checks import signature_check
+    from surveyapp.io.filing.signatures import closing_faults, file_faults
+    from surveyapp.io.minisign import read_public_key
+
+    public = read_public_key(Path(key))
+    closings = [
+        signature_check("closing.signature", name or "project", found, public.id)
+        for name, found in closing_faults(folder, public).items()
+    ]
+    files = [
+        signature_check("record.signature", Path(p).name, file_faults(Path(p), public), public.id)
+        for p in signed
+    ]
+    return (*closings, *files)
 
 
 def diagnose(

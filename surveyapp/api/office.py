@@ -8,10 +8,11 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Callable
-from datetime import datetime
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from surveyapp.api.closing import no_password, secret_of
 from surveyapp.api.judgement import diagnose, subjects
 from surveyapp.api.network import adjust, network
 from surveyapp.api.orientation import Source, compute, orient
@@ -22,16 +23,12 @@ from surveyapp.languages import in_language
 
 if TYPE_CHECKING:
     from surveyapp.core.differences import Snapshot
-    from surveyapp.domain.filing import ClosingResult, ComparisonResult, ExportResult
+    from surveyapp.domain.filing import ComparisonResult, ExportResult
     from surveyapp.domain.project import Project
     from surveyapp.report.blocks import Block, Document
     from surveyapp.report.record import Extra
     from surveyapp.report.written import ReportResult
     from surveyapp.workflows.computing import Computed
-
-
-def _local_now() -> datetime:
-    return datetime.now().astimezone()
 
 
 def report(
@@ -42,6 +39,8 @@ def report(
     extras: tuple[Extra, ...] = (),
     diagnosis: bool = False,
     language: str = "en",
+    key: Folder | None = None,
+    password: Callable[[], str] = no_password,
     advance: Advance = silent,
 ) -> ReportResult:
     """Write the survey record as PDF; the same input gives the same bytes.
@@ -60,6 +59,10 @@ def report(
         Diagnose every run and campaign of the project and show what was found.
     language : str
         Of the record: en | de | ru | zh.
+    key : path or None
+        Secret key in the format of minisign; the signature stands beside the PDF then.
+    password : callable
+        Asked for the password of an encrypted key.
     advance : callable
         Told how far it is.
 
@@ -68,12 +71,19 @@ def report(
     SurveyError
         If the project cannot be used, the face cannot be embedded or the file not be written.
     """
+    secret = None if key is None else secret_of(key, password)
     found = compute(source, advance=advance)
     if diagnosis:
         extras = (*extras, *_diagnoses(found, advance))
     document, sections = _record(found, extras)
     with in_language(language):
-        return _write_document(document, sections, Path(output), font, advance)
+        made = _write_document(document, sections, Path(output), font, advance)
+    if secret is None:
+        return made
+    from surveyapp.io.filing.signatures import sign_file
+
+    path = Path(made.path)
+    return replace(made, signature=sign_file(path, path.read_bytes(), secret))
 
 
 def _traverses(found: Computed) -> tuple[Extra, ...]:
@@ -124,27 +134,6 @@ def _breakthrough(found: Computed) -> tuple[Extra, ...]:
     except SurveyError as error:
         made = _refused("Breakthrough", error)
     return (Extra("breakthrough", made),)
-
-
-def _sensor_logs(found: Computed) -> tuple[Extra, ...]:
-    """A section for every sensor log of the folder; one that cannot be used says why."""
-    from surveyapp.api.sensors import allan, calibrate
-    from surveyapp.report.record import Extra
-    from surveyapp.report.sections import sensors as section
-
-    extras = []
-    folder = found.project.path
-    for entry in found.project.sensor_logs:
-        try:
-            if entry.kind is None:  # nothing to calibrate is stated: its noise is told
-                made = section.allan_blocks(entry.id, allan(folder, sensor=entry.id))
-            else:
-                result = calibrate(entry.kind, folder, sensor=entry.id)
-                made = section.calibration_blocks(entry.id, result)
-        except SurveyError as error:
-            made = _refused(section.title_of(entry.id), error)
-        extras.append(Extra(f"sensor log {entry.id}", made))
-    return tuple(extras)
 
 
 def _refused(title: str, error: SurveyError) -> tuple[Block, ...]:
@@ -208,6 +197,7 @@ def blank_form(
 
 
 def _record(found: Computed, extras: tuple[Extra, ...]) -> tuple[Document, tuple[str, ...]]:
+    from surveyapp.api.sensor_record import sensor_sections
     from surveyapp.io.files import visible
     from surveyapp.report.record import Record, SealShown, record_document
 
@@ -215,7 +205,7 @@ def _record(found: Computed, extras: tuple[Extra, ...]) -> tuple[Document, tuple
         *_shafts(found),
         *_traverses(found),
         *_breakthrough(found),
-        *_sensor_logs(found),
+        *sensor_sections(found),
         *extras,
     )
     seals = tuple(
@@ -255,50 +245,6 @@ def _write_document(
     write_output(output, written.data)
     digest = hashlib.sha256(written.data).hexdigest()
     return ReportResult(str(output), written.pages, sections, digest, written.missing)
-
-
-def close(
-    folder: Folder,
-    *,
-    session: str | None = None,
-    by: str = "",
-    note: str = "",
-    now: Callable[[], datetime] = _local_now,
-) -> ClosingResult:
-    """Close a project, or one session of it: files and ledger are sealed by a hash chain.
-
-    Raises
-    ------
-    SurveyError
-        If it cannot be read, is closed already, is open elsewhere, or cannot be written.
-    """
-    from surveyapp.io.filing.closing import close_project
-
-    at = now().isoformat(timespec="seconds")
-    return close_project(Path(folder), session=session, by=by, note=note, at=at, software=SOFTWARE)
-
-
-def reopen(
-    folder: Folder,
-    *,
-    reason: str,
-    session: str | None = None,
-    by: str = "",
-    now: Callable[[], datetime] = _local_now,
-) -> ClosingResult:
-    """Reopen a closed project or session; reason and what was changed go into the ledger.
-
-    Raises
-    ------
-    SurveyError
-        If it is not closed, or no reason is given.
-    """
-    from surveyapp.io.filing.closing import reopen_project
-
-    at = now().isoformat(timespec="seconds")
-    return reopen_project(
-        Path(folder), session=session, by=by, reason=reason, at=at, software=SOFTWARE
-    )
 
 
 def export_zip(folder: Folder, output: Folder) -> ExportResult:

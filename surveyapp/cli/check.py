@@ -5,12 +5,21 @@ from __future__ import annotations
 import argparse
 
 from surveyapp.cli.output import WIDTH, print_json
+from surveyapp.errors import Problem, SurveyError
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     parser.add_argument("folder", metavar="DIR", help="project folder")
     parser.add_argument("--seal", metavar="HEAD", help="verify the seal of a signed record")
+    parser.add_argument("--key", metavar="FILE.pub", help="public key that must have signed")
+    parser.add_argument(
+        "--signed",
+        metavar="FILE",
+        action="append",
+        default=[],
+        help="a file that it must have signed",
+    )
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 
@@ -18,7 +27,15 @@ def run(options: argparse.Namespace) -> int:
     """Check and print; 1 if a confirmed limit or test is not met."""
     from surveyapp import api
 
-    found = api.check(options.folder, seal=options.seal, advance=options.advance)
+    if options.signed and options.key is None:
+        raise SurveyError(Problem("the command is incomplete", "--signed", "", "--key FILE.pub"))
+    found = api.check(
+        options.folder,
+        seal=options.seal,
+        key=options.key,
+        signed=tuple(options.signed),
+        advance=options.advance,
+    )
     if options.json:
         print_json(found.to_dict())
     else:

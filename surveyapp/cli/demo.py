@@ -1,10 +1,12 @@
-"""``surveyapp demo``: orient the measured samples and lay print and computation side by side."""
+"""``surveyapp demo``: measured samples; print beside computation, sensors before and after."""
 
 from __future__ import annotations
 
 import argparse
 
 from surveyapp.cli.output import heading, number, paragraph, print_json, table
+from surveyapp.cli.sensor_options import shown
+from surveyapp.domain.demonstrated import DemonstratedSensor
 from surveyapp.domain.results import to_arcsec
 from surveyapp_models.angles import AngleUnit, format_angle
 
@@ -18,9 +20,9 @@ def run(options: argparse.Namespace) -> int:
     """Orient every sample; the exit code is 0 whatever the checks say."""
     from surveyapp import api
 
-    samples = api.demo()
+    samples, sensors = api.demo(), api.demo_sensors()
     if options.json:
-        print_json(samples.to_dict())
+        print_json({**samples.to_dict(), "sensors": sensors.to_dict()["sensors"]})
         return 0
     for sample in samples:
         print(heading(f"{sample.name}: {sample.result.project}"))
@@ -46,8 +48,25 @@ def run(options: argparse.Namespace) -> int:
             if check.passed is False and not check.is_part:
                 print(paragraph(f"not met: {check.where}: {check.text}"))
         print()
+    for sensor in sensors:
+        print_sensor(sensor)
     print("Look closer: surveyapp orient DIR, or the screens: surveyapp open DIR")
     print("with DIR one of:")
     for sample in samples:
         print(f"  {sample.folder}")
+    print("Sensors: surveyapp diagnose DIR --sensor ID, or L on the screen of a project:")
+    for sensor in sensors:
+        print(f"  {sensor.folder}")
     return 0
+
+
+def print_sensor(sensor: DemonstratedSensor) -> None:
+    """One sensor log: numbers without and with what was found, and what is named."""
+    print(heading(f"{sensor.name}: {sensor.title}"))
+    rows = [[n.quantity, shown(n.before), shown(n.after), n.unit] for n in sensor.numbers]
+    print(table(["quantity", "before", "after", "unit"], rows))
+    if sensor.named:
+        print(paragraph(f"named: {sensor.named.replace('_', ' ')}"))
+    for words in sensor.words:
+        print(paragraph(words))
+    print()

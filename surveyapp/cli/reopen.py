@@ -23,4 +23,4 @@ def run(options: argparse.Namespace) -> int:
     result = api.reopen(
         options.folder, reason=options.reason, session=options.session, by=options.by
     )
-    return tell(result, as_json=options.json)
+    return tell(result, as_json=options.json, folder=options.folder)

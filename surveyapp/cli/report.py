@@ -7,6 +7,7 @@ import sys
 
 from surveyapp.cli.languages import add_language, wished
 from surveyapp.cli.output import print_json
+from surveyapp.cli.password import asked_password
 from surveyapp.errors import Problem, SurveyError
 
 
@@ -15,7 +16,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folder", metavar="DIR", nargs="?", help="project folder")
     parser.add_argument("-o", "--output", metavar="FILE.pdf", help="PDF to be written")
     parser.add_argument("--blank", metavar="METHOD", help="a blank form instead of a record")
-    parser.add_argument("--font", metavar="FILE.ttf", help="face for Chinese, Japanese, Korean")
+    parser.add_argument(
+        "--font", metavar="FILE.ttf", help="face, or folder of faces, for further letters"
+    )
     add_language(parser)
     parser.add_argument(
         "--diagnosis", action="store_true", help="diagnose every run and campaign in it"
@@ -23,6 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--sheets", action="store_true", help="gyro and traverse sheets as CSV and HTML beside it"
     )
+    parser.add_argument("--key", metavar="FILE.key", help="secret key of minisign, to sign with")
     parser.add_argument("--text", action="store_true", help="print the record, write no PDF")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
@@ -50,6 +54,8 @@ def run(options: argparse.Namespace) -> int:
             font=options.font,
             diagnosis=options.diagnosis,
             language=language,
+            key=options.key,
+            password=asked_password,
             advance=options.advance,
         )
     for warning in written.warnings:
@@ -61,6 +67,8 @@ def run(options: argparse.Namespace) -> int:
         print_json({**written.to_dict(), **sheets.to_dict()})
     else:
         print(f"{written.path}: {written.pages} pages\n  sha256 {written.sha256}")
+        if written.signature:
+            print(f"  signed {written.signature}")
         for text in (*sheets.paths, *sheets.problems):
             print(f"  {text}")
     return 0

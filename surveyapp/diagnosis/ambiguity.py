@@ -9,22 +9,23 @@ from surveyapp.diagnosis.compare import added_signal, best_with
 from surveyapp.diagnosis.fits import Fit
 from surveyapp.diagnosis.loop import NOISE_WORDS, Search
 from surveyapp.diagnosis.result import Ambiguity
+from surveyapp.languages import said
 
 MOST_OPTIONS = 8
 """Sets that are told; the ledger has them all."""
 SEPARATING = {
-    "quadratic": "a longer record, or the same at another time of day",
-    "smooth": "a longer record",
-    "long_oscillation": "a record of at least twice that period",
-    "periodic": "a record of at least twice that period",
-    "pulse": "the book itself, or a second run: a touch that came and went does not repeat",
-    "step": "a repetition on the first part",
-    "amplitude_step": "a second run, followed evenly",
-    "amplitude_smooth": "a second run, begun with another amplitude",
-    "outlier": "the book itself, or a repetition",
-    "random_walk": "more observations, or a second record: a wandering north does not repeat",
-    "amplitude_walk": "a second run, followed evenly: irregular following does not repeat",
-    "ar1": "more observations, or a second record: correlated noise does not repeat",
+    "quadratic": said("a longer record, or the same at another time of day"),
+    "smooth": said("a longer record"),
+    "long_oscillation": said("a record of at least twice that period"),
+    "periodic": said("a record of at least twice that period"),
+    "pulse": said("the book itself, or a second run: a touch that came and went does not repeat"),
+    "step": said("a repetition on the first part"),
+    "amplitude_step": said("a second run, followed evenly"),
+    "amplitude_smooth": said("a second run, begun with another amplitude"),
+    "outlier": said("the book itself, or a repetition"),
+    "random_walk": said("more observations, or a second record: a wandering north does not repeat"),
+    "amplitude_walk": said("a second run, followed evenly: irregular following does not repeat"),
+    "ar1": said("more observations, or a second record: correlated noise does not repeat"),
 }
 
 

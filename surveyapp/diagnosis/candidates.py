@@ -15,6 +15,7 @@ import numpy as np
 
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.shifts import shift
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Effect
 
@@ -141,9 +142,16 @@ def missing_columns(effect: Effect, columns: Mapping[str, Floats]) -> str:
             lacking.append(f"no {need.name} [{need.unit}]")
         elif not np.isfinite(values).all():
             gone = int((~np.isfinite(values)).sum())
-            lacking.append(f"{need.name} missing at {gone} of {values.size} observations")
+            lacking.append(
+                said(
+                    "{name} missing at {gone} of {size} observations",
+                    name=need.name,
+                    gone=gone,
+                    size=values.size,
+                )
+            )
         elif values.size > 1 and np.ptp(values) == 0.0 and need.name not in CONSTANT_COLUMNS:
-            lacking.append(f"{need.name} has one value only")
+            lacking.append(said("{name} has one value only", name=need.name))
     return "; ".join(lacking)
 
 
@@ -164,6 +172,12 @@ def all_candidates(problem: Case, theta: Floats | None) -> tuple[Candidate, ...]
     return tuple(found)
 
 
+def single_effects(problem: Case, theta: Floats | None) -> tuple[Candidate, ...]:
+    """The named effects of a problem, each by itself: no shapes, no several slips at once."""
+    columns, root = swing_columns(problem, theta), problem.root_weights
+    return tuple(_named(effect, columns, root)[0] for effect in problem.effects)
+
+
 def _named(effect: Effect, columns: Mapping[str, Floats], root: Floats) -> list[Candidate]:
     empty = np.zeros((0, root.size, len(effect.coefficients)))
     missing = missing_columns(effect, columns)
@@ -171,7 +185,7 @@ def _named(effect: Effect, columns: Mapping[str, Floats], root: Floats) -> list[
         return [Candidate(effect.id, "named", (), empty, np.zeros(0), effect, missing=missing)]
     points = effect.grid_points(columns)
     if not points:
-        text = "the record is too short for it or does not vary"
+        text = said("the record is too short for it or does not vary")
         return [Candidate(effect.id, "named", (), empty, np.zeros(0), effect, missing=text)]
     stacked = np.stack([effect.basis(columns, **point) for point in points]) * root[None, :, None]
     searched = [effect.searched(p) if len(points) > 1 else 0 for p in points]

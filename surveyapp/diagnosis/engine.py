@@ -12,6 +12,7 @@ from surveyapp.diagnosis.battery import run_battery
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.checks import check_input
 from surveyapp.diagnosis.compare import Level
+from surveyapp.diagnosis.datum import datum_with_rivals
 from surveyapp.diagnosis.events import event_notes
 from surveyapp.diagnosis.fits import Fit, unit_variance
 from surveyapp.diagnosis.gate import GATE
@@ -27,6 +28,8 @@ from surveyapp.diagnosis.long_records.record import (
 )
 from surveyapp.diagnosis.loop import DEFAULT_DRAWS, Search, rivals_delta, search
 from surveyapp.diagnosis.next_observation import advice, worth_in_words
+from surveyapp.diagnosis.next_run import run_advice
+from surveyapp.diagnosis.outlook import Outlook
 from surveyapp.diagnosis.result import (
     Ambiguity,
     CandidateResult,
@@ -41,16 +44,20 @@ from surveyapp.diagnosis.run_average import is_short, short_average
 from surveyapp.diagnosis.run_value import (
     Value,
     averaged_value,
-    datum_values,
     out_of_range,
     rms,
     value_of,
 )
 from surveyapp.domain.project import ResultWarning
+from surveyapp.languages import said
 
 
 def diagnose(
-    problem: Case, *, confirm: Case | None = None, draws: int = DEFAULT_DRAWS
+    problem: Case,
+    *,
+    confirm: Case | None = None,
+    draws: int = DEFAULT_DRAWS,
+    advise: bool = True,
 ) -> Diagnosis:
     """Find what the model of a record lacks, and prove it.
 
@@ -63,6 +70,8 @@ def diagnose(
         A second, independent set of the same subject and instrument.
     draws : int
         Monte Carlo draws of each null distribution.
+    advise : bool
+        Whether to say what each next observation would be worth.
 
     Returns
     -------
@@ -78,9 +87,10 @@ def diagnose(
     if confirm is not None and is_long(confirm):
         confirm = reduce_record(confirm).problem
     if not is_long(problem):
-        return _diagnosed(problem, confirm, draws)
+        return _diagnosed(problem, confirm, draws, advise=advise)
     record = reduce_record(problem)
-    found = _diagnosed(record.problem, confirm, draws, record=record, digest=problem.digest())
+    digest = problem.digest()
+    found = _diagnosed(record.problem, confirm, draws, record=record, digest=digest)
     return with_lines(found, record)
 
 
@@ -91,6 +101,7 @@ def _diagnosed(
     *,
     record: LongRecord | None = None,
     digest: str | None = None,
+    advise: bool = True,
 ) -> Diagnosis:
     """Diagnose a record that is not too long, or the block means of one that is."""
     digest = problem.digest() if digest is None else digest
@@ -107,8 +118,8 @@ def _diagnosed(
     if found.levels[-1].depth > 0 and is_short(problem, named=bool(found.adopted)):
         averaged = short_average(problem, base, named=bool(found.adopted))
     best = found.best if ambiguous else found.after
-    models = [_model(problem, fit, confirm) for fit in (base, found.after, best)]
-    outlook = advice(problem, np.random.default_rng(int(digest[:15], 16)))
+    models = [_model(problem, fit, confirm, found.near) for fit in (base, found.after, best)]
+    outlook = _outlook(problem, base, digest) if advise else None
     return Diagnosis(
         subject=problem.subject,
         identity=problem.identity,
@@ -146,6 +157,11 @@ def _diagnosed(
     )
 
 
+def _outlook(problem: Case, base: Fit, digest: str) -> Outlook | None:
+    rng = np.random.default_rng(int(digest[:15], 16))
+    return run_advice(problem, base, rng) if problem.has_swing else advice(problem, rng)
+
+
 def _widened(problem: Case, found: Search, averaged: Value, verdict: Verdict) -> Value:
     """The averaged value, not more certain than what remains without a name allows.
 
@@ -176,11 +192,11 @@ def _quantity(problem: Case, value: Value) -> Estimate:
     return Estimate(problem.offset + value.value, value.sigma, value.interval95)
 
 
-def _model(problem: Case, fit: Fit, confirm: Case | None) -> ModelResult:
+def _model(problem: Case, fit: Fit, confirm: Case | None, near: tuple[Fit, ...]) -> ModelResult:
     error = rms(problem, fit)
     dof = problem.size - fit.parameters
     sigma0 = math.sqrt(fit.sum_of_squares / dof) if dof > 0 else None
-    states = datum_values(problem, fit)
+    states = datum_with_rivals(problem, fit, near)
     datum = None
     if states:
         datum = DatumValue(states[0][0], tuple((t, _quantity(problem, v)) for _, t, v in states))
@@ -244,9 +260,12 @@ def _candidates(problem: Case, found: Search) -> tuple[CandidateResult, ...]:
         elif identity in refused:
             verdict = "candidate"
         elif identity in found.implausible and identity not in near:
-            verdict, reason = "implausible", "the coefficient lies outside its physical range"
+            verdict, reason = "implausible", said("the coefficient lies outside its physical range")
             if not out_of_range(problem, found.implausible[identity], identity):
-                verdict, reason = "not_separable", "not determinable: its sigma exceeds its range"
+                verdict, reason = (
+                    "not_separable",
+                    said("not determinable: its sigma exceeds its range"),
+                )
         elif identity in near or p is None:
             verdict = "not_separable"
         elif family is not None and family <= 0.05:
@@ -289,25 +308,30 @@ def _warnings(problem: Case, found: Search) -> list[ResultWarning]:
         result.append(
             ResultWarning(
                 "stated_sigmas",
-                f"only {problem.size} observations: the stated sigmas serve for the noise",
+                said(
+                    "only {size} observations: the stated sigmas serve for the noise",
+                    size=problem.size,
+                ),
             )
         )
     if problem.size < 8:
         result.append(
-            ResultWarning("no_names", f"no effect is named from {problem.size} observations")
+            ResultWarning(
+                "no_names", said("no effect is named from {size} observations", size=problem.size)
+            )
         )
     if problem.size < 12 and problem.resolution > 0.0:
         result.append(
             ResultWarning(
                 "coarse_readings",
-                "from fewer than 12 rounded readings false alarms are more frequent than 5 %",
+                said("from fewer than 12 rounded readings false alarms are more frequent than 5 %"),
             )
         )
     if len(found.levels) - 1 > 2:
         result.append(
             ResultWarning(
                 "deep_search",
-                "three and more effects are named only where a second set confirms them",
+                said("three and more effects are named only where a second set confirms them"),
             )
         )
     result += [

@@ -14,6 +14,7 @@ from surveyapp.diagnosis.fits import fit_members
 from surveyapp.diagnosis.loop import Search, is_event
 from surveyapp.diagnosis.run_value import datum_values, value_of
 from surveyapp.domain.project import ResultWarning
+from surveyapp.languages import said
 from surveyapp_models.angles import wrap_pi
 
 AGREES, APART = 2.0, 3.0
@@ -31,15 +32,19 @@ def event_notes(case: Case, found: Search, confirm: Case | None) -> list[ResultW
         title = name.replace("_", " ")
         level = None if confirm is None else _level(case, found, name, confirm)
         if confirm is not None and level is True:
-            text = (
-                f"{title}: confirmed by the level of {confirm.identity}, which is that after the "
-                "event and not that before it"
+            text = said(
+                "{title}: confirmed by the level of {identity}, which is that after the "
+                "event and not that before it",
+                title=title,
+                identity=confirm.identity,
             )
             notes.append(ResultWarning("event_confirmed", text))
         elif confirm is not None:
-            text = (
-                f"{title}: an event does not recur, so that the second set neither confirms nor "
-                "refuses it; the tape zero and the sights after it, and a note of what happened, do"
+            text = said(
+                "{title}: an event does not recur, so that the second set neither confirms "
+                "nor refuses it; the tape zero and the sights after it, and a note of what "
+                "happened, do",
+                title=title,
             )
             notes.append(ResultWarning("event_unconfirmed", text))
     return notes

@@ -18,6 +18,7 @@ from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.outlook import HeldOut, PredictionErrors
 from surveyapp.domain.priors import DEFAULT_PRIORS, Priors
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 Rows = NDArray[np.intp]
@@ -86,7 +87,7 @@ def held_out_prediction(case: Case, *, before: float | None, after: float | None
     if before is None:
         return None
     errors = [PredictionErrors(rms, None, None) for rms in (before, after)]
-    return HeldOut("the last quarter from the rest", 0, errors[0], errors[1])
+    return HeldOut(said("the last quarter from the rest"), 0, errors[0], errors[1])
 
 
 def _campaign(case: Case, priors: Priors) -> HeldOut | None:
@@ -106,7 +107,7 @@ def _campaign(case: Case, priors: Priors) -> HeldOut | None:
     errors = case.observations[test] - found.values
     mean, half = _mean(case, train, test)
     return HeldOut(
-        "the last third from the first two, in order of time",
+        said("the last third from the first two, in order of time"),
         count,
         _errors(case.observations[test] - mean, half),
         _errors(errors, halves),

@@ -30,6 +30,7 @@ from surveyapp.diagnosis.fits import Fit, fit_members, with_noise
 from surveyapp.diagnosis.gate import GATE, Gate, open_gate
 from surveyapp.diagnosis.held_out import confirm_rms, flagged, leave_one_out, unforetold
 from surveyapp.diagnosis.run_value import plausible
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 DEFAULT_DRAWS = 4000
@@ -47,9 +48,9 @@ LEAST_TOGETHER = 3
 APART = 3.0
 """Combined sigmas by which coefficients of two sets may differ."""
 NOISE_WORDS = {
-    "random_walk": "a north that wanders at random",
-    "amplitude_walk": "a following that is irregular at random",
-    "ar1": "correlated noise",
+    "random_walk": said("a north that wanders at random"),
+    "amplitude_walk": said("a following that is irregular at random"),
+    "ar1": said("correlated noise"),
 }
 
 
@@ -219,22 +220,22 @@ def _failure(problem: Case, after: Fit, names: list[str], proofs: Proofs) -> tup
     for name in names:
         without = reduced(problem, after, [n for n in names if n != name])
         if without.bic <= after.bic:
-            return name, "the model is as good without it"
+            return name, said("the model is as good without it")
         if slips_together(problem, after, name):
-            return name, "shifts of north that came and went would look the same"
+            return name, said("shifts of north that came and went would look the same")
         hidden = partly_missing(name, proofs.pool)
         if hidden:
-            return name, f"{hidden} could look the same"
+            return name, said("{hidden} could look the same", hidden=hidden)
         if not significant(problem, without, name, proofs):
-            return name, "noise would show as much"
+            return name, said("noise would show as much")
         gross = float(np.sum(flagged(after))) > float(np.sum(flagged(without)))
         if not gross:
             other = leave_one_out(problem, without, mask)
             if with_all is not None and other is not None and with_all >= other:
-                return name, "it does not help to predict observations that were left out"
+                return name, said("it does not help to predict observations that were left out")
         kind = imitating_noise(problem, after, without)
         if kind is not None:
-            return name, f"{NOISE_WORDS[kind]} would look like it too often"
+            return name, said("{kind} would look like it too often", kind=NOISE_WORDS[kind])
         if proofs.confirm is not None and not is_event(after, name):
             failure = unconfirmed(proofs.confirm, after, without)
             failure = failure or other_coefficient(proofs.confirm, after, without, name)
@@ -275,7 +276,11 @@ def partly_missing(name: str, pool: Iterable[Candidate]) -> str:
             continue
         alike = other.id in named.effect.confusable_with or name in other.effect.confusable_with
         if alike and " missing at " in other.missing:
-            return f"{other.effect.title.lower()} cannot be tested ({other.missing}) and"
+            return said(
+                "{lower} cannot be tested ({missing}) and",
+                lower=other.effect.title.lower(),
+                missing=other.missing,
+            )
     return ""
 
 
@@ -294,8 +299,8 @@ def unconfirmed(confirm: Case, after: Fit, without: Fit) -> str | None:
     """Why a second set does not confirm an effect, else None."""
     here, there = confirm_rms(confirm, after), confirm_rms(confirm, without)
     if here is None or there is None:
-        return "the second set lacks what is needed to confirm it"
-    return "the second set is predicted no better with it" if here >= there else None
+        return said("the second set lacks what is needed to confirm it")
+    return said("the second set is predicted no better with it") if here >= there else None
 
 
 def is_event(fit: Fit, name: str) -> bool:
@@ -326,7 +331,7 @@ def other_coefficient(confirm: Case, after: Fit, without: Fit, name: str) -> str
     apart = abs(first[0] - second[0])
     if apart <= APART * float(np.hypot(first[1], second[1])):
         return None
-    return "its coefficient in the second set is another one"
+    return said("its coefficient in the second set is another one")
 
 
 def along(fit: Fit, column: Floats) -> tuple[float, float] | None:

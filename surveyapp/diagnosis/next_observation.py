@@ -17,12 +17,13 @@ import numpy as np
 
 from surveyapp.core.orientation.campaign_columns import COLUMNS
 from surveyapp.core.prediction.members import Members, members
-from surveyapp.core.statistics.mixture import student_cdf
+from surveyapp.core.statistics.mixture import half_widths
 from surveyapp.diagnosis.action import POSITION, Action, completed
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.later_visits import campaign_data, is_campaign
-from surveyapp.diagnosis.outlook import ActionResult
+from surveyapp.diagnosis.outlook import ActionResult, Outlook
 from surveyapp.domain.priors import DEFAULT_PRIORS, GROSS, Priors
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 DRAWS = 200
@@ -33,28 +34,8 @@ LEAST = 4
 """Determinations from which advice is given."""
 HORIZON_DAYS = 30.0
 """The later line for which the final interval is told: so many days on, at another line."""
-SUM = 0.95
 UNUSED_NUMBER = 1000.0
 """Beyond the numbers of the names of a record: a name that none of it has."""
-
-
-@dataclass(frozen=True, slots=True)
-class Outlook:
-    """What actions are worth beside each other.
-
-    Parameters
-    ----------
-    now : float
-        Weight of the likeliest cause as it stands.
-    interval : float
-        Half-width of the 95 % interval of the later line as it stands [SI].
-    actions : tuple of ActionResult
-        Best first.
-    """
-
-    now: float
-    interval: float
-    actions: tuple[ActionResult, ...]
 
 
 def advice(case: Case, rng: np.random.Generator, priors: Priors = DEFAULT_PRIORS) -> Outlook | None:
@@ -124,7 +105,7 @@ def _outlook(
     state = _State(weights, classes, means, covariance, noise, found.dof)
     share = weights @ classes
     interval = float(
-        _half_widths(state, weights[None, :], means[None, :, -1], covariance[:, -1, -1])[0]
+        half_widths(weights[None, :], means[None, :, -1], covariance[None, :, -1, -1], state.dof)[0]
     )
     sigma = 1.0 if case.sigma is None else float(np.median(case.sigma)) / found.unit
     results = [
@@ -132,7 +113,9 @@ def _outlook(
         for place, action in enumerate(actions)
     ]
     results.sort(key=lambda item: (-item.information, item.interval95))
-    return Outlook(float(share.max() / share.sum()), interval * found.unit, tuple(results))
+    later = said("a line in {horizon_days:.0f} days at", horizon_days=HORIZON_DAYS)
+    now = float(share.max() / share.sum())
+    return Outlook(now, interval * found.unit, tuple(results), later)
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,7 +157,7 @@ def _worth(
     moved = state.means[None, :, -1] + (cross / total) * (
         y[some, None] - state.means[None, :, place]
     )
-    half = _half_widths(state, new[some], moved, left)
+    half = half_widths(new[some], moved, left[None, :], state.dof)
     return ActionResult(
         action=action.id,
         text=action.text,
@@ -189,22 +172,6 @@ def _entropy(share: Floats) -> Floats:
     return np.asarray(-(share * np.log(safe)).sum(axis=1))
 
 
-def _half_widths(state: _State, weights: Floats, means: Floats, variance: Floats) -> Floats:
-    """Half-width of the 95 % interval for each row of weights and means, shape (draws,)."""
-    centre = (weights * means).sum(axis=1, keepdims=True)
-    offsets = means - centre
-    scale = np.sqrt(np.maximum(variance, 1e-12))[None, :]
-    low = np.zeros(weights.shape[0])
-    high = (np.abs(offsets) + 6.0 * scale).max(axis=1)
-    for _ in range(25):
-        middle = 0.5 * (low + high)
-        inside = student_cdf((middle[:, None] - offsets) / scale, state.dof)
-        inside -= student_cdf((-middle[:, None] - offsets) / scale, state.dof)
-        enough = (weights * inside).sum(axis=1) >= SUM
-        high, low = np.where(enough, middle, high), np.where(enough, low, middle)
-    return np.asarray(0.5 * (low + high))
-
-
 def worth_in_words(outlook: Outlook, *, scale: float, unit: str) -> list[str]:
     """The advice in sentences with numbers, the best action first."""
     if not outlook.actions:
@@ -214,17 +181,28 @@ def worth_in_words(outlook: Outlook, *, scale: float, unit: str) -> list[str]:
     now = f"+-{outlook.interval / scale:.1f}{sign}"
 
     def told(item: ActionResult) -> str:
-        return (
-            f"{item.text}: the likeliest cause would then stand at {item.separation:.0%} on "
-            f"average, and a line in {HORIZON_DAYS:.0f} days at "
-            f"+-{item.interval95 / scale:.1f}{sign} (95 %)"
+        return said(
+            "{text}: the likeliest cause would then stand at {separation:.0%} on "
+            "average, and {wanted} +-{interval95:.1f}{sign} (95 %)",
+            text=item.text,
+            separation=item.separation,
+            wanted=outlook.wanted,
+            interval95=item.interval95 / scale,
+            sign=sign,
         )
 
-    said = [f"Next, best: {told(best)}; today it stands at {outlook.now:.0%} and {now}."]
+    sentences = [
+        said(
+            "Next, best: {best}; today it stands at {now:.0%} and {now2}.",
+            best=told(best),
+            now=outlook.now,
+            now2=now,
+        )
+    ]
     others = [told(item) for item in outlook.actions[1:3]]
     if others:
-        said.append(f"Else: {'; or '.join(others)}.")
-    return said
+        sentences.append(said("Else: {others}.", others="; or ".join(others)))
+    return sentences
 
 
 __all__ = ["Outlook", "advice", "worth_in_words"]

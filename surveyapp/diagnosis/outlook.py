@@ -94,5 +94,27 @@ class ActionResult:
         }
 
 
+@dataclass(frozen=True, slots=True)
+class Outlook:
+    """What actions are worth beside each other.
+
+    Parameters
+    ----------
+    now : float
+        Weight of the likeliest cause as it stands.
+    interval : float
+        Half-width of the 95 % interval of what is wanted as it stands [SI].
+    actions : tuple of ActionResult
+        Best first.
+    wanted : str
+        Of what the interval is, followed by its width: ``north at``.
+    """
+
+    now: float
+    interval: float
+    actions: tuple[ActionResult, ...]
+    wanted: str
+
+
 def _small(value: float | None, scale: float) -> float | None:
     return None if value is None or not math.isfinite(value) else value / scale

@@ -12,24 +12,27 @@ from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.long_records.lines import SpectralLine
 from surveyapp.diagnosis.outlook import PredictionErrors
 from surveyapp.diagnosis.result import Adoption, Diagnosis, Estimate, ModelResult
+from surveyapp.languages import either, joined, said, sentence, term
 from surveyapp_models.effects.effect import Effect
 
 NOISE_AND_SHAPES = {
-    "random_walk": "a north that wanders at random",
-    "amplitude_walk": "a following that is irregular at random",
-    "ar1": "correlated noise",
-    "quadratic": "a bent drift without a known cause",
-    "smooth": "a smooth change without a known cause",
-    "long_oscillation": "an oscillation longer than the record can judge",
-    "periodic": "an oscillation without a known cause",
-    "pulse": "a shift of several readings that came and went",
-    "step": "a step without a known cause",
-    "amplitude_smooth": "a change of the damping without a known cause",
-    "amplitude_step": "a sudden change of the amplitude without a known cause",
-    "outlier": "a single determination that stands off",
+    "random_walk": said("a north that wanders at random"),
+    "amplitude_walk": said("a following that is irregular at random"),
+    "ar1": said("correlated noise"),
+    "quadratic": said("a bent drift without a known cause"),
+    "smooth": said("a smooth change without a known cause"),
+    "long_oscillation": said("an oscillation longer than the record can judge"),
+    "periodic": said("an oscillation without a known cause"),
+    "pulse": said("a shift of several readings that came and went"),
+    "step": said("a step without a known cause"),
+    "amplitude_smooth": said("a change of the damping without a known cause"),
+    "amplitude_step": said("a sudden change of the amplitude without a known cause"),
+    "outlier": said("a single determination that stands off"),
 }
 
 
+HALF_SWINGS = said("half swing")
+"""Unit of places in a run: half swings since the first turning point."""
 Labels = Mapping[str, Mapping[float, str]]
 
 
@@ -52,21 +55,23 @@ def plain_words(
         One sentence each, small values in the unit of the subject.
     """
     known = {effect.id: effect for effect in effects}
-    said = [_seen(result)]
-    said += [_adopted(result, item, known, labels or {}) for item in result.adopted]
+    sentences = [_seen(result)]
+    sentences += [_adopted(result, item, known, labels or {}) for item in result.adopted]
     if not result.adopted and result.verdict != "adequate":
-        said.append("No cause is named.")
-    said += _ambiguous(result, known)
-    said += [_line(result, line, known) for line in result.lines]
-    said += _consequence(result)
-    said += _errors(result)
-    said += _predicted(result)
-    said += result.advice
+        sentences.append(said("No cause is named."))
+    sentences += _ambiguous(result, known)
+    sentences += [_line(result, line, known) for line in result.lines]
+    sentences += _consequence(result)
+    sentences += _errors(result)
+    sentences += _predicted(result)
+    sentences += result.advice
     if result.verdict == "unattributed":
-        said.append("Something is left that no known cause explains; it stays in the stated sigma.")
-    said += [f"{text.rstrip('.')}." for text in result.remedy]
-    said += [f"{w.text[0].upper()}{w.text[1:].rstrip('.')}." for w in result.warnings]
-    return said
+        sentences.append(
+            said("Something is left that no known cause explains; it stays in the stated sigma.")
+        )
+    sentences += [sentence(text) for text in result.remedy]
+    sentences += [sentence(w.text) for w in result.warnings]
+    return sentences
 
 
 def words_of(result: Diagnosis, problem: Case) -> list[str]:
@@ -91,40 +96,86 @@ def _figure(result: Diagnosis, value: float, sign: str = "") -> str:
 
 def _name(identity: str, known: dict[str, Effect]) -> str:
     parts = identity.split(" + ")
-    titles = [NOISE_AND_SHAPES.get(p, known[p].title.lower() if p in known else p) for p in parts]
-    return " with ".join(titles)
+    titles = [
+        NOISE_AND_SHAPES.get(part, term(known[part].title.lower()) if part in known else part)
+        for part in parts
+    ]
+    whole = titles[0]
+    for title in titles[1:]:
+        whole = said("{whole} with {title}", whole=whole, title=title)
+    return whole
 
 
 def _seen(result: Diagnosis) -> str:
     error = _small(result, result.before.rms)
     if any(w.code == "block_means" for w in result.warnings):
-        error = f"the block means, {error},"
+        error = said("the block means, {error},", error=error)
     if result.verdict == "adequate" and result.subject == "traverse":
-        return (
-            f"The misclosures, {error} on the average, are as large as the stated sigmas say: "
-            "nothing that this traverse controls is missing."
+        return said(
+            "The misclosures, {error} on the average, are as large as the stated "
+            "sigmas say: nothing that this traverse controls is missing.",
+            error=error,
         )
     if result.verdict == "adequate":
-        return f"The residuals of {error} look like noise: the model that stands is adequate."
+        return said(
+            "The residuals of {error} look like noise: the model that stands is adequate.",
+            error=error,
+        )
     low = min((t.p for t in result.battery), default=1.0)
     tail = ""
     if low <= 0.01:
         test = min(result.battery, key=lambda t: t.p)
-        tail = f" (plainest in the {test.channel}: {test.name}, p = {test.p:.3f})"
-    return f"The residuals of {error} are more than noise{tail}."
+        tail = said(
+            " (plainest in the {channel}: {name}, p = {p:.3f})",
+            channel=test.channel,
+            name=test.name,
+            p=test.p,
+        )
+    return said("The residuals of {error} are more than noise{tail}.", error=error, tail=tail)
 
 
 def _adopted(result: Diagnosis, item: Adoption, known: dict[str, Effect], labels: Labels) -> str:
     symptom = known[item.effect].symptom if item.effect in known else item.title
     parts = [
-        f"{c.name} {c.value:.3g} {c.unit} (sigma {c.sigma or 0.0:.1g})" for c in item.coefficients
+        said(
+            "{name} {value:.3g} {unit} (sigma {sigma:.1g})",
+            name=c.name,
+            value=c.value,
+            unit=c.unit,
+            sigma=c.sigma or 0.0,
+        )
+        for c in item.coefficients
     ]
-    where = ", ".join(_place(n, v, labels) for n, v, _ in item.grid)
-    place = f" at {where}" if where else ""
+    turns = [_turning_point(name, value) for name, value, unit in item.grid if unit == HALF_SWINGS]
+    if any(turns):
+        where = joined(", ", [text for text in turns if text])
+    else:
+        where = joined(", ", [_place(n, v, labels) for n, v, _ in item.grid])
+    place = said(" at {where}", where=where) if where else ""
     margin = ""
     if item.margin_bic is not None:
-        margin = f"; the next explanation is {item.margin_bic:.0f} BIC worse"
-    return f"{item.title}: it looks as if {symptom}{place}: {', '.join(parts)}{margin}."
+        margin = said(
+            "; the next explanation is {margin_bic:.0f} BIC worse", margin_bic=item.margin_bic
+        )
+    return said(
+        "{title}: it looks as if {symptom}{place}: {parts}{margin}.",
+        title=term(item.title),
+        symptom=symptom,
+        place=place,
+        parts=joined(", ", parts),
+        margin=margin,
+    )
+
+
+def _turning_point(name: str, value: float) -> str:
+    """Where in a run, counted from 1 as everywhere that a surveyor reads it; else empty."""
+    base, _, number = name.rpartition("_")
+    kind = base if number.isdigit() else name
+    if kind == "after_point":
+        return said("turning point {value:g} to {value2:g}", value=value + 1.0, value2=value + 2.0)
+    return (
+        said("turning point {value:g}", value=value + 1.0) if kind in ("point", "position") else ""
+    )
 
 
 def _place(name: str, value: float, labels: Labels) -> str:
@@ -135,35 +186,51 @@ def _place(name: str, value: float, labels: Labels) -> str:
 
 
 def _ambiguous(result: Diagnosis, known: dict[str, Effect]) -> list[str]:
-    said = []
+    sentences = []
     for item in result.ambiguous:
         names = [_name(i, known) for i in item.any_of]
         if len(names) == 1:
-            said.append(f"{names[0][0].upper()}{names[0][1:]} may be behind it, but is not proved.")
+            sentences.append(
+                sentence(said("{name} may be behind it, but is not proved.", name=names[0]))
+            )
         else:
-            listing = ", ".join(names[:-1]) + " or " + names[-1]
-            said.append(f"From this record {listing} cannot be told apart.")
+            listing = either(names)
+            sentences.append(
+                said("From this record {listing} cannot be told apart.", listing=listing)
+            )
         if item.separate_by:
-            said.append(f"To decide, observe: {item.separate_by}.")
-    return said
+            sentences.append(
+                said("To decide, observe: {separate_by}.", separate_by=item.separate_by)
+            )
+    return sentences
 
 
 def _line(result: Diagnosis, line: SpectralLine, known: dict[str, Effect]) -> str:
     """One spectral line: where, how large, how sure, whose."""
     unit = result.frequency_unit
-    what = (
-        f"A line at {line.frequency:.6g} {unit} (sigma {line.sigma_frequency:.1g} {unit}) with an "
-        f"amplitude of {line.amplitude / result.scale:.3g}{_unit(result)} (sigma "
-        f"{line.sigma_amplitude / result.scale:.1g}{_unit(result)}) stands out of the noise; noise "
-        f"shows such a peak anywhere with a probability of {line.false_alarm:.1g}"
+    what = said(
+        "A line at {frequency:.6g} {unit} (sigma {sigma_frequency:.1g} {unit}) "
+        "with an amplitude of {amplitude:.3g}{result} (sigma "
+        "{sigma_amplitude:.1g}{result}) stands out of the noise; noise shows such "
+        "a peak anywhere with a probability of {false_alarm:.1g}",
+        frequency=line.frequency,
+        unit=unit,
+        sigma_frequency=line.sigma_frequency,
+        amplitude=line.amplitude / result.scale,
+        result=_unit(result),
+        sigma_amplitude=line.sigma_amplitude / result.scale,
+        false_alarm=line.false_alarm,
     )
     if line.effect:
-        whose = f"the catalogue has it: {_name(line.effect, known)}"
+        whose = said("the catalogue has it: {effect}", effect=_name(line.effect, known))
     elif line.shared_with:
-        whose = f"{line.shared_with.replace('_', ' ')} has it too, and it is left to that"
+        whose = said(
+            "{replace} has it too, and it is left to that",
+            replace=term(line.shared_with.replace("_", " ")),
+        )
     else:
-        whose = "no known cause is named"
-    return f"{what}; {whose}."
+        whose = said("no known cause is named")
+    return said("{what}; {whose}.", what=what, whose=whose)
 
 
 def _value(result: Diagnosis, quantity: Estimate) -> str:
@@ -171,25 +238,46 @@ def _value(result: Diagnosis, quantity: Estimate) -> str:
 
 
 def _consequence(result: Diagnosis) -> list[str]:
-    what = result.value_name
-    head = f"{what[0].upper()}{what[1:]}"
     shift = (result.averaged.value - result.before.value.value) / result.scale
     sigma, before = _value(result, result.averaged), _value(result, result.before.value)
     least = 0.05
     if result.unit != "arcsec":
         least *= (result.averaged.sigma or 0.0) / result.scale
     moves = abs(shift) >= least and shift != 0.0
-    moved = f"moves by {_figure(result, shift, '+')}{_unit(result)}" if moves else "stays"
-    said = [f"{head} {moved}; its sigma is {sigma} instead of {before}."]
+    moved = (
+        said(
+            "moves by {result}{result2}", result=_figure(result, shift, "+"), result2=_unit(result)
+        )
+        if moves
+        else said("stays")
+    )
+    sentences = [
+        sentence(
+            said(
+                "{what} {moved}; its sigma is {sigma} instead of {before}.",
+                what=term(result.value_name),
+                moved=moved,
+                sigma=sigma,
+                before=before,
+            )
+        )
+    ]
     datum = result.after_best.value_at_datum
     if datum is not None:
         for text, quantity in datum.states:
             apart = (quantity.value - result.averaged.value) / result.scale
-            said.append(
-                f"With {datum.effect.replace('_', ' ')} in the model: {text} "
-                f"{_figure(result, apart, '+')}{_unit(result)} from the average."
+            sentences.append(
+                said(
+                    "With {effect} in the model: {text} {apart}{unit} from the average (sigma "
+                    "{sigma}).",
+                    effect=term(datum.effect.replace("_", " ")),
+                    text=text,
+                    apart=_figure(result, apart, "+"),
+                    unit=_unit(result),
+                    sigma=_small(result, quantity.sigma),
+                )
             )
-    return said
+    return sentences
 
 
 def _predicted(result: Diagnosis) -> list[str]:
@@ -200,14 +288,22 @@ def _predicted(result: Diagnosis) -> list[str]:
 
     def told(item: PredictionErrors) -> str:
         share = round((item.coverage or 0.0) * held.count)
-        return (
-            f"{_small(result, item.rms)}, {share} of {held.count} inside +-"
-            f"{_small(result, item.interval95)}"
+        return said(
+            "{result}, {share} of {count} inside +-{result2}",
+            result=_small(result, item.rms),
+            share=share,
+            count=held.count,
+            result2=_small(result, item.interval95),
         )
 
     return [
-        f"Azimuths predicted ({held.scheme}) err by {told(held.before)} with the mean, by "
-        f"{told(held.after)} with the average over what may be at work."
+        said(
+            "Azimuths predicted ({scheme}) err by {before} with the mean, by {after} "
+            "with the average over what may be at work.",
+            scheme=held.scheme,
+            before=told(held.before),
+            after=told(held.after),
+        )
     ]
 
 
@@ -215,21 +311,33 @@ def _errors(result: Diagnosis) -> list[str]:
     after: ModelResult = result.after_best
     if after.effects == result.before.effects:
         return []
-    label = " (best member of what cannot be told apart)" if result.ambiguous else ""
-    said = [
-        f"Residuals {_small(result, result.before.rms)} before and {_small(result, after.rms)} "
-        f"after{label}, on the data that chose the model."
+    label = said(" (best member of what cannot be told apart)") if result.ambiguous else ""
+    sentences = [
+        said(
+            "Residuals {result} before and {result2} after{label}, on the data that "
+            "chose the model.",
+            result=_small(result, result.before.rms),
+            result2=_small(result, after.rms),
+            label=label,
+        )
     ]
     pairs = (
-        ("on points left out in turn", result.before.loo_rms, after.loo_rms),
+        (said("on points left out in turn"), result.before.loo_rms, after.loo_rms),
         (
-            "predicting the last quarter from the rest",
+            said("predicting the last quarter from the rest"),
             result.before.forecast_rms,
             after.forecast_rms,
         ),
-        ("on the second, independent set", result.before.confirm_rms, after.confirm_rms),
+        (said("on the second, independent set"), result.before.confirm_rms, after.confirm_rms),
     )
     for text, one, two in pairs:
         if one is not None and two is not None:
-            said.append(f"{_small(result, one)} before and {_small(result, two)} after {text}.")
-    return said
+            sentences.append(
+                said(
+                    "{result} before and {result2} after {text}.",
+                    result=_small(result, one),
+                    result2=_small(result, two),
+                    text=text,
+                )
+            )
+    return sentences

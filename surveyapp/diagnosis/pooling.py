@@ -17,11 +17,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surveyapp.diagnosis.candidates import Candidate, all_candidates
+from surveyapp.diagnosis.candidates import Candidate, single_effects
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.compare import orthonormal_design
 from surveyapp.diagnosis.fits import fit_members
 from surveyapp.domain.priors import NU0
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 SPREADS = (0.05, 0.3, 1.0)
@@ -147,7 +148,7 @@ def pool(cases: Sequence[Case], rng: np.random.Generator) -> Pooled:
     noises = np.sum([item.noises for item in told], axis=0)
     split = len(WALKS)
     for name, values in zip(NOISES, (noises[:split], noises[split:]), strict=True):
-        title = {"random_walk": "a north that wanders", "ar1": "correlated noise"}[name]
+        title = {"random_walk": said("a north that wanders"), "ar1": said("correlated noise")}[name]
         found.append(PooledEffect(name, title, _log_mean(values), None, None, None, "", len(cases)))
     found = [item for item in found if _plausible(cases, item)]
     found.sort(key=lambda item: -item.evidence)
@@ -179,7 +180,7 @@ def _columns(cases: Sequence[Case]) -> list[tuple[str, tuple[tuple[str, float], 
     found: dict[tuple[str, tuple[tuple[str, float], ...]], None] = {}
     for case in cases:
         base = fit_members(case, ())
-        for candidate in all_candidates(case, base.theta):
+        for candidate in single_effects(case, base.theta):
             if poolable(candidate):
                 for point in candidate.points:
                     found[candidate.id, tuple(sorted(point.items()))] = None
@@ -205,7 +206,7 @@ def _session(
     variances, heights = estimates.copy(), estimates.copy()
     sensitivity = np.full(size, np.nan)
     place = {name: i for i, name in enumerate(columns)}
-    for candidate in all_candidates(case, base.theta):
+    for candidate in single_effects(case, base.theta):
         if not poolable(candidate):
             continue
         for g, point in enumerate(candidate.points):

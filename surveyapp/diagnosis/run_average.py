@@ -83,7 +83,7 @@ def run_average(case: Case, base: Fit) -> tuple[Value, Mixture]:
     n, design = case.size, base.design
     central = value_of(case, base)
     free = n - design.shape[1]
-    sigma, nu0 = _noise(case, base, free)
+    sigma, nu0 = reading_noise(case, base)
     y = base.residual / sigma
     q, r = np.linalg.qr(design)
     row = np.linalg.solve(r.T, functional(case, base))
@@ -115,9 +115,10 @@ def run_average(case: Case, base: Fit) -> tuple[Value, Mixture]:
     return Value(value, half / student_quantile(0.975, max(nu, 1.0)), max(nu, 1.0)), mixture
 
 
-def _noise(case: Case, base: Fit, free: int) -> tuple[float, float]:
+def reading_noise(case: Case, base: Fit) -> tuple[float, float]:
     """Stated sigma of a reading and what it counts; the scatter, which counts nothing."""
     floor = max(case.noise_floor, 1e-12)
+    free = case.size - base.design.shape[1]
     if case.sigma is not None:
         return max(float(np.median(case.sigma)), floor), NU0
     return max(float(np.sqrt(base.sum_of_squares / max(free, 1))), floor), 0.0

@@ -130,9 +130,16 @@ def _variance_factor(problem: Case, fit: Fit) -> tuple[float, float]:
 
 
 def plain_value(problem: Case, fit: Fit, row: Floats | None = None) -> Value:
-    """Value of a deterministic fit at its own grid point; ``row`` in place of the mean."""
-    row = functional(problem, fit) if row is None else row
+    """Value of a deterministic fit at its own grid point.
+
+    ``row`` in place of the mean over the record: a state that the scanned parameters move by what
+    they do to the coefficients alone (an asymptote is where the effect is gone).
+    """
     extra, extra_row = _grid_derivatives(problem, fit)
+    if row is None:
+        row = functional(problem, fit)
+    else:
+        extra_row = np.zeros_like(extra_row)
     J = np.hstack([fit.design, extra])
     h = np.concatenate([row, extra_row])
     norms = np.sqrt((J**2).sum(axis=0))

@@ -151,6 +151,8 @@ class ReducedSet:
         Mean error of the line of sight and of the vertical circle [rad]; None with one face.
     spread : tuple of float
         Collimation of each target that has both faces [rad], for the sigma of a direction.
+    index_spread : tuple of float
+        Index of each target that has both faces [rad], for the sigma of a zenith angle.
     length_gaps : tuple of float
         Half the difference of the distances in both faces [m], for the sigma of a distance.
     """
@@ -161,6 +163,7 @@ class ReducedSet:
     collimation: float | None
     index: float | None
     spread: tuple[float, ...] = ()
+    index_spread: tuple[float, ...] = ()
     length_gaps: tuple[float, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:

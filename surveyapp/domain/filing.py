@@ -34,6 +34,8 @@ class ClosingResult:
         Number of the ledger entry.
     head : str
         Of the ledger's chain, 20 characters in groups: what ``check --seal`` verifies.
+    signature : str
+        File of the signature with a key, relative to the folder; empty without a key.
     """
 
     action: str
@@ -47,6 +49,7 @@ class ClosingResult:
     found: tuple[str, ...]
     entry: int
     head: str = ""
+    signature: str = ""
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON, schema ``surveyapp.closing/1``."""
@@ -63,6 +66,7 @@ class ClosingResult:
             "files": self.files,
             "found": list(self.found),
             "entry": self.entry,
+            "signature": self.signature or None,
         }
 
 

@@ -11,6 +11,8 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any, Final, Literal
 
+from surveyapp.domain.calibration import Calibration
+from surveyapp.domain.north import NorthResult
 from surveyapp.domain.sensor_entry import SensorKind
 
 StepKind = Literal["do", "wait", "read", "record"]
@@ -264,4 +266,37 @@ class ProgrammeState:
             "rank": self.known.rank,
             "of": self.known.of,
             "warnings": list(self.warnings),
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class ProgrammeResult:
+    """What a run ended in, schema ``surveyapp.programme_result/1``.
+
+    Parameters
+    ----------
+    state : ProgrammeState
+    sensor : str
+        Id of the ``[[sensor_log]]``.
+    calibration : Calibration or None
+    north : NorthResult or None
+    card : str or None
+        Path of the card that was written.
+    """
+
+    state: ProgrammeState
+    sensor: str
+    calibration: Calibration | None = None
+    north: NorthResult | None = None
+    card: str | None = None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Keys of the JSON."""
+        return {
+            "schema": "surveyapp.programme_result/1",
+            "sensor": self.sensor,
+            "state": self.state.to_dict(),
+            "calibration": None if self.calibration is None else self.calibration.to_dict(),
+            "north": None if self.north is None else self.north.to_dict(),
+            "card": self.card,
         }

@@ -9,6 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from surveyapp.languages import said
+
 SubjectKind = Literal[
     "project",
     "session",
@@ -79,7 +81,9 @@ class Subject:
     @property
     def text(self) -> str:
         """For people: ``run 2 to 3082``, ``3083-3082``, ``G1``."""
-        return f"{self.id} to {self.target}" if self._one_target else self.id
+        if not self._one_target:
+            return self.id
+        return said("{id} to {target}", id=self.id, target=self.target)
 
     @property
     def _one_target(self) -> bool:

@@ -54,6 +54,8 @@ class Traverse:
         ``book``: its path as written; ``traverse_class``: the rule book's own word.
     sigma_angle : float or None
         One angle [rad].
+    sigma_zenith : float or None
+        One zenith angle [rad]; that of an angle without it.
     sigma_mm, sigma_ppm : float or None
         Of a distance.
     instrument_m, target_m : float
@@ -77,6 +79,7 @@ class Traverse:
     atmosphere_applied: bool | None = None
     constant_applied: bool | None = None
     height_m: tuple[float, float] = (0.0, 0.0)
+    sigma_zenith: float | None = None
     rows: tuple[TraverseRow, ...] = ()
 
     @property

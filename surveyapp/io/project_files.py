@@ -13,6 +13,7 @@ from surveyapp.errors import SurveyError
 from surveyapp.io.files import read_inside, shown
 from surveyapp.io.guarded import MAX_LOG_BYTES, open_regular, place_inside
 from surveyapp.io.tables import Findings, Table
+from surveyapp.languages import said
 
 PROJECT_FILE: Final = "project.toml"
 
@@ -51,21 +52,25 @@ class ProjectFiles:
     def read_log(self, name: str, table: Table) -> None:
         """Take a sensor log into the digest that nobody pinned; a missing one is a warning."""
         digest = hashlib.sha256()
-        why = "cannot be read"
+        why = said("cannot be read")
         try:
             path = place_inside(self.path, name)
             if path is None:
-                why = "lies outside of the project folder: only --allow-outside reads it"
+                why = said("lies outside of the project folder: only --allow-outside reads it")
                 raise FileNotFoundError(name)
             if path.stat().st_size > MAX_LOG_BYTES:
-                why = f"is larger than {MAX_LOG_BYTES // 1024**2} MB and was not read"
+                why = said(
+                    "is larger than {value} MB and was not read", value=MAX_LOG_BYTES // 1024**2
+                )
                 raise OSError(name)
             with os.fdopen(open_regular(path, os.O_RDONLY), "rb") as stream:
                 while block := stream.read(1 << 20):
                     digest.update(block)
         except (OSError, ValueError):
             self.contents[name] = None
-            text = f"{table.where}: the file {shown(name)} {why}"
+            text = said(
+                "{where}: the file {name} {why}", where=table.where, name=shown(name), why=why
+            )
             self.findings.warnings.append(ResultWarning("missing_file", text))
             return
         self.contents[name] = digest.digest()
@@ -86,10 +91,10 @@ def inside(name: str, table: Table) -> bool:
     path = os.path.normpath(name.replace("\\", "/"))
     if Path(path).is_absolute() or ":" in path[:2] or path == ".." or path.startswith("../"):
         table.problem(
-            "the book lies outside of the project folder",
+            said("the book lies outside of the project folder"),
             name,
-            "a path below the project folder",
-            "copy it into observations/",
+            said("a path below the project folder"),
+            said("copy it into observations/"),
         )
         return False
     return True

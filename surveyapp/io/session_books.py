@@ -17,6 +17,7 @@ from surveyapp.io.guarded import place_inside
 from surveyapp.io.project_files import PROJECT_FILE, ProjectFiles, inside
 from surveyapp.io.project_tables import Names, read_session, unique
 from surveyapp.io.tables import Findings, Table
+from surveyapp.languages import said
 from surveyapp_models.angles import AngleUnit
 
 
@@ -69,17 +70,23 @@ def _session_book(
         return empty
     subject = Subject.session(session.id)
     for column in odd:
-        text = f"{name}: the column {shown(column)} is not known and was not used"
+        text = said(
+            "{name}: the column {column} is not known and was not used",
+            name=name,
+            column=shown(column),
+        )
         findings.warnings.append(ResultWarning("unknown_column", text, subject))
     if not book.rows:
-        text = f"{name}: the book of {table.where} has no reading yet"
+        text = said("{name}: the book of {where} has no reading yet", name=name, where=table.where)
         findings.warnings.append(ResultWarning("empty_book", text, subject))
     if not tail:
         return book
     moved = _repair(files.path, name, (len(data), tail), repair)
-    text = f"{name}: the last line has no newline and does not count: {shown(_torn(tail))}" + (
-        f"; it was moved to {name}.torn" if moved else ""
-    )
+    text = said(
+        "{name}: the last line has no newline and does not count: {shown}",
+        name=name,
+        shown=shown(_torn(tail)),
+    ) + (said("; it was moved to {name}.torn", name=name) if moved else "")
     findings.warnings.append(ResultWarning("torn_tail", text, subject))
     return replace(book, torn_tail=_torn(tail))
 
@@ -105,5 +112,9 @@ def _repair(folder: Path, name: str, torn: tuple[int, bytes], repair: bool | Non
 
 def _warn_shared_books(paths: list[str], findings: Findings) -> None:
     for path in sorted(p for p, count in Counter(paths).items() if p and count > 1):
-        text = f"{PROJECT_FILE}: several sessions name the book {path}: it counts for each of them"
+        text = said(
+            "{project_file}: several sessions name the book {path}: it counts for each of them",
+            project_file=PROJECT_FILE,
+            path=path,
+        )
         findings.warnings.append(ResultWarning("shared_book", text))

@@ -26,6 +26,7 @@ from surveyapp.io.sensor_cards import read_sensor_card
 from surveyapp.io.sensor_logs.reading import Need, open_log
 from surveyapp.io.sensor_logs.tables import request_of
 from surveyapp.io.tables import Table
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, AngleUnit
 from surveyapp_models.arrays import Floats
 
@@ -104,16 +105,16 @@ def _source(
     ids = [entry.id for entry in logs]
     entry = next((item for item in logs if item.id == name), None)
     if name and entry is None:
-        expected = "an id of [[sensor_log]]"
-        table.problem("there is no such sensor log", name, expected, nearest_names(name, ids))
+        expected = said("an id of [[sensor_log]]")
+        table.problem(said("there is no such sensor log"), name, expected, nearest_names(name, ids))
     if entry is not None and entry.kind not in (None, kind):
-        table.problem("the log is of another kind", entry.kind, kind)
+        table.problem(said("the log is of another kind"), entry.kind, kind)
         entry = None
     if not path or not inside(path, table) or files.read(path, table.where) is None:
         return None
     card = read_sensor_card(files.path / path, where=path)
     if card.kind != kind:
-        table.problem("the card is of another kind", card.kind, kind)
+        table.problem(said("the card is of another kind"), card.kind, kind)
         return None
     return None if entry is None else _Source(entry, card, path, table.where)
 
@@ -139,9 +140,14 @@ def _refusals(
     for key, own in (("instrument", source.entry.instrument), ("serial", source.entry.serial)):
         stated = source.card.extra.get(key)
         if stated is not None and own is not None and str(stated) != own:
-            what = "the card is of another instrument"
+            what = said("the card is of another instrument")
             problems.append(Problem(what, source.name, str(stated), f"{key} {own}"))
-    return tuple(f"{p.what}: {p.found}, expected {p.expected}" for p in problems)
+    return tuple(
+        said(
+            "{what}: {found}, expected {expected}", what=p.what, found=p.found, expected=p.expected
+        )
+        for p in problems
+    )
 
 
 def _levelling(session: OrientationSession, source: _Source, files: ProjectFiles) -> LogLevelling:
@@ -214,8 +220,10 @@ def _moments(book: FieldBook, *, epoch: bool) -> list[tuple[float, bool]]:
 def _span(book: FieldBook, *, epoch: bool) -> str:
     times = [t for t, _ in _moments(book, epoch=epoch)]
     if not times:
-        return "a book with times of its rows"
-    return f"samples from {min(times):g} to {max(times):g} s of the book"
+        return said("a book with times of its rows")
+    return said(
+        "samples from {times:g} to {times2:g} s of the book", times=min(times), times2=max(times)
+    )
 
 
 def _masks(book: FieldBook, times: Floats) -> tuple[np.ndarray, np.ndarray]:
@@ -247,7 +255,9 @@ def _aimed(
     stated = table.number("sigma_deg", low=0.0, high=90.0)
     circle = table.angle("circle", unit)
     if stated is not None and declination is None:
-        table.problem("sigma_deg stands without declination_deg", stated, "both or none")
+        table.problem(
+            said("sigma_deg stands without declination_deg"), stated, said("both or none")
+        )
     table.warn_unknown()
     if source is None:
         return None

@@ -80,6 +80,24 @@ def _only_leftovers(folder: Path) -> bool:
     return True
 
 
+def need_own_folder(folder: Path) -> None:
+    """Refuse a folder that holds anything but what a killed ``new`` has left.
+
+    Raises
+    ------
+    SurveyError
+    """
+    if folder.exists() and (not folder.is_dir() or not _only_leftovers(folder)):
+        raise SurveyError(
+            Problem(
+                "a new project needs a folder of its own",
+                shown_path(folder),
+                "a folder that is not empty" if folder.is_dir() else "a file",
+                "a folder that does not exist or is empty",
+            )
+        )
+
+
 def create_project(
     folder: Path,
     *,
@@ -117,15 +135,7 @@ def create_project(
             Problem("this is no name for a project", "name", shown(name), "one line of text")
         )
     try:
-        if folder.exists() and (not folder.is_dir() or not _only_leftovers(folder)):
-            raise SurveyError(
-                Problem(
-                    "a new project needs a folder of its own",
-                    shown_path(folder),
-                    "a folder that is not empty" if folder.is_dir() else "a file",
-                    "a folder that does not exist or is empty",
-                )
-            )
+        need_own_folder(folder)
         (folder / "observations").mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)

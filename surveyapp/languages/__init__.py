@@ -17,18 +17,32 @@ from pathlib import Path
 from typing import Final
 
 from surveyapp.languages.po_file import read_po, translations
-from surveyapp.languages.said import Said, counted, joined, said, said_each
+from surveyapp.languages.said import (
+    Said,
+    counted,
+    either,
+    joined,
+    listed,
+    said,
+    said_each,
+    sentence,
+    term,
+)
 
 __all__ = [
     "LANGUAGES",
     "Said",
     "counted",
     "current",
+    "either",
     "in_language",
     "joined",
+    "listed",
     "preferred",
     "said",
     "said_each",
+    "term",
+    "sentence",
     "shown",
     "translated",
     "use",
@@ -137,5 +151,5 @@ def shown(text: str) -> str:
 
 
 def translated(text: str) -> str:
-    """A text of the catalogue by its English: for tables of texts kept as plain strings."""
-    return _translate(text, None, 0)
+    """A text of the catalogue by its English: for names and texts kept as plain strings."""
+    return shown(text) if isinstance(text, Said) else _translate(text, None, 0)

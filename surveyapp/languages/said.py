@@ -91,3 +91,47 @@ def joined(separator: str, parts: Iterable[str]) -> str:
         return Said("", {})
     literal = separator.replace("{", "{{").replace("}", "}}")
     return Said(literal.join(f"{{{name}}}" for name in fields), fields)
+
+
+def listed(parts: Iterable[str]) -> str:
+    """Texts in a row as in running text: ``a and b``."""
+    whole = ""
+    for part in parts:
+        whole = said("{before} and {last}", before=whole, last=part) if whole else part
+    return whole
+
+
+def term(text: str) -> str:
+    """A name from a table of the program (a source of error, a method) as a text."""
+    return Said(text, {})
+
+
+def either(parts: Iterable[str]) -> str:
+    """Texts of which one is meant: ``a, b or c``."""
+    *before, last = parts
+    return said("{before} or {last}", before=joined(", ", before), last=last) if before else last
+
+
+class _Sentence(Said):
+    """A text with a capital letter at its beginning."""
+
+    __slots__ = ()
+
+    def __new__(cls, template: str, fields: dict[str, Any], plural: str | None = None) -> Self:
+        """The English with a capital letter."""
+        made = super().__new__(cls, template, fields, plural)
+        capital = str.__new__(cls, made[:1].upper() + made[1:])
+        capital.template, capital.fields, capital.plural = template, fields, plural
+        return capital
+
+    def told(self, translate: Translate) -> str:
+        """The text in a language, with a capital letter."""
+        text = super().told(translate)
+        return text[:1].upper() + text[1:]
+
+
+def sentence(text: str) -> str:
+    """A text as a sentence of its own: a capital letter, and a full stop where it has none."""
+    if text.endswith("."):
+        return _Sentence("{text}", {"text": text})
+    return _Sentence("{text}.", {"text": text})

@@ -21,6 +21,7 @@ from surveyapp.io.files import read_inside, shown
 from surveyapp.io.filing.seals import is_closed
 from surveyapp.io.guarded import checked_inside, is_regular
 from surveyapp.io.tomltext import atomic_write
+from surveyapp.languages import said
 
 PROJECT_FILE: Final = "project.toml"
 _EDITORS: Final = ("nano", "vim", "vi", "emacs")
@@ -79,11 +80,11 @@ def editor_command(
     if found is None:
         raise SurveyError(
             Problem(
-                "no editor is known",
+                said("no editor is known"),
                 "$EDITOR",
                 "",
-                "the command of a text editor",
-                "set EDITOR, for instance to nano, and begin again",
+                said("the command of a text editor"),
+                said("set EDITOR, for instance to nano, and begin again"),
             )
         )
     return (found,)
@@ -129,16 +130,18 @@ def begin_edit(folder: Path, name: str, *, session: str | None = None) -> HandEd
     if is_closed(folder, session):
         raise SurveyError(
             Problem(
-                "it is closed: nothing may be written to it",
+                said("it is closed: nothing may be written to it"),
                 name,
                 "",
-                "an open project or session",
-                "surveyapp reopen DIR --reason TEXT opens it again",
+                said("an open project or session"),
+                said("surveyapp reopen DIR --reason TEXT opens it again"),
             )
         )
     checked_inside(folder, name, where=name)
     if not is_regular(folder / name):
-        raise SurveyError(Problem("this is no text file", name, shown(name), "a regular file"))
+        raise SurveyError(
+            Problem(said("this is no text file"), name, shown(name), said("a regular file"))
+        )
     return HandEdit(folder, name, read_inside(folder, name, where=name))
 
 

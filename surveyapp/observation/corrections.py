@@ -21,6 +21,7 @@ from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.io.filing.seals import closings_in_force
 from surveyapp.io.tomltext import atomic_write
 from surveyapp.io.writing import Key, set_values
+from surveyapp.languages import said
 
 TableKind = Literal["station", "instrument", "orientation"]
 FieldKind = Literal["text", "number", "date", "yes"]
@@ -122,7 +123,11 @@ def _row(folder: Path, table: TableName) -> Mapping[str, Any]:
         if str(row.get(key, "")) == table.name:
             return row
     raise SurveyError(
-        Problem("there is no such table any more", f"project.toml, {table.kind}", shown(table.name))
+        Problem(
+            said("there is no such table any more"),
+            said("project.toml, {kind}", kind=table.kind),
+            shown(table.name),
+        )
     )
 
 
@@ -155,9 +160,9 @@ def correct(folder: Path, table: TableName, texts: Mapping[str, str]) -> tuple[s
         if not lock.writable:
             raise SurveyError(
                 Problem(
-                    "this project cannot be written to now",
+                    said("this project cannot be written to now"),
                     shown(str(folder)),
-                    "it is open elsewhere, closed, or read-only",
+                    said("it is open elsewhere, closed, or read-only"),
                 )
             )
         before = fields_of(folder, table)
@@ -179,8 +184,12 @@ def _write(
         try:
             value = _value(item, texts[item.id])
         except ValueError:
-            where = f"project.toml, {table.kind} {table.name}, {item.id}"
-            problems.append(Problem(f"this is no {item.kind}", where, shown(texts[item.id])))
+            where = said(
+                "project.toml, {kind} {name}, {id}", kind=table.kind, name=table.name, id=item.id
+            )
+            problems.append(
+                Problem(said("this is no {kind}", kind=item.kind), where, shown(texts[item.id]))
+            )
             continue
         if item.inner:
             own = row.get(item.key)
@@ -236,10 +245,10 @@ def _need_open(folder: Path, table: TableName) -> None:
         if named or (table.kind == "orientation" and session == table.name):
             raise SurveyError(
                 Problem(
-                    "a closed session would be changed by this",
+                    said("a closed session would be changed by this"),
                     own,
                     session,
-                    "open sessions",
-                    "reopen the session first; the ledger keeps the reason",
+                    said("open sessions"),
+                    said("reopen the session first; the ledger keeps the reason"),
                 )
             )

@@ -27,6 +27,7 @@ from surveyapp.domain.readings import (
     Side,
 )
 from surveyapp.io.fieldbook.clock import Stamp
+from surveyapp.languages import said
 from surveyapp.observation.doubts import TURNING, Typed, of_this_book, questions_about, sights_of
 from surveyapp.observation.session import NewRow, SessionDesk
 from surveyapp_models.angles import wrap_two_pi
@@ -268,7 +269,7 @@ def _struck_moment(observation: SessionDesk, placed: Placed, stamp: Stamp) -> St
 def _note(text: str, what: Expected, stamp: Stamp) -> Understood:
     words = text.strip()
     if not words:
-        raise EntryError("an empty note", "some words")
+        raise EntryError(said("an empty note"), said("some words"))
     return Understood(NewRow(what.kind, note=words), 0.0, False, (), stamp)
 
 
@@ -277,7 +278,9 @@ def _corrected(observation: SessionDesk, stamp: Stamp, text: str) -> Stamp:
         return observation.clock.corrected(stamp, -float(match[1]))
     match = _TIME.fullmatch(text)
     if match is None or int(match[1]) > 23 or int(match[2]) > 59 or float(match[3] or 0) >= 60.0:
-        raise EntryError(f"@{text} is no moment", "@08:15:30, or @-20 for 20 seconds ago")
+        raise EntryError(
+            said("@{text} is no moment", text=text), said("@08:15:30, or @-20 for 20 seconds ago")
+        )
     whole, _, fraction = (match[3] or "0").partition(".")
     meant: datetime = stamp.time.replace(
         hour=int(match[1]),
@@ -292,7 +295,9 @@ def _corrected(observation: SessionDesk, stamp: Stamp, text: str) -> Stamp:
     elif seconds < -half_day:
         seconds += 2.0 * half_day
     if seconds > 0.0:
-        raise EntryError(f"@{text} lies in the future", "a moment that has passed")
+        raise EntryError(
+            said("@{text} lies in the future", text=text), said("a moment that has passed")
+        )
     return observation.clock.corrected(stamp, seconds)
 
 

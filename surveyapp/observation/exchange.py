@@ -19,6 +19,7 @@ from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.exporters.catalogue import EXPORTERS
 from surveyapp.io.importers.fieldfiles.catalogue import IMPORTERS
 from surveyapp.io.importers.fieldfiles.parts import line_range
+from surveyapp.languages import said
 
 GYRO: Final = "gyro-csv"
 _MOST: Final = 400
@@ -81,7 +82,10 @@ def entries(folder: str) -> list[Entry]:
                     files.append(Entry(item.name, item.path, endings[ending], size))
     except OSError as error:
         raise SurveyError(
-            Problem(f"the folder cannot be read ({error.strerror or error})", folder)
+            Problem(
+                said("the folder cannot be read ({strerror})", strerror=error.strerror or error),
+                folder,
+            )
         ) from None
     return [*folders, *files][:_MOST]
 
@@ -100,14 +104,16 @@ def told_options(text: str) -> Told:
     try:
         words = shlex.split(text)
     except ValueError as error:
-        raise SurveyError(Problem(f"a quote is open ({error})", "options", text)) from None
+        raise SurveyError(
+            Problem(said("a quote is open ({error})", error=error), "options", text)
+        ) from None
     for word in words:
         key, sign, value = word.partition("=")
         if word == "skip-damaged":
             skip = True
         elif not sign or not value:
-            expected = "key=value, such as traverse=main or unit.hz=gon"
-            raise SurveyError(Problem("this is no option", "options", word, expected))
+            expected = said("key=value, such as traverse=main or unit.hz=gon")
+            raise SurveyError(Problem(said("this is no option"), "options", word, expected))
         elif key in ("traverse", "station-code", "instrument", "fix", "lines"):
             values[key] = value
         elif key.startswith("unit."):
@@ -156,9 +162,9 @@ def export_formats() -> dict[str, str]:
     """Every format of an export and what it is."""
     return {
         **{item.id: item.title for item in EXPORTERS},
-        "gkf": "traverses as a GNU Gama network",
-        "csv": "azimuths of the lines as a table",
-        "zip": "the whole project for hand-over",
+        "gkf": said("traverses as a GNU Gama network"),
+        "csv": said("azimuths of the lines as a table"),
+        "zip": said("the whole project for hand-over"),
     }
 
 
@@ -178,7 +184,9 @@ def hand_over(form: str, folder: str, path: str) -> ExportResult:
         If the file exists, or as the exports of ``surveyapp.api``.
     """
     if Path(path).exists():
-        raise SurveyError(Problem("a file of this name exists", path, "", "a name that is free"))
+        raise SurveyError(
+            Problem(said("a file of this name exists"), path, "", said("a name that is free"))
+        )
     others = {"gkf": api.export_gkf, "csv": api.export_csv, "zip": api.export_zip}
     if form in others:
         return others[form](folder, path)

@@ -8,8 +8,9 @@ from __future__ import annotations
 import csv
 import io
 import os
+import shutil
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -18,6 +19,7 @@ from surveyapp.domain.project import Method, Purpose
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.io.settings import Settings, read_settings, write_settings
+from surveyapp.languages import said
 
 OBSERVATIONS: Final = "observations"
 LONGEST_ID: Final = 80
@@ -111,23 +113,6 @@ def remember(folder: str) -> Settings:
     return settings
 
 
-def keep_theme(theme: str) -> None:
-    """Remember the theme."""
-    write_settings(replace(read_settings(), theme=theme))
-
-
-def keep_sound(*, sound: bool) -> Settings:
-    """Remember whether the countdown may be heard."""
-    settings = replace(read_settings(), sound=sound)
-    write_settings(settings)
-    return settings
-
-
-def keep_language(language: str) -> bool:
-    """Remember the language of screens and record; False where that is not possible."""
-    return write_settings(replace(read_settings(), language=language))
-
-
 def samples() -> tuple[str, ...]:
     """Names of the measured samples."""
     from surveyapp.io.locations import sample_names
@@ -205,16 +190,16 @@ def read_stations(text: str) -> tuple[NewStation, ...]:
         except ValueError as error:
             problems.append(
                 Problem(
-                    "this is no station",
-                    f"stations, line {number}",
+                    said("this is no station"),
+                    said("stations, line {number}", number=number),
                     line.strip(),
-                    "name, east, north, height",
+                    said("name, east, north, height"),
                     str(error),
                 )
             )
     counts = Counter(station.name for station in stations)
     problems += [
-        Problem("a station stands twice", "stations", name, "each name once")
+        Problem(said("a station stands twice"), "stations", name, said("each name once"))
         for name in sorted(name for name, count in counts.items() if count > 1)
     ]
     if problems:
@@ -234,13 +219,15 @@ def _station(cells: list[str], columns: list[str]) -> NewStation:
     row = dict(zip(columns, cells, strict=False))
     name = row.get("name", "")
     if not name:
-        raise ValueError("the name is missing")
+        raise ValueError(said("the name is missing"))
     known = ("e", "n", "lat", "lon", "h")
     numbers = {key: float(row[key]) for key in known if row.get(key)}
     pairs = (("e", "n"), ("lat", "lon"))
     for first, second in pairs:
         if (first in numbers) != (second in numbers):
-            raise ValueError(f"{first} and {second} belong together")
+            raise ValueError(
+                said("{first} and {second} belong together", first=first, second=second)
+            )
     return NewStation(name, **numbers)
 
 
@@ -252,11 +239,33 @@ def create_project(form: NewProject) -> str:
     SurveyError
         If the folder holds anything already, if the grid is none, or if a name stands twice.
     """
+    from surveyapp.io.template import need_own_folder
+
+    target = Path(form.folder).expanduser().absolute()
+    part = target.with_name(f".{target.name}.part")
+    try:
+        need_own_folder(target)
+        if part.is_dir() and not part.is_symlink():
+            shutil.rmtree(part)  # of a program that ended before all of it was written
+        _make_project(part, form)
+        if target.exists():
+            shutil.rmtree(target)  # holds nothing, or what a killed ``new`` has left
+        part.rename(target)
+    except OSError as error:
+        what = said("the folder cannot be made ({strerror})", strerror=error.strerror or error)
+        raise SurveyError(Problem(what, str(target))) from None
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+    return str(target)
+
+
+def _make_project(target: Path, form: NewProject) -> None:
+    """Everything that a form says, in a folder that is nobody's project yet."""
     from surveyapp.io.writing import append_tables, set_value
 
     constant = _constant(form.constant)
     folder = api.new_project(
-        Path(form.folder).expanduser(),
+        target,
         name=form.name,
         crs=f"EPSG:{form.crs}" if form.crs.isdecimal() else form.crs or None,
         angle_unit=form.angle_unit,
@@ -275,7 +284,6 @@ def create_project(form: NewProject) -> str:
     tables += [("station", {key: getattr(item, key) for key in keys}) for item in form.stations]
     append_tables(path, tables)
     api.open_project(folder)
-    return str(folder)
 
 
 def _constant(text: str) -> dict[str, float] | None:
@@ -286,11 +294,11 @@ def _constant(text: str) -> dict[str, float] | None:
     except ValueError:
         raise SurveyError(
             Problem(
-                "this is no instrument constant",
+                said("this is no instrument constant"),
                 "constant",
                 text,
-                "constant and sigma in arc-seconds, like -9.7 3.0",
-                "decimals are written with a point",
+                said("constant and sigma in arc-seconds, like -9.7 3.0"),
+                said("decimals are written with a point"),
             )
         ) from None
     return {"arcsec": value, "sigma_arcsec": sigma}
@@ -313,11 +321,8 @@ def create_session(folder: api.Folder, form: NewSession) -> None:
     book = _book_name(form.id)
     with ProjectLock(Path(folder)) as lock:
         if not lock.writable:
-            raise SurveyError(
-                Problem(
-                    "this project cannot be written to now", str(folder), "it is open elsewhere"
-                )
-            )
+            what = said("this project cannot be written to now")
+            raise SurveyError(Problem(what, str(folder), said("it is open elsewhere")))
         _new_book(Path(folder) / book)
         before = read_text(path, where=path.name)
         table = {
@@ -335,8 +340,9 @@ def create_session(folder: api.Folder, form: NewSession) -> None:
             append_table(path, "orientation", table)
             api.open_project(folder)
         except SurveyError:
-            atomic_write(path, before.encode("utf-8"))
             (Path(folder) / book).unlink()
+            if read_text(path, where=path.name) != before:
+                atomic_write(path, before.encode("utf-8"))
             raise
 
 
@@ -346,14 +352,17 @@ def _book_name(identity: str) -> str:
     if not usable or identity.startswith(".") or len(identity.encode("utf-8")) > LONGEST_ID:
         raise SurveyError(
             Problem(
-                "this id cannot name a field book",
+                said("this id cannot name a field book"),
                 "id",
                 identity,
-                f'at most {LONGEST_ID} letters or digits, without / \\ : * ? " < > |',
-                "the book is observations/<id>.csv",
+                said(
+                    'at most {longest_id} letters or digits, without / \\ : * ? " < > |',
+                    longest_id=LONGEST_ID,
+                ),
+                said("the book is observations/<id>.csv"),
             )
         )
-    return f"{OBSERVATIONS}/{identity}.csv"
+    return said("{observations}/{identity}.csv", observations=OBSERVATIONS, identity=identity)
 
 
 def _new_book(path: Path) -> None:
@@ -368,11 +377,11 @@ def _new_book(path: Path) -> None:
     if os.path.lexists(path):
         raise SurveyError(
             Problem(
-                "a book of this name exists already",
+                said("a book of this name exists already"),
                 path.name,
                 str(path),
-                "a new session id",
-                "a field book is never overwritten",
+                said("a new session id"),
+                said("a field book is never overwritten"),
             )
         )
     path.parent.mkdir(parents=True, exist_ok=True)

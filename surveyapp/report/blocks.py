@@ -171,9 +171,12 @@ class Document:
     foot : tuple of str
         At the bottom of every page, beside the page number.
     blocks : tuple of Block
+    stamp : str
+        Among the properties of the file: which state of a project it shows.
     """
 
     title: str
     running_head: str
     foot: tuple[str, ...]
     blocks: tuple[Block, ...] = field(default=())
+    stamp: str = ""

@@ -1,4 +1,4 @@
-"""Where type faces are found: the embedded one, and one with Chinese, Japanese and Korean.
+"""Where type faces are found: the embedded one, those of packages, those of the system.
 
 Only looks for files. Which face draws which character is decided where the page is written.
 """
@@ -9,6 +9,7 @@ import os
 import sys
 from collections.abc import Iterator
 from functools import lru_cache
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Final
 
@@ -44,6 +45,29 @@ def base_face() -> Path:
     return faces[0]
 
 
+FURTHER_PACKAGES: Final = ("fontpkg_noto_sans_arabic", "fontpkg_heebo", "fontpkg_noto_sans_thai")
+"""Packages of the extra ``glyphs``: Arabic, Hebrew, Thai (each under the Open Font License)."""
+FURTHER_FACES: Final = (
+    "NotoSansArabic-Regular.ttf",
+    "NotoNaskhArabic-Regular.ttf",
+    "NotoSansHebrew-Regular.ttf",
+    "NotoSansThai-Regular.ttf",
+    "NotoSansDevanagari-Regular.ttf",
+    "NotoSansSymbols2-Regular.ttf",
+    "NotoEmoji-Regular.ttf",
+    "DejaVuSans.ttf",
+    "FreeSans.ttf",
+    "arial.ttf",
+    "Arial.ttf",
+    "tahoma.ttf",
+    "leelawui.ttf",
+    "Thonburi.ttc",
+    "seguisym.ttf",
+    "Symbola.ttf",
+)
+"""File names of TrueType faces with further writings, tried in turn where letters are missing."""
+
+
 def _folders() -> Iterator[Path]:
     home = Path.home()
     yield from (home / ".fonts", home / ".local" / "share" / "fonts")
@@ -56,14 +80,36 @@ def _folders() -> Iterator[Path]:
 
 
 @lru_cache(maxsize=1)
-def wide_face() -> Path | None:
-    """First known TrueType face with Chinese, Japanese or Korean on this system, else None."""
+def _installed() -> dict[str, Path]:
+    """Known faces on this system by the name of their file."""
+    known = {*WIDE_FACES, *FURTHER_FACES}
     found: dict[str, Path] = {}
     for folder in _folders():
         try:
-            paths = sorted(path for path in folder.rglob("*.tt?") if path.name in WIDE_FACES)
+            paths = sorted(path for path in folder.rglob("*.tt?") if path.name in known)
         except OSError:
             continue
         for path in paths:
             found.setdefault(path.name, path)
-    return next((found[name] for name in WIDE_FACES if name in found), None)
+    return found
+
+
+def wide_face() -> Path | None:
+    """First known TrueType face with Chinese, Japanese or Korean on this system, else None."""
+    return next((_installed()[name] for name in WIDE_FACES if name in _installed()), None)
+
+
+def faces_of(path: Path) -> tuple[Path, ...]:
+    """The face that is named; of a folder every TrueType face in it, by name."""
+    if not path.is_dir():
+        return (path,)
+    return tuple(sorted(p for p in path.iterdir() if p.suffix.lower() in (".ttf", ".ttc")))
+
+
+def further_faces() -> Iterator[Path]:
+    """Faces with further writings: those of installed packages, then those of the system."""
+    for package in FURTHER_PACKAGES:
+        spec = find_spec(package)
+        if spec is not None and spec.origin is not None:
+            yield from sorted(Path(spec.origin).parent.rglob("*.ttf"))[:1]
+    yield from (_installed()[name] for name in FURTHER_FACES if name in _installed())

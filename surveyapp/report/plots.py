@@ -36,7 +36,9 @@ class Axis:
     decimals: int
 
 
-def axis(values: Sequence[float], *, about_zero: bool = False, count: int = 5) -> Axis:
+def axis(
+    values: Sequence[float], *, about_zero: bool = False, count: int = 5, whole: bool = False
+) -> Axis:
     """Axis that holds all values, its ticks 1, 2 or 5 times a power of ten.
 
     Parameters
@@ -47,6 +49,8 @@ def axis(values: Sequence[float], *, about_zero: bool = False, count: int = 5) -
         Whether zero stands in the middle.
     count : int
         About how many ticks.
+    whole : bool
+        Whether only whole numbers are ticks: the axis counts something.
     """
     low, high = (min(values), max(values)) if values else (-1.0, 1.0)
     if about_zero:
@@ -56,7 +60,7 @@ def axis(values: Sequence[float], *, about_zero: bool = False, count: int = 5) -
         low, high = low - 1.0, high + 1.0
     margin = 0.06 * (high - low)
     low, high = low - margin, high + margin
-    raw = (high - low) / count
+    raw = max((high - low) / count, 1.0 if whole else 0.0)
     power = 10.0 ** math.floor(math.log10(raw))
     step = power * next(m for m in (1.0, 2.0, 5.0, 10.0) if m * power >= raw * (1.0 - 1e-9))
     first = math.ceil(low / step - 1e-9)

@@ -26,6 +26,7 @@ from surveyapp.report.sections import (
     seal,
     signature,
 )
+from surveyapp.report.stamp import stamp_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,5 +135,6 @@ def record_document(record: Record) -> tuple[Document, tuple[str, ...]]:
             said("sha256 of the input {input_sha256}", input_sha256=record.result.input_sha256),
         ),
         blocks=tuple(block for _, blocks in made for block in blocks),
+        stamp=stamp_of(record.result.input_sha256, [item.seal for item in record.seals]),
     )
     return document, tuple(names)

@@ -44,6 +44,8 @@ class ReportResult:
     missing : tuple of (str, str)
         Texts that hold letters no type face at hand has, and those letters: they are printed as
         their codes.
+    signature : str
+        File of the signature with a key; empty without a key.
     """
 
     path: str
@@ -51,6 +53,7 @@ class ReportResult:
     sections: tuple[str, ...]
     sha256: str
     missing: tuple[tuple[str, str], ...] = ()
+    signature: str = ""
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON, schema ``surveyapp.report/1``."""
@@ -60,6 +63,7 @@ class ReportResult:
             "pages": self.pages,
             "sections": list(self.sections),
             "sha256": self.sha256,
+            "signature": self.signature or None,
             "missing_glyphs": [
                 {"text": text, "characters": [f"U+{ord(letter):04X}" for letter in letters]}
                 for text, letters in self.missing
@@ -82,5 +86,6 @@ def missing_text(missing: tuple[tuple[str, str], ...]) -> str:
     more = f" and {len(missing) - _SHOWN} more" if len(missing) > _SHOWN else ""
     return (
         f"No type face at hand has {letters} of the letters in: {shown}{more}. The record prints "
-        "their codes in brackets; --font FILE.ttf names a face that has them."
+        "their codes in brackets. pip install 'surveyapp[glyphs]' brings Arabic, Hebrew and Thai; "
+        "--font FILE.ttf, or a folder of faces, names what has the others."
     )

@@ -21,6 +21,7 @@ from surveyapp.io.settings import read_settings
 from surveyapp.languages import LANGUAGES, current
 from surveyapp.observation import home as api_home
 from surveyapp.observation import practice as api_practice
+from surveyapp.observation import preferences
 from surveyapp.observation.practice import Practice
 from surveyapp.observation.session import SessionDesk
 from surveyapp.tui import texts
@@ -126,18 +127,18 @@ class SurveyApp(App[int]):
         """Dark, light, high contrast, and round again."""
         names = [theme.name for theme in THEMES]
         self.theme = names[(names.index(self.theme) + 1) % len(names)]
-        api_home.keep_theme(self.theme)
+        preferences.keep_theme(self.theme)
 
     def action_sound(self) -> None:
         """Let the countdown be heard, or not; remembered."""
-        self.settings = api_home.keep_sound(sound=not self.settings.sound)
+        self.settings = preferences.keep_sound(sound=not self.settings.sound)
         self.notify(texts.SOUND_ON if self.settings.sound else texts.SOUND_OFF, markup=False)
 
     def action_language(self) -> None:
         """The next language; remembered, and the screens begin again in it."""
         codes = list(LANGUAGES)
         wanted = codes[(codes.index(current()) + 1) % len(codes)]
-        if api_home.keep_language(wanted):
+        if preferences.keep_language(wanted):
             self.exit(OTHER_LANGUAGE)
         else:
             self.notify(texts.LANGUAGE_NOT_KEPT, severity="warning", markup=False)

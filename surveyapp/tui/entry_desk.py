@@ -15,6 +15,7 @@ from surveyapp.domain.readings import QUANTITY, QUIET_KINDS, Dimension, Face, Re
 from surveyapp.errors import SurveyError
 from surveyapp.io.fieldbook.clock import NOTICED_S, Stamp
 from surveyapp.io.fieldbook.problems import read_only_problem
+from surveyapp.languages import shown
 from surveyapp.observation.entry import (
     Understood,
     expected,
@@ -240,7 +241,9 @@ class Desk:
             found = self._understand(text)
         except EntryError as error:
             pattern = texts.REFUSED_EXPECTED if error.expected else texts.REFUSED
-            raise NotWrittenError(pattern.format(what=error, expected=error.expected)) from None
+            raise NotWrittenError(
+                pattern.format(what=shown(error.what), expected=shown(error.expected))
+            ) from None
         if found.questions and self.asked != text:
             self.asked = text
             question = " ".join(question_text(item) for item in found.questions)
@@ -380,8 +383,8 @@ class Desk:
 def problem_text(error: SurveyError) -> str:
     """The first problem of an error in one line."""
     problem = error.problems[0]
-    what = f"{problem.what}: {problem.found}" if problem.found else problem.what
-    hint = problem.hint
+    what, hint = shown(problem.what), shown(problem.hint)
+    what = f"{what}: {shown(problem.found)}" if problem.found else what
     if not hint.startswith("surveyapp "):  # a command is written as it is typed
         hint = hint[:1].upper() + hint[1:]
     return texts.NOT_WRITTEN.format(what=what, hint=hint).strip()

@@ -9,6 +9,7 @@ from textual.app import App, SuspendNotSupported
 
 from surveyapp.errors import SurveyError
 from surveyapp.io.filing.lock import ProjectLock
+from surveyapp.languages import shown
 from surveyapp.observation.by_hand import Edited, begin_edit, editor_command, end_edit
 from surveyapp.tui import texts
 
@@ -48,5 +49,5 @@ def _told(edited: Edited, name: str) -> str:
 def first_problem(error: SurveyError) -> str:
     """The first problem of an error in one sentence."""
     problem = error.problems[0]
-    where = f"{problem.where}: " if problem.where else ""
-    return f"{where}{problem.what}. {problem.hint}".strip()
+    where = f"{shown(problem.where)}: " if problem.where else ""
+    return f"{where}{shown(problem.what)}. {shown(problem.hint)}".strip()

@@ -32,7 +32,8 @@ from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.io.programmes import append_entry, read_run, run_path
 from surveyapp.io.project import read_project
 from surveyapp.io.sensor_logs.reading import LogRequest, Need, read_log
-from surveyapp.io.sensor_logs.writing import write_columns
+from surveyapp.io.sensor_logs.writing import columns_text, write_columns
+from surveyapp.io.tomltext import atomic_write
 from surveyapp.io.writing import append_table
 
 _BAD_IN_ID: Final = "/\\:*?\"<>|'. "
@@ -199,8 +200,10 @@ def write_typed_log(folder: Path, state: ProgrammeState) -> str:
         if not lock.writable:
             what = "the project is closed, or written by somebody else"
             raise SurveyError(Problem(what, str(folder), "", "a project that may be written to"))
-        write_columns(folder / name, columns, inputs=())
-        if identity not in {entry.id for entry in read_project(folder).sensor_logs}:
+        if identity in {entry.id for entry in read_project(folder).sensor_logs}:
+            atomic_write(folder / name, columns_text(columns).encode())  # from the run, as before
+        else:
+            write_columns(folder / name, columns, inputs=())
             append_table(folder / "project.toml", "sensor_log", _entry(state, name))
     return identity
 

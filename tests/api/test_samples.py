@@ -154,3 +154,32 @@ def test_demo_lays_print_and_computation_side_by_side() -> None:
             limit = {"arcsec": 0.75, "div": 0.08}[row.unit]  # the source rounds to 1" and 0.1 div
             assert row.difference is not None
             assert abs(row.difference) < limit, row
+
+
+def test_the_sensors_of_the_demo_give_what_is_known_of_the_records() -> None:
+    """Figures of the records that others have worked out (levelling.md, rate.md of the contract).
+
+    BROAD 33: a magnet on at 42.4 and off at 98.6 s, the size of the field 8.5 to 1.1 uT with its
+    iron; half of IMU-TK: .0331 to .0008 m/s2 and the gyros' bias follows gravity.
+    """
+    found = {item.name: item for item in api.demo_sensors()}
+    compass = found["broad-attached-magnet"]
+    assert compass.named == "interference_step"
+    on, off_ = (float(word.split()[1]) for word in compass.words[0].split(","))
+    assert (on, off_) == pytest.approx((42.4, 98.6), abs=0.2)
+    held = compass.numbers[1]
+    assert held.before is not None
+    assert held.after is not None
+    assert held.after < 1.3 < 6.0 < held.before
+    unit = found["xsens-multi-position"]
+    assert unit.named == "g_sensitivity"
+    force, gyro = unit.numbers[0], unit.numbers[2]
+    assert force.before == pytest.approx(0.0331, rel=0.05)
+    assert force.after == pytest.approx(0.0008, abs=0.0002)
+    assert gyro.before is not None
+    assert gyro.after is not None
+    assert gyro.before > 2.8 * gyro.after
+    rest = found["mpu6050-static"].numbers[0]
+    assert rest.before is not None
+    assert rest.after is not None
+    assert rest.before > 30.0 * rest.after  # white noise over 40 s: a factor of 60

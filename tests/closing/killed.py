@@ -12,11 +12,13 @@ from typing import Any
 WATCHED = ("/surveyapp/io/", "/surveyapp/workflows/adopting")
 
 
-def _watched(name: str) -> bool:
-    return any(part in name for part in WATCHED)
-
-
-def run_killed(act: Callable[[], object], at: int, *, half_write: bool = False) -> int:
+def run_killed(
+    act: Callable[[], object],
+    at: int,
+    *,
+    half_write: bool = False,
+    watched: tuple[str, ...] = WATCHED,
+) -> int:
     """Run an act in a fork and kill it at the line number ``at`` of what is watched.
 
     Returns
@@ -28,7 +30,7 @@ def run_killed(act: Callable[[], object], at: int, *, half_write: bool = False) 
     child = os.fork()
     if child == 0:
         os.close(read_end)
-        _child(act, at, write_end, half_write=half_write)
+        _child(act, at, write_end, half_write=half_write, watched=watched)
     os.close(write_end)
     with os.fdopen(read_end) as stream:
         said = stream.read()
@@ -36,7 +38,9 @@ def run_killed(act: Callable[[], object], at: int, *, half_write: bool = False) 
     return int(said) if said else -1
 
 
-def _child(act: Callable[[], object], at: int, out: int, *, half_write: bool) -> None:
+def _child(
+    act: Callable[[], object], at: int, out: int, *, half_write: bool, watched: tuple[str, ...]
+) -> None:
     count = 0
     real_write = os.write
 
@@ -55,7 +59,8 @@ def _child(act: Callable[[], object], at: int, out: int, *, half_write: bool) ->
         return line
 
     def call(frame: FrameType, event: str, _: Any) -> Any:
-        return line if _watched(frame.f_code.co_filename) else None
+        name = frame.f_code.co_filename
+        return line if any(part in name for part in watched) else None
 
     os.write = write
     sys.settrace(call)

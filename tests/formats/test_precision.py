@@ -7,12 +7,17 @@ import random
 
 import pytest
 
-from surveyapp.core.fieldfile.precision import distance_precision, face_precision
+from surveyapp.core.fieldfile.precision import (
+    distance_precision,
+    face_precision,
+    zenith_precision,
+)
 from surveyapp.core.fieldfile.reduction import reduce_file
 from surveyapp.domain.fieldfile import Face, FieldFile, Pointing, ReducedSet
 
 READING = 1e-5
 LENGTH_M = 1e-3
+INDEX = 3e-5
 
 
 def simulated(seed: int, setups: int, rounds: int, targets: int) -> tuple[ReducedSet, ...]:
@@ -29,7 +34,8 @@ def simulated(seed: int, setups: int, rounds: int, targets: int) -> tuple[Reduce
                     side = 0.0 if face == "L" else math.pi
                     hz = (ray + turn + side + draw.gauss(0.0, READING)) % (2.0 * math.pi)
                     sd = 100.0 + j + draw.gauss(0.0, LENGTH_M)
-                    v = 1.5 if face == "L" else 2.0 * math.pi - 1.5
+                    v = (1.5 if face == "L" else 2.0 * math.pi - 1.5) + INDEX
+                    v += draw.gauss(0.0, READING)
                     name = f"S{setup}"
                     pointings.append(
                         Pointing(
@@ -50,13 +56,20 @@ def simulated(seed: int, setups: int, rounds: int, targets: int) -> tuple[Reduce
 
 
 def test_degrees_of_freedom_of_faces_and_sets() -> None:
-    """Directions: faces s r (t - 1), sets s (r - 1) (t - 1); distances: s r t and s (r - 1) t."""
+    """Of s set-ups, r rounds, t targets, from faces and between sets.
+
+    Directions s r (t - 1) and s (r - 1) (t - 1), zenith angles s r (t - 1) and s (r - 1) t,
+    distances s r t and s (r - 1) t.
+    """
     sets = simulated(1, setups=4, rounds=3, targets=2)
     directions, distances = face_precision(sets), distance_precision(sets)
     assert directions is not None
     assert distances is not None
     assert directions.dof == 4 * 3 * 1 + 4 * 2 * 1
     assert distances[1] == 4 * 3 * 2 + 4 * 2 * 2
+    zeniths = zenith_precision(sets)
+    assert zeniths is not None
+    assert zeniths[1] == 4 * 3 * 1 + 4 * 2 * 2
 
 
 @pytest.mark.parametrize("seed", [2, 3, 4])
@@ -64,10 +77,13 @@ def test_the_pool_is_the_sigma_of_a_mean_of_two_faces(seed: int) -> None:
     """Within the 99.9 % bounds of chi-square; a mean of both faces has sigma / root 2."""
     sets = simulated(seed, setups=200, rounds=3, targets=3)
     directions, distances = face_precision(sets), distance_precision(sets)
+    zeniths = zenith_precision(sets)
     assert directions is not None
     assert distances is not None
+    assert zeniths is not None
     for found, dof, true in (
         (directions.direction, directions.dof, READING),
         (distances[0], distances[1], LENGTH_M),
+        (zeniths[0], zeniths[1], READING),
     ):
         assert abs((found * math.sqrt(2.0) / true) ** 2 - 1.0) < 3.3 * math.sqrt(2.0 / dof)

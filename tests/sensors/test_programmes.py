@@ -212,3 +212,17 @@ def test_a_struck_reading_is_open_again() -> None:
     after = ProgrammeRun("r", run.programme, (*run.entries, struck))
     assert len(typed_rows(COMPASS_SWING, run)) == 1
     assert typed_rows(COMPASS_SWING, after) == []
+
+
+def test_the_example_of_the_page_prints_what_it_says(capsys: pytest.CaptureFixture[str]) -> None:
+    page = Path(__file__).resolve().parents[2] / "docs/how-to/follow-a-guided-programme.md"
+    block = page.read_text(encoding="utf-8").split("```python\n")[1].split("```")[0]
+    exec(compile(block, page.name, "exec"), {})
+    assert capsys.readouterr().out.strip() == block.rpartition("# ")[2].strip()
+
+
+def test_the_page_lists_every_programme() -> None:
+    page = Path(__file__).resolve().parents[2] / "docs/how-to/follow-a-guided-programme.md"
+    text = page.read_text(encoding="utf-8")
+    rows = [line for line in text.splitlines() if line.startswith("| `")]
+    assert [row.split("`")[1] for row in rows] == [programme.id for programme in PROGRAMMES]

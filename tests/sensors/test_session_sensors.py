@@ -108,3 +108,35 @@ def test_a_model_declination_never_passes_ten_minutes(tmp_path: Path) -> None:
 def test_a_magnetic_heading_alone_says_nothing_of_north(tmp_path: Path) -> None:
     checks = {c.rule: c for c in api.check(session(tmp_path / "a"))}
     assert checks["pre_orientation.tracking"].passed is None
+
+
+def test_the_rows_say_what_was_levelled_and_where_to_turn_the_alidade(tmp_path: Path) -> None:
+    from surveyapp.report.sections.session_sensors import blocks
+    from surveyapp.report.text import blocks_text
+    from surveyapp_models.angles import AngleUnit
+
+    stated = ", declination_deg = 0.5, sigma_deg = 0.4"
+    item = api.orient(session(tmp_path / "a", declination=stated)).sessions[0]
+    text = blocks_text(blocks(item, AngleUnit.DMS), 100)
+    assert '+12.00"' in text  # the tilt that the log was made with
+    assert '+30.00"' in text
+    assert '+10.92"' in text  # exact rotation, levelling.md
+    aimed = item.pre_orientation
+    assert aimed is not None
+    # magnetic heading 0.1, declination 0.5: the alidade is 36' east of north, circle 10 degrees
+    assert "+36.0'" in text
+    assert "-36.0'" in text
+    assert "9-24-00" in text
+    # .4 and .1 degrees: 24.7' (1 sigma), with 1.96 of them 84.5' and no method is served
+    assert "24.7'" in text
+    assert "not within 60' (tracking), not within 10' (transit)" in " ".join(text.split())
+
+
+def test_without_a_declination_nothing_is_said_of_north(tmp_path: Path) -> None:
+    from surveyapp.report.sections.session_sensors import pre_orientation_rows
+    from surveyapp_models.angles import AngleUnit
+
+    item = api.orient(session(tmp_path / "a")).sessions[0]
+    rows = pre_orientation_rows(item.pre_orientation, AngleUnit.DMS)
+    assert len(rows) == 2
+    assert rows[1][1] == "-"

@@ -255,6 +255,15 @@ def test_sensors(snap_compare: Snap, tmp_path: Path, page: str, size: tuple[int,
 
 
 @sizes
+@pytest.mark.parametrize("page", ["list", "begun"])
+def test_programme(snap_compare: Snap, tmp_path: Path, page: str, size: tuple[int, int]) -> None:
+    """The guided programmes, and the static test of a tilt sensor after its first reading."""
+    folder = sample(tmp_path, "mpu6050-static")
+    press = ("l", "3") if page == "list" else ("l", "3", *["enter"] * 4, "1", "7", "enter")
+    assert snap_compare(app_on(folder), terminal_size=size, run_before=keys(*press))
+
+
+@sizes
 def test_a_question_before_something_is_written(snap_compare: Snap, size: tuple[int, int]) -> None:
     async def ask(pilot: Pilot[int]) -> None:
         await keys()(pilot)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -85,3 +86,6 @@ async def test_enough_rings_at_the_rule_books_target(tmp_path: Path) -> None:
         shown = str(app.screen.query_one("#facts", Static).render())
     assert 'ENOUGH  ±4.5" after two more  rule book ±27.7"' in shown
     assert "Art. 62" in shown
+    told = re.findall(r'(next|else): .{10,30}: ±(\d+\.\d)", cause (\d+)%', shown)
+    assert [first for first, _, _ in told] == ["next", "else"]
+    assert all(0.0 < float(interval) < 27.7 for _, interval, _ in told)

@@ -15,6 +15,7 @@ from typing import Final
 
 from surveyapp.domain.readings import Reading, ReadingKind, Side
 from surveyapp.errors import Problem
+from surveyapp.languages import said
 from surveyapp_models.angles import wrap_pi
 
 TURNING_KINDS: Final = frozenset(
@@ -25,7 +26,7 @@ _SHORT_STEP: Final = 0.25
 lose three quarters of its width in one half swing, where 10 % is already a faulty gyro."""
 _WIDE_STEP: Final = 0.5
 """Two points of one side that differ by more than this share of the swing's width are on two."""
-_MISSED_HINT: Final = (
+_MISSED_HINT: Final = said(
     "a turning point that was not read is entered as a row of kind missed; a wrong one is struck"
 )
 
@@ -117,23 +118,29 @@ def sides_of_swing(
 
 
 def _place(where: str, row: Reading) -> str:
-    return f"{where}, line {row.line} (seq {row.seq})"
+    return said("{where}, line {line} (seq {seq})", where=where, line=row.line, seq=row.seq)
 
 
 def _label_problem(points: Sequence[Reading], where: str) -> Problem | None:
     labelled = [(i, p) for i, p in enumerate(points) if p.side is not None]
     for (i, before), (j, after) in pairwise(labelled):
         if (before.side is after.side) != ((j - i) % 2 == 0):
-            return _equal_sides(before, after, where, f"side {after.side} out of turn")
+            return _equal_sides(
+                before, after, where, said("side {side} out of turn", side=after.side)
+            )
     return None
 
 
 def _equal_sides(before: Reading, after: Reading, where: str, found: str) -> Problem:
     return Problem(
-        f"the turning points do not alternate: seq {before.seq} and {after.seq} are on one side",
+        said(
+            "the turning points do not alternate: seq {seq} and {seq2} are on one side",
+            seq=before.seq,
+            seq2=after.seq,
+        ),
         _place(where, after),
         found,
-        "left and right in turn",
+        said("left and right in turn"),
         _MISSED_HINT,
     )
 
@@ -150,7 +157,7 @@ def _step_problem(
             continue
         if first * second >= 0.0 or not _SHORT_STEP <= abs(second / first) <= 1.0 / _SHORT_STEP:
             k = i if abs(first) < abs(second) else j
-            found = f"{points[k].text} then {points[k + 1].text}"
+            found = said("{text} then {text2}", text=points[k].text, text2=points[k + 1].text)
             return _equal_sides(points[k], points[k + 1], where, found)
     return _gap_problem(points, values, where)
 
@@ -166,17 +173,21 @@ def _gap_problem(
     for i, j, step in steps:
         if (j - i) % 2 == 0 and abs(step) > _WIDE_STEP * width:
             return Problem(
-                f"seq {points[i].seq} and {points[j].seq} lie on different sides, but the count"
-                " of missed points between them puts them on one",
+                said(
+                    "seq {seq} and {seq2} lie on different sides, but the count of missed "
+                    "points between them puts them on one",
+                    seq=points[i].seq,
+                    seq2=points[j].seq,
+                ),
                 _place(where, points[j]),
-                f"{points[i].text} then {points[j].text}",
-                "left and right in turn",
+                said("{text} then {text2}", text=points[i].text, text2=points[j].text),
+                said("left and right in turn"),
                 _MISSED_HINT,
             )
     expected = across[0][2] * (-1) ** across[0][0] if across else 0.0
     for i, j, step in across:
         if step * (-1) ** i * expected < 0.0:
-            found = f"{points[i].text} then {points[j].text}"
+            found = said("{text} then {text2}", text=points[i].text, text2=points[j].text)
             return _equal_sides(points[i], points[j], where, found)
     return None
 
@@ -210,10 +221,10 @@ def _polarity_problem(
             polarity = rise
         if rise * polarity < 0.0:
             return Problem(
-                "the side contradicts the readings",
+                said("the side contradicts the readings"),
                 _place(where, points[j]),
-                f"{points[i].text} then {points[j].text}",
-                "R is the larger reading" if circle else "one polarity throughout",
-                "exchange the sides, or strike the reading and enter it anew",
+                said("{text} then {text2}", text=points[i].text, text2=points[j].text),
+                said("R is the larger reading") if circle else said("one polarity throughout"),
+                said("exchange the sides, or strike the reading and enter it anew"),
             )
     return None

@@ -14,6 +14,7 @@ from typing import Final
 from surveyapp.core.book.sides import TURNING_KINDS, agreement
 from surveyapp.domain.readings import SWING_KINDS, Reading, ReadingKind
 from surveyapp.errors import Problem
+from surveyapp.languages import said
 
 _PLACED: Final = frozenset({ReadingKind.BACKSIGHT, ReadingKind.ZENITH, ReadingKind.TAPE_ZERO})
 _WINDOW: Final = 60
@@ -45,17 +46,21 @@ def find_strikes(rows: Sequence[Reading], where: str) -> tuple[list[Struck], lis
         back = row.kind is ReadingKind.UNSTRIKE
         what = ""
         if struck is None or struck >= index:
-            what = "a strike names a row that does not stand above it"
+            what = said("a strike names a row that does not stand above it")
         elif rows[struck].kind in _STRIKING:
-            what = "a strike cannot be struck; an unstrike with the seq of the struck row ends it"
+            what = said(
+                "a strike cannot be struck; an unstrike with the seq of the struck row ends it"
+            )
         elif back and struck not in found:
-            what = "the row is not struck: there is no strike to take back"
+            what = said("the row is not struck: there is no strike to take back")
         elif struck in found and not back:
-            what = "the row is struck already"
+            what = said("the row is struck already")
         if struck is None or what:
-            place = f"{where}, line {row.line} (seq {row.seq})"
-            counts = "is struck" if back else "still counts"
-            expected = f"the seq of an earlier row that {counts}"
+            place = said(
+                "{where}, line {line} (seq {seq})", where=where, line=row.line, seq=row.seq
+            )
+            counts = said("is struck") if back else said("still counts")
+            expected = said("the seq of an earlier row that {counts}", counts=counts)
             problems.append(Problem(what, place, row.text, expected))
         elif back:
             del found[struck]

@@ -18,12 +18,13 @@ from surveyapp.domain.instrument import AdoptedEffect, Instrument
 from surveyapp.domain.project import OrientationSession, Project, ResultWarning
 from surveyapp.domain.subject import Subject
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import listed, said
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Coefficient, Effect, SubjectId
 
 CONTRADICTION = 0.01
 """Relative difference at which a stated sigma is not that of the covariance."""
-HINT = "Restore the table from the ledger, or take it out, diagnose again and adopt."
+HINT = said("Restore the table from the ledger, or take it out, diagnose again and adopt.")
 
 
 def check_adopted(project: Project) -> list[ResultWarning]:
@@ -43,10 +44,12 @@ def check_adopted(project: Project) -> list[ResultWarning]:
     problems: list[Problem] = []
     warnings: list[ResultWarning] = []
     for instrument in project.instruments:
-        where = f"instrument {instrument.id}"
+        where = said("instrument {id}", id=instrument.id)
         problems += _problems(instrument.effects, "campaign", where)
     for session in project.sessions:
-        problems += _problems(session.effects, "reversal_run", f"orientation {session.id}")
+        problems += _problems(
+            session.effects, "reversal_run", said("orientation {id}", id=session.id)
+        )
     if problems:
         raise SurveyError(problems)
     for instrument in project.instruments:
@@ -68,7 +71,7 @@ def _problems(effects: Sequence[AdoptedEffect], subject: SubjectId, owner: str) 
     found: list[Problem] = []
     seen: Counter[tuple[object, ...]] = Counter()
     for adopted in effects:
-        where = f"project.toml, {owner}, adopted effect {adopted.id}"
+        where = said("project.toml, {owner}, adopted effect {id}", owner=owner, id=adopted.id)
         effect = catalogue.get(adopted.id)
         if effect is None:
             hint = nearest_names(adopted.id, catalogue)
@@ -78,7 +81,7 @@ def _problems(effects: Sequence[AdoptedEffect], subject: SubjectId, owner: str) 
             continue
         seen[identity_of(adopted, effect)] += 1
         if seen[identity_of(adopted, effect)] == 2:
-            text = "an effect is adopted twice"
+            text = said("an effect is adopted twice")
             found.append(Problem(text, where, "two tables", "one table", "Take one of them out."))
         found += _grid_problems(adopted, effect, where)
         found += _coefficient_problems(adopted, effect, where)
@@ -135,7 +138,7 @@ def _coefficient_problems(adopted: AdoptedEffect, effect: Effect, where: str) ->
     expected = numbered([c.name for c in effect.coefficients], count)
     names = [name for name, _, _, _ in adopted.coefficients]
     if names != expected:
-        what = "the coefficients of an adopted effect do not fit it"
+        what = said("the coefficients of an adopted effect do not fit it")
         return [Problem(what, where, ", ".join(names) or "none", ", ".join(expected), HINT)]
     found = []
     for (name, value, sigma, unit), known in zip(
@@ -151,7 +154,7 @@ def _value_problems(
     value, sigma, unit = given
     found = []
     if unit != known.unit:
-        what = "the unit of an adopted coefficient is not that of its effect"
+        what = said("the unit of an adopted coefficient is not that of its effect")
         found.append(Problem(what, where, unit or "no unit", known.unit, HINT))
     elif not known.low <= value <= known.high:
         found.append(
@@ -164,7 +167,7 @@ def _value_problems(
             )
         )
     if not sigma > 0.0:
-        what = "an adopted coefficient has no sigma"
+        what = said("an adopted coefficient has no sigma")
         found.append(Problem(what, where, f"{sigma:g}", "more than 0", HINT))
     return found
 
@@ -176,16 +179,16 @@ def _covariance_problems(adopted: AdoptedEffect, where: str) -> list[Problem]:
     largest = float(np.abs(matrix).max())
     what = ""
     if float(np.abs(matrix - matrix.T).max()) > 1e-9 * largest:
-        what = "the covariance of an adopted effect is not symmetric"
+        what = said("the covariance of an adopted effect is not symmetric")
     elif float(np.diag(matrix).min()) <= 0.0 or np.linalg.eigvalsh(matrix)[0] < -1e-9 * largest:
-        what = "the covariance of an adopted effect is not positive"
+        what = said("the covariance of an adopted effect is not positive")
     else:
         sigmas = np.array([sigma for _, _, sigma, _ in adopted.coefficients])
         apart = np.abs(np.sqrt(np.diag(matrix)) - sigmas)
         if bool(np.any(apart > CONTRADICTION * sigmas)):
-            what = "sigma and covariance of an adopted effect contradict each other"
+            what = said("sigma and covariance of an adopted effect contradict each other")
     found = str([list(row) for row in adopted.covariance])
-    expected = "a symmetric matrix, squares of the sigmas on its diagonal"
+    expected = said("a symmetric matrix, squares of the sigmas on its diagonal")
     return [Problem(what, where, found, expected, HINT)] if what else []
 
 
@@ -200,7 +203,7 @@ def _column_problems(adopted: AdoptedEffect, effect: Effect, where: str) -> list
     given = [name for name, _ in adopted.reference]
     expected = needs if effect.reference is not None else []
     if given and sorted(given) != sorted(expected):
-        what = "the reference of an adopted effect does not fit it"
+        what = said("the reference of an adopted effect does not fit it")
         told = ", ".join(expected) or "none"
         found.append(Problem(what, where, ", ".join(given), told, HINT))
     return found
@@ -211,28 +214,33 @@ def _told(project: Project, instrument: Instrument) -> list[ResultWarning]:
     found: list[ResultWarning] = []
     reference: dict[str, float] = {}
     for adopted in instrument.effects:
-        name = f"instrument {instrument.id}: the adopted effect {adopted.id}"
+        name = said("instrument {id}: the adopted effect {id2}", id=instrument.id, id2=adopted.id)
         unknown = unknown_ranges(adopted)
         if unknown:
-            text = (
-                f"{name} has no valid range of {' and '.join(unknown)}: nothing is corrected, and "
-                "the whole effect enters the sigma"
+            text = said(
+                "{name} has no valid range of {unknown}: nothing is corrected, and the "
+                "whole effect enters the sigma",
+                name=name,
+                unknown=listed(unknown),
             )
             found.append(ResultWarning("effect_range_unknown", text))
         if without_reference(adopted):
-            text = (
-                f"{name} has no reference: its correction is relative to the mean of the sessions "
-                "that are in the project, and a stated constant means no certain state; take it "
-                "out, diagnose again and adopt"
+            text = said(
+                "{name} has no reference: its correction is relative to the mean of the "
+                "sessions that are in the project, and a stated constant means no certain "
+                "state; take it out, diagnose again and adopt",
+                name=name,
             )
             found.append(ResultWarning("adopted_without_reference", text))
         reference |= dict(adopted.reference)
         found += _changed(project, adopted, None)
     if instrument.known_constant is not None and reference:
         states = ", ".join(f"{name} {value:.6g}" for name, value in reference.items())
-        text = (
-            f"instrument {instrument.id}: the stated constant counts for {states}, to which its "
-            "adopted effects reduce every azimuth"
+        text = said(
+            "instrument {id}: the stated constant counts for {states}, to which its "
+            "adopted effects reduce every azimuth",
+            id=instrument.id,
+            states=states,
         )
         found.append(ResultWarning("known_constant_at_reference", text))
     return [item.about(Subject.of("instrument", instrument.id)) for item in found]
@@ -246,19 +254,26 @@ def _changed(
     gone = [name for name in adopted.sessions if name not in here]
     if not adopted.sessions or len(gone) == len(adopted.sessions):
         return []
-    why = "have been changed since"
+    why = said("have been changed since")
     if gone:
         count = len(adopted.sessions)
-        why = f"are no longer complete: {len(gone)} of {count} sessions are missing"
+        why = said(
+            "are no longer complete: {gone} of {count} sessions are missing",
+            gone=len(gone),
+            count=count,
+        )
     elif adopted.data_sha256 in (
         "",
         sessions_digest(project, adopted.sessions, run=session is not None),
     ):
         return []
-    owner = "" if session is None else f"session {session.id}: "
-    text = (
-        f"{owner}the data that chose the adopted effect {adopted.id} {why}: diagnose again without "
-        "it, and adopt anew"
+    owner = "" if session is None else said("session {id}: ", id=session.id)
+    text = said(
+        "{owner}the data that chose the adopted effect {id} {why}: diagnose again "
+        "without it, and adopt anew",
+        owner=owner,
+        id=adopted.id,
+        why=why,
     )
     subject = None if session is None else Subject.session(session.id)
     return [ResultWarning("adopted_data_changed", text, subject)]

@@ -18,6 +18,7 @@ from surveyapp.domain.project import OrientationSession, Project, ResultWarning,
 from surveyapp.domain.results import LineResult
 from surveyapp.domain.subject import Subject
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, wrap_pi
 
 MAX_COLLIMATION: Final = math.radians(0.2)
@@ -150,9 +151,11 @@ def place_warnings(lines: Sequence[LineGeometry], grid: Grid | None) -> list[Res
     for line in lines:
         name = f"{line.start.name}-{line.end.name}"
         if line.distance_m is not None and line.distance_m > LONGEST_LINE_M:
-            text = (
-                f"line {name} is {line.distance_m / 1000.0:.0f} km long by its coordinates: "
-                "are they in the right order, and in this grid?"
+            text = said(
+                "line {name} is {distance_m:.0f} km long by its coordinates: are they in "
+                "the right order, and in this grid?",
+                name=name,
+                distance_m=line.distance_m / 1000.0,
             )
             side = Subject.side(line.start.name, line.end.name)
             warnings.append(ResultWarning("line_long", text, side))
@@ -160,10 +163,14 @@ def place_warnings(lines: Sequence[LineGeometry], grid: Grid | None) -> list[Res
         if grid is None or at.latitude is None or at.longitude is None:
             continue
         if grid.is_beside(latitude=at.latitude, longitude=at.longitude):
-            text = (
-                f"station {line.start.name} (latitude {math.degrees(at.latitude):.2f}, longitude "
-                f"{math.degrees(at.longitude):.2f}) lies beside the area of {grid.name}: are the "
-                "coordinates in the right order, and is it the right crs?"
+            text = said(
+                "station {name} (latitude {latitude:.2f}, longitude {longitude:.2f}) lies "
+                "beside the area of {name2}: are the coordinates in the right order, and "
+                "is it the right crs?",
+                name=line.start.name,
+                latitude=math.degrees(at.latitude),
+                longitude=math.degrees(at.longitude),
+                name2=grid.name,
             )
             subject = Subject.of("station", line.start.name)
             warnings.append(ResultWarning("outside_grid", text, subject))
@@ -172,20 +179,24 @@ def place_warnings(lines: Sequence[LineGeometry], grid: Grid | None) -> list[Res
 
 def azimuth_warnings(line: LineResult) -> list[ResultWarning]:
     """Warn of a constant of degrees, and of an azimuth degrees away from the coordinates."""
-    name = f"line {line.station}-{line.target}"
+    name = said("line {station}-{target}", station=line.station, target=line.target)
     warnings = []
     if line.constant is not None and abs(line.constant) > LARGEST_CONSTANT:
-        text = (
-            f"{name}: the instrument constant is {math.degrees(line.constant):+.4f} degrees: is "
-            "the known azimuth right, and were sight and target the right ones?"
+        text = said(
+            "{name}: the instrument constant is {constant:+.4f} degrees: is the known "
+            "azimuth right, and were sight and target the right ones?",
+            name=name,
+            constant=math.degrees(line.constant),
         )
         warnings.append(ResultWarning("constant_large", text, line.subject))
     if line.grid_azimuth is not None and line.existing_azimuth is not None:
         apart = wrap_pi(line.grid_azimuth.value - line.existing_azimuth)
         if abs(apart) > LARGEST_CONSTANT:
-            text = (
-                f"{name}: the grid azimuth lies {math.degrees(apart):+.4f} degrees off the "
-                "coordinates: was this the target, and are the coordinates in the right order?"
+            text = said(
+                "{name}: the grid azimuth lies {apart:+.4f} degrees off the coordinates: "
+                "was this the target, and are the coordinates in the right order?",
+                name=name,
+                apart=math.degrees(apart),
             )
             warnings.append(ResultWarning("far_from_coordinates", text, line.subject))
     return warnings

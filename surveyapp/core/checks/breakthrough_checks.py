@@ -17,6 +17,7 @@ from surveyapp.domain.penetration import StatedTolerance
 from surveyapp.domain.results import Check
 from surveyapp.domain.shaft_result import ShaftOrientation
 from surveyapp.domain.subject import Subject
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, wrap_pi
 
 COMPONENTS = ("lateral", "longitudinal", "vertical")
@@ -37,14 +38,14 @@ def breakthrough_checks(evidence: BreakthroughEvidence | None) -> list[Check]:
             checks.append(
                 Check(
                     rule=f"penetration.{name}",
-                    clause=stated.source or "tolerance of the project",
+                    clause=stated.source or said("tolerance of the project"),
                     value=value,
                     limit=limit,
                     confirmed=True,
                     passed=None if value is None else value <= limit * (1.0 + _ROUNDING),
                     unit="m",
                     where=MEETING.text,
-                    text=f"{name} error at the meeting point: {text}"
+                    text=said("{name} error at the meeting point: {text}", name=name, text=text)
                     if value is not None
                     else text,
                     subject=MEETING,
@@ -65,8 +66,13 @@ def breakthrough_measures(evidence: BreakthroughEvidence | None) -> list[Measure
             continue
         errors = _errors(evidence, name)
         if own is not None:
-            source = stated.source or "its own"
-            text = f"the project allows {own:g} m ({source}): penetration.{name}"
+            source = stated.source or said("its own")
+            text = said(
+                "the project allows {own:g} m ({source}): penetration.{name}",
+                own=own,
+                source=source,
+                name=name,
+            )
             errors = [(None, text)]
         found += [
             Measured(name, value, MEETING.text, text, variables, tunnel, subject=MEETING)
@@ -78,7 +84,7 @@ def breakthrough_measures(evidence: BreakthroughEvidence | None) -> list[Measure
                 "penetration_factor",
                 evidence.plan.factor,
                 MEETING.text,
-                "the project's own",
+                said("the project's own"),
                 variables,
                 tunnel,
                 subject=MEETING,
@@ -98,7 +104,12 @@ def _errors(evidence: BreakthroughEvidence, name: str) -> list[tuple[float | Non
     i = COMPONENTS.index(name)
     sigma = None if prediction is None else prediction.sigma.components()[i]
     if prediction is not None and sigma is not None:
-        found.append((prediction.factor * sigma, f"predicted, {prediction.factor:g} x sigma"))
+        found.append(
+            (
+                prediction.factor * sigma,
+                said("predicted, {factor:g} x sigma", factor=prediction.factor),
+            )
+        )
     measured = None
     if miss is not None:
         measured = (miss.lateral_m, miss.longitudinal_m, miss.vertical_m)[i]
@@ -106,8 +117,8 @@ def _errors(evidence: BreakthroughEvidence, name: str) -> list[tuple[float | Non
         found.append((abs(measured), "measured"))
     if found:
         return found
-    why = evidence.refused or f"nothing from which to predict the {name} error"
-    return [(None, f"missing: a prediction ({why})")]
+    why = evidence.refused or said("nothing from which to predict the {name} error", name=name)
+    return [(None, said("missing: a prediction ({why})", why=why))]
 
 
 def shaft_measures(evidence: ShaftEvidence | None) -> list[Measured]:
@@ -129,7 +140,7 @@ def _of_one(shaft: ShaftOrientation) -> list[Measured]:
             f"wire_distance_{item.place}",
             abs(item.f_mm) / 1000.0,
             f"{shaft.id}, {item.station}",
-            "connecting triangle",
+            said("connecting triangle"),
             subject=subject,
         )
         for item in shaft.triangles
@@ -137,7 +148,7 @@ def _of_one(shaft: ShaftOrientation) -> list[Measured]:
     depth = shaft.depth
     if depth.difference_mm is not None:
         variables = {"L": depth.m / 1000.0}
-        text = f"depth {depth.m:.3f} m"
+        text = said("depth {m:.3f} m", m=depth.m)
         difference = depth.difference_mm / 1000.0
         found.append(
             Measured("height_transfer", difference, shaft.id, text, variables, subject=subject)
@@ -150,7 +161,7 @@ def _of_one(shaft: ShaftOrientation) -> list[Measured]:
             "plumbed_point",
             point.sigma_m,
             f"{shaft.id}, {point.station}",
-            "east and north together",
+            said("east and north together"),
             subject=subject,
         )
         for point in shaft.points
@@ -160,7 +171,7 @@ def _of_one(shaft: ShaftOrientation) -> list[Measured]:
 
 def _refused(name: str, why: str) -> list[Measured]:
     """A shaft that could not be oriented answers nothing and says why."""
-    text = f"missing: the orientation through the shaft ({why})"
+    text = said("missing: the orientation through the shaft ({why})", why=why)
     names = ("plumbed_direction", "plumbed_point", "height_transfer")
     triangles = ("wire_distance_surface", "wire_distance_underground")
     subject = Subject.of("shaft", name)

@@ -21,6 +21,7 @@ from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.project import OrientationSession, Station, grid_bearing
 from surveyapp.domain.results import Check
 from surveyapp.domain.subject import Subject
+from surveyapp.languages import said
 from surveyapp_models.angles import RHO_ARCSEC, wrap_pi
 
 PLAN_SIGMA_M: Final = 0.1
@@ -29,7 +30,7 @@ ANOTHER_LINE: Final = math.radians(5.0)
 ANOTHER_LINE_M: Final = 20.0
 """An azimuth that misses its target by both is not that of the line in the plan. Bounds of reason:
 the width of a crosscut, seen from a sight of 200 m."""
-_CLAUSE: Final = "difference against its own sigma, level shared over the project"
+_CLAUSE: Final = said("difference against its own sigma, level shared over the project")
 
 
 def coordinate_checks(orientation: Orientation) -> list[Check]:
@@ -58,7 +59,7 @@ def _judged(pair: Pair, level: float) -> Check:
         passed=value <= limit if usable else None,
         unit="arcsec",
         where=subject.text,
-        text=f'{text}: {wrap_pi(difference.value) * RHO_ARCSEC:+.1f}"',
+        text=text + f': {wrap_pi(difference.value) * RHO_ARCSEC:+.1f}"',
         subject=subject,
     )
 
@@ -75,7 +76,7 @@ def _line_pairs(orientation: Orientation) -> list[Pair]:
             error = _plan_error(orientation, geometry)
             difference = line.grid - Uncertain(bearing, error.parts)
             fixed = geometry.start.fixed and geometry.end.fixed
-            text = "grid azimuth minus that of the coordinates"
+            text = said("grid azimuth minus that of the coordinates")
             sure = fixed or _another_line(difference, geometry.distance_m)
             pairs.append(("coordinates.line", result.subject, difference, sure, text))
         pairs += _stated_pairs(orientation, line, geometry)
@@ -102,7 +103,7 @@ def _stated_pairs(
             continue
         error = known_error(orientation.project, session, geometry).error
         difference = line.grid - Uncertain(session.azimuth_known, error.parts)
-        text = f"grid azimuth minus the known azimuth of session {name}"
+        text = said("grid azimuth minus the known azimuth of session {name}", name=name)
         pairs.append(("known_azimuth.line", line.result.subject, difference, True, text))
     return pairs
 
@@ -125,7 +126,7 @@ def _known_pairs(orientation: Orientation) -> list[Pair]:
         difference = Uncertain(session.azimuth_known, stated.parts) - Uncertain(
             bearing, coordinates.parts
         )
-        text = "known azimuth minus that of the coordinates"
+        text = said("known azimuth minus that of the coordinates")
         subject = Subject.session(session.id)
         fixed = start.fixed and end.fixed
         pairs.append(("coordinates.known_azimuth", subject, difference, fixed, text))

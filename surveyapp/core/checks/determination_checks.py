@@ -20,6 +20,7 @@ from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.results import Check
 from surveyapp.domain.station_line import StationLine
 from surveyapp.domain.subject import Subject
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, wrap_pi
 
 SAME_AZIMUTH: Final = 1.0 * ARCSEC
@@ -40,7 +41,7 @@ def _agreement(orientation: Orientation) -> list[Check]:
     repeated = {key: items for key, items in groups.items() if len(items) > 1}
     checks = []
     for (instrument, line, _), items in repeated.items():
-        values = [item.value.without("run-to-run scatter") for item in items]
+        values = [item.value.without(said("run-to-run scatter")) for item in items]
         test = consistency([values])
         if test is None:
             continue
@@ -48,15 +49,21 @@ def _agreement(orientation: Orientation) -> list[Check]:
         checks.append(
             Check(
                 rule="constant.determinations",
-                clause="scatter against their own sigmas, level shared over the project",
+                clause=said("scatter against their own sigmas, level shared over the project"),
                 value=test.statistic,
                 limit=None,
                 confirmed=True,
                 passed=test.probability >= level_of_one(len(repeated)),
                 where=f"{instrument} on {line}",
                 text=(
-                    f"{len(items)} determinations of the constant on {line}, scatter against "
-                    f"their own sigmas (p = {test.probability:.3g}); furthest off: {worst}"
+                    said(
+                        "{items} determinations of the constant on {line}, scatter against their "
+                        "own sigmas (p = {probability:.3g}); furthest off: {worst}",
+                        items=len(items),
+                        line=line,
+                        probability=test.probability,
+                        worst=worst,
+                    )
                 ),
                 subject=Subject.of("instrument", instrument),
             )
@@ -68,11 +75,18 @@ def _furthest(items: Sequence[Calibration], values: Sequence[Uncertain]) -> str:
     """Session whose constant lies furthest from the median; of two, both."""
     if len(items) == 2:
         apart = wrap_pi(values[0].value - values[1].value) * RHO_ARCSEC
-        return f'{items[0].session} and {items[1].session}, {abs(apart):.1f}" apart'
+        return said(
+            '{session} and {session2}, {apart:.1f}" apart',
+            session=items[0].session,
+            session2=items[1].session,
+            apart=abs(apart),
+        )
     middle = sorted(value.value for value in values)[len(values) // 2]
     worst = max(range(len(items)), key=lambda i: abs(wrap_pi(values[i].value - middle)))
     apart = wrap_pi(values[worst].value - middle) * RHO_ARCSEC
-    return f'{items[worst].session}, {apart:+.1f}" from the median'
+    return said(
+        '{session}, {apart:+.1f}" from the median', session=items[worst].session, apart=apart
+    )
 
 
 def _same_azimuth(orientation: Orientation) -> list[Check]:
@@ -101,14 +115,16 @@ def _same_azimuth(orientation: Orientation) -> list[Check]:
         checks.append(
             Check(
                 rule="known_azimuth.same_line",
-                clause="a line has one azimuth",
+                clause=said("a line has one azimuth"),
                 value=apart * RHO_ARCSEC,
                 limit=limit * RHO_ARCSEC,
                 confirmed=True,
                 passed=apart <= limit,
                 unit="arcsec",
                 where=subject.text,
-                text=f"known azimuths stated in sessions {first.id} and {other.id}",
+                text=said(
+                    "known azimuths stated in sessions {id} and {id2}", id=first.id, id2=other.id
+                ),
                 subject=subject,
             )
         )

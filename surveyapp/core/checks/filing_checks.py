@@ -8,9 +8,10 @@ from typing import Final
 from surveyapp.domain.closing import Closing, Filing
 from surveyapp.domain.results import Check
 from surveyapp.domain.subject import Subject
+from surveyapp.languages import said
 
 LEDGER: Final = "ledger.jsonl"
-_CLAUSE: Final = "closing of the project"
+_CLAUSE: Final = said("closing of the project")
 _SHOWN: Final = 5
 """More changes are counted and not listed."""
 
@@ -23,10 +24,10 @@ def filing_checks(filing: Filing) -> tuple[Check, ...]:
     ledger = Subject.of("ledger", LEDGER)
     checks = []
     if filing.faults or filing.closed_once:
-        good = f"{filing.entries} entries, the chain is whole"
+        good = said("{entries} entries, the chain is whole", entries=filing.entries)
         checks.append(_check("ledger.chain", filing.faults, ledger, good=good))
     if filing.unfinished_tail:
-        text = "the last line of the ledger was never finished and does not count"
+        text = said("the last line of the ledger was never finished and does not count")
         checks.append(_check("ledger.tail", [text], ledger, confirmed=False))
     checks += [
         _check(
@@ -34,7 +35,7 @@ def filing_checks(filing: Filing) -> tuple[Check, ...]:
             closing.changed,
             _subject(closing),
             where=closing.session or "project",
-            good=f"as closed at {closing.at}",
+            good=said("as closed at {at}", at=closing.at),
         )
         for closing in filing.closings
     ]
@@ -55,6 +56,24 @@ def seal_check(head: str, found: Sequence[str], good: str) -> Check:
     return _check("closing.seal", found, Subject.of("ledger", LEDGER), where=head, good=good)
 
 
+def signature_check(rule: str, where: str, found: Sequence[str], key: str) -> Check:
+    """Whether a closing or a file is signed by a key.
+
+    Parameters
+    ----------
+    rule : str
+        ``closing.signature`` or ``record.signature``.
+    where : str
+        The session, ``project``, or the name of the file.
+    found : sequence of str
+        Why it is not; empty where it is.
+    key : str
+        Number of the public key.
+    """
+    good = said("signed by the key {key}", key=key)
+    return _check(rule, found, Subject.of("ledger", LEDGER), where=where, good=good)
+
+
 def _subject(closing: Closing) -> Subject:
     return Subject.session(closing.session) if closing.session else Subject.project()
 
@@ -68,7 +87,7 @@ def _check(
     good: str = "",
     confirmed: bool = True,
 ) -> Check:
-    more = f" and {len(found) - _SHOWN} more" if len(found) > _SHOWN else ""
+    more = said(" and {number} more", number=len(found) - _SHOWN) if len(found) > _SHOWN else ""
     return Check(
         rule=rule,
         clause=_CLAUSE,

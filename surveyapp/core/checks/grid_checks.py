@@ -17,6 +17,7 @@ from surveyapp.domain.project import Project
 from surveyapp.domain.results import Check
 from surveyapp.domain.subject import Subject
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import joined, said
 
 SCALE_MARGIN: Final = 0.1
 """UTM has 0.9996 to 1.001, six degrees off the axis 1.005; a foot is 0.3 of a metre."""
@@ -27,10 +28,10 @@ MOST_ARC_TO_CHORD_ARCMIN: Final = 1.0
 MOST_DISTORTION_ARCMIN: Final = 1.0
 """Of an angle, by a grid that is not conformal: beyond, a convergence says nothing."""
 
-_CLAUSE: Final = "no survey is computed so: unit, order of the coordinates, or crs"
-_QUESTION: Final = (
-    "are the coordinates metres (whatever the unit of the grid), east and north not exchanged, "
-    "and is it the right crs?"
+_CLAUSE: Final = said("no survey is computed so: unit, order of the coordinates, or crs")
+_QUESTION: Final = said(
+    "are the coordinates metres (whatever the unit of the grid), east and "
+    "north not exchanged, and is it the right crs?"
 )
 
 
@@ -101,20 +102,22 @@ def _place_checks(grid: Grid, positions: dict[str, Position]) -> list[Check]:
             Subject.of("station", scaled.station),
             abs(scale - 1.0),
             SCALE_MARGIN,
-            f"scale factor {scale:.6f}",
+            said("scale factor {scale:.6f}", scale=scale),
         ),
         _check(
             "angles",
             Subject.of("station", bent.station),
             angle,
             MOST_DISTORTION_ARCMIN,
-            f"the grid changes angles by up to {angle:.3f}'",
+            said("the grid changes angles by up to {angle:.3f}'", angle=angle),
             unit="arcmin",
         ),
     ]
     if grid.transverse_mercator:
         degrees = math.degrees(turned.local.convergence)
-        text = f"convergence of the transverse Mercator {degrees:+.4f} degrees"
+        text = said(
+            "convergence of the transverse Mercator {degrees:+.4f} degrees", degrees=degrees
+        )
         limit = MOST_CONVERGENCE_DEG
         subject = Subject.of("station", turned.station)
         checks.append(_check("convergence", subject, abs(degrees), limit, text, unit="deg"))
@@ -131,7 +134,7 @@ def _chord_check(orientation: Orientation) -> list[Check]:
         return []
     side, chord = max(known, key=lambda item: abs(item[1]))
     minutes = math.degrees(chord) * 60.0
-    text = f"arc-to-chord of the side {minutes:+.4f}'"
+    text = said("arc-to-chord of the side {minutes:+.4f}'", minutes=minutes)
     limit = MOST_ARC_TO_CHORD_ARCMIN
     return [_check("arc_to_chord", side, abs(minutes), limit, text, unit="arcmin")]
 
@@ -149,6 +152,6 @@ def _check(
         passed=passed,
         unit=unit,
         where=subject.text,
-        text=text if passed else f"{text}: {_QUESTION}",
+        text=text if passed else joined(": ", (text, _QUESTION)),
         subject=subject,
     )

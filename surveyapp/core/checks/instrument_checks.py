@@ -23,6 +23,7 @@ from surveyapp.core.swing.tape_zero import mean_level
 from surveyapp.domain.readings import Place, Reading, ReadingKind
 from surveyapp.domain.results import Check
 from surveyapp.domain.subject import Subject
+from surveyapp.languages import said
 from surveyapp_models.angles import RHO_ARCSEC, wrap_pi
 from surveyapp_models.gyro.coefficients import torsion_ratio_from_clampings
 from surveyapp_models.gyro.estimates import Estimate
@@ -70,13 +71,17 @@ def _period_check(orientation: Orientation, item: ReducedSession) -> list[Check]
     difference = reduction.period_s - expected
     limit = _period_limit(item, predicted, expected)
     spin = SPIN_PER_PERIOD * difference / expected if tracked else None
-    text = f"period {reduction.period_s:.2f} s, card at this latitude {expected:.2f} s"
+    text = said(
+        "period {period_s:.2f} s, card at this latitude {expected:.2f} s",
+        period_s=reduction.period_s,
+        expected=expected,
+    )
     if spin is not None:
-        text += f"; as a change of spin {100.0 * spin:+.2f} %"
+        text += said("; as a change of spin {spin:+.2f} %", spin=100.0 * spin)
     return [
         Check(
             rule="period.tracking" if tracked else "period.clamped",
-            clause="physics of the swing, 1 %",
+            clause=said("physics of the swing, 1 %"),
             value=abs(difference),
             limit=limit,
             confirmed=False,
@@ -154,14 +159,19 @@ def _supply_checks(item: ReducedSession) -> list[Check]:
         checks.append(
             Check(
                 rule="supply.steady",
-                clause="spin motor supply within one session",
+                clause=said("spin motor supply within one session"),
                 value=percent,
                 limit=SUPPLY_LIMIT_PERCENT,
                 confirmed=False,
                 passed=percent <= SUPPLY_LIMIT_PERCENT,
                 unit="%",
                 where=item.session.id,
-                text=f"supply between {min(values):g} and {max(values):g} {unit}",
+                text=said(
+                    "supply between {values:g} and {values2:g} {unit}",
+                    values=min(values),
+                    values2=max(values),
+                    unit=unit,
+                ),
                 subject=Subject.session(item.session.id),
             )
         )
@@ -191,7 +201,7 @@ def _tilt_check(orientation: Orientation, item: ReducedSession) -> list[Check]:
     return [
         Check(
             rule="tape_zero.tilt",
-            clause=f"card {card.id}, div_per_arcsec_tilt",
+            clause=said("card {id}, div_per_arcsec_tilt", id=card.id),
             value=abs(rest),
             limit=limit if sigma > 0.0 else None,
             confirmed=False,
@@ -199,8 +209,13 @@ def _tilt_check(orientation: Orientation, item: ReducedSession) -> list[Check]:
             unit="div",
             where=item.session.id,
             text=(
-                f"tape zero changed by {measured:+.3f} div, the level across by "
-                f'{tilt * RHO_ARCSEC:+.1f}", which explains {factor * tilt:+.3f} div'
+                said(
+                    "tape zero changed by {measured:+.3f} div, the level across by "
+                    '{tilt:+.1f}", which explains {factor:+.3f} div',
+                    measured=measured,
+                    tilt=tilt * RHO_ARCSEC,
+                    factor=factor * tilt,
+                )
             ),
             subject=Subject.session(item.session.id),
         )
@@ -267,14 +282,19 @@ def _clamping_checks(orientation: Orientation) -> list[Check]:
             limit = quantile * math.hypot(found.sigma, here.sigma)
             value = abs(found.value - here.value)
             passed = value <= limit
-            text = (
-                f"torsion ratio from clampings {first.session} and {last.session} "
-                f"{found.value:.4f} +-{found.sigma:.4f}, card at this latitude {here.value:.4f}"
+            text = said(
+                "torsion ratio from clampings {session} and {session2} {value:.4f} "
+                "+-{sigma:.4f}, card at this latitude {value2:.4f}",
+                session=first.session,
+                session2=last.session,
+                value=found.value,
+                sigma=found.sigma,
+                value2=here.value,
             )
         checks.append(
             Check(
                 rule="torsion_ratio.clampings",
-                clause="two clampings, lambda = (H1 - H2)/(mu (B2 - B1)) - 1",
+                clause=said("two clampings, lambda = (H1 - H2)/(mu (B2 - B1)) - 1"),
                 value=value,
                 limit=limit,
                 confirmed=False,

@@ -10,6 +10,7 @@ from surveyapp.core.swing.levelling import session_tilt
 from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.results import Check
 from surveyapp.domain.subject import Subject
+from surveyapp.languages import said
 from surveyapp_models.angles import RHO_ARCSEC
 
 PRE_ORIENTATION: Final = {"tracking": 60.0, "transit": 10.0}
@@ -31,7 +32,7 @@ def levelling_checks(orientation: Orientation) -> list[Check]:
         checks.append(
             Check(
                 rule="levelling.tilt",
-                clause=f"card {card.id}, range.level_arcsec",
+                clause=said("card {id}, range.level_arcsec", id=card.id),
                 value=largest,
                 limit=limit,
                 confirmed=False,
@@ -39,8 +40,12 @@ def levelling_checks(orientation: Orientation) -> list[Check]:
                 unit="arcsec",
                 where=item.session.id,
                 text=(
-                    f'tilt along {tilt.along * RHO_ARCSEC:+.1f}", across '
-                    f'{tilt.across * RHO_ARCSEC:+.1f}", compensated in the sights'
+                    said(
+                        'tilt along {along:+.1f}", across {across:+.1f}", compensated in the '
+                        "sights",
+                        along=tilt.along * RHO_ARCSEC,
+                        across=tilt.across * RHO_ARCSEC,
+                    )
                 ),
                 subject=Subject.session(item.session.id),
             )
@@ -53,17 +58,19 @@ def _card_check(session: OrientationSession) -> list[Check]:
     log = session.levelling
     if log is None:
         return []
-    text = "; ".join(log.refusals) + ": the tilt log is not applied"
+    text = "; ".join(log.refusals) + said(": the tilt log is not applied")
     return [
         Check(
             rule="levelling.card_valid",
-            clause=f"sensor card {log.card}",
+            clause=said("sensor card {card}", card=log.card),
             value=None,
             limit=None,
             confirmed=True,
             passed=not log.refusals,
             where=session.id,
-            text=text if log.refusals else f"the card holds for the tilt log {log.log}",
+            text=text
+            if log.refusals
+            else said("the card holds for the tilt log {log}", log=log.log),
             subject=Subject.session(session.id),
         )
     ]
@@ -78,20 +85,25 @@ def _pre_orientation(session: OrientationSession) -> list[Check]:
     if aimed.refusals:
         text = "; ".join(aimed.refusals)
     elif aimed.offset is None or interval is None:
-        text = "a MAGNETIC heading without declination_deg says nothing of north"
+        text = said("a MAGNETIC heading without declination_deg says nothing of north")
     else:
         offset = math.degrees(aimed.offset) * 60.0
         value = abs(offset) + math.degrees(interval) * 60.0
-        text = (
-            f"the alidade points {offset:+.1f}' from north, 95 % interval "
-            f"{math.degrees(interval) * 60.0:.1f}': turn it by {-offset:+.1f}'"
+        text = said(
+            "the alidade points {offset:+.1f}' from north, 95 % interval "
+            "{degrees:.1f}': turn it by {offset2:+.1f}'",
+            offset=offset,
+            degrees=math.degrees(interval) * 60.0,
+            offset2=-offset,
         )
         if aimed.turn_to is not None:
-            text += f" to the circle reading {math.degrees(aimed.turn_to):.4f} degrees"
+            text += said(
+                " to the circle reading {turn_to:.4f} degrees", turn_to=math.degrees(aimed.turn_to)
+            )
     return [
         Check(
             rule=f"pre_orientation.{method}",
-            clause=f"pre-orientation for {method}, {limit:g}'",
+            clause=said("pre-orientation for {method}, {limit:g}'", method=method, limit=limit),
             value=value,
             limit=limit,
             confirmed=False,

@@ -21,6 +21,7 @@ from surveyapp.core.tolerance import Measured, measure, rule_book_checks
 from surveyapp.domain.results import Check
 from surveyapp.domain.rulebook import RuleBook
 from surveyapp.errors import SurveyError
+from surveyapp.languages import said
 
 
 def limit_checks(evidence: Evidence) -> tuple[Check, ...]:
@@ -70,6 +71,6 @@ def _ellipses(item: TraverseEvidence) -> list[Measured]:
     try:
         return ellipse_measures(adjust(item.network), class_name=name, subject=subject)
     except SurveyError as error:
-        text = f"missing: an adjusted network ({error.problems[0].what})"
+        text = said("missing: an adjusted network ({what})", what=error.problems[0].what)
         quantity = "control_ellipse"
         return [Measured(quantity, None, subject.text, text, {}, name, subject=subject)]

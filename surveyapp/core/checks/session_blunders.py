@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -17,18 +16,19 @@ import numpy as np
 from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.core.statistics.distributions import (
     chi_square_quantile,
-    f_tail,
+    f_quantile,
     normal_quantile,
     student_quantile,
 )
 from surveyapp.core.statistics.levels import level_of_one
 from surveyapp.core.swing.card_physics import card_at
+from surveyapp.core.swing.full_swings import full_swings
 from surveyapp.core.swing.session import ReducedSession, TargetReduction
-from surveyapp.core.swing.sights import moments
 from surveyapp.core.swing.tape_zero import MIN_POINTS_FOR_RESIDUALS
-from surveyapp.domain.readings import Reading, ReadingKind
+from surveyapp.domain.readings import ReadingKind
 from surveyapp.domain.results import Check
 from surveyapp.domain.subject import Subject
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, RHO_ARCSEC
 
 ROUND_SIGMA: Final = 60.0 * ARCSEC
@@ -112,13 +112,24 @@ def _rounds(orientation: Orientation, items: Items) -> list[Check]:
         residuals = [abs(point.residual or 0.0) for point in item.reduction.points]
         worst = item.reduction.points[int(np.argmax(residuals))].seq
         scatter = rms * math.sqrt((dof + 1.0) / dof)
-        origin = f"card {card.id}" if card.sigma.azimuth is not None else "no card exceeds it"
+        origin = (
+            said("card {id}", id=card.id)
+            if card.sigma.azimuth is not None
+            else said("no card exceeds it")
+        )
         checks.append(
             _made(
                 "rounds.scatter",
                 item,
-                f'{dof + 1} rounds scatter by {scatter * RHO_ARCSEC:.1f}" about their mean, one '
-                f'round has {sigma * RHO_ARCSEC:.1f}" ({origin}); furthest off: seq {worst}',
+                said(
+                    '{dof} rounds scatter by {scatter:.1f}" about their mean, one round has '
+                    '{sigma:.1f}" ({origin}); furthest off: seq {worst}',
+                    dof=dof + 1,
+                    scatter=scatter * RHO_ARCSEC,
+                    sigma=sigma * RHO_ARCSEC,
+                    origin=origin,
+                    worst=worst,
+                ),
                 value=scatter * RHO_ARCSEC,
                 limit=sigma * math.sqrt(quantile / dof) * RHO_ARCSEC,
                 unit="arcsec",
@@ -153,19 +164,22 @@ def _faces(orientation: Orientation, items: Items) -> list[Check]:
         level = level_of_one(len(tested))
         variance = sights.sum_of_squares / sights.dof
         limit = bound * math.sqrt(chi_square_quantile(1.0 - level, sights.dof) / sights.dof)
-        told = f'one pointing at most {bound * RHO_ARCSEC:.1f}"'
+        told = said('one pointing at most {bound:.1f}"', bound=bound * RHO_ARCSEC)
         if dof >= LEAST_OTHERS and squares > 0.0:
             found = squares / dof
-            quantile = _f_quantile(level, sights.dof, dof)
+            quantile = f_quantile(level, sights.dof, dof)
             if math.sqrt(found * quantile) < limit:
                 limit = math.sqrt(found * quantile)
-                told = f'the other sights have {math.sqrt(found) * RHO_ARCSEC:.1f}"'
+                told = said('the other sights have {sqrt:.1f}"', sqrt=math.sqrt(found) * RHO_ARCSEC)
         checks.append(
             _made(
                 "sights.agree",
                 item,
-                f'sights of one face disagree by {math.sqrt(variance) * RHO_ARCSEC:.1f}" (1 sigma)'
-                f"; {told}",
+                said(
+                    'sights of one face disagree by {sqrt:.1f}" (1 sigma); {told}',
+                    sqrt=math.sqrt(variance) * RHO_ARCSEC,
+                    told=told,
+                ),
                 value=math.sqrt(variance) * RHO_ARCSEC,
                 limit=limit * RHO_ARCSEC,
                 unit="arcsec",
@@ -173,19 +187,6 @@ def _faces(orientation: Orientation, items: Items) -> list[Check]:
             )
         )
     return checks
-
-
-@lru_cache(maxsize=256)
-def _f_quantile(level: float, numerator: int, denominator: int) -> float:
-    """Upper quantile of F by bisection."""
-    low, high = 0.0, 1.0
-    while f_tail(high, dof_numerator=numerator, dof_denominator=denominator) > level:
-        high *= 2.0
-    for _ in range(80):
-        middle = 0.5 * (low + high)
-        tail = f_tail(middle, dof_numerator=numerator, dof_denominator=denominator)
-        low, high = (middle, high) if tail > level else (low, middle)
-    return high
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,8 +232,13 @@ def _collimations(orientation: Orientation, items: Items) -> list[Check]:
                 _made(
                     "sights.collimation",
                     own.item,
-                    f'collimation {own.value * RHO_ARCSEC:+.1f}", in the other set-ups '
-                    f'{middle * RHO_ARCSEC:+.1f}" (median of {len(others)})',
+                    said(
+                        'collimation {value:+.1f}", in the other set-ups {middle:+.1f}" (median of '
+                        "{others})",
+                        value=own.value * RHO_ARCSEC,
+                        middle=middle * RHO_ARCSEC,
+                        others=len(others),
+                    ),
                     value=abs(own.value - middle) * RHO_ARCSEC,
                     limit=limit * RHO_ARCSEC,
                     unit="arcsec",
@@ -252,11 +258,16 @@ def _period(item: ReducedSession) -> list[Check]:
         _made(
             "period.possible",
             item,
-            f"period {period:.1f} s; no suspended gyro swings outside {low:g} to {high:g} s",
+            said(
+                "period {period:.1f} s; no suspended gyro swings outside {low:g} to {high:g} s",
+                period=period,
+                low=low,
+                high=high,
+            ),
             value=period,
             limit=low if period < low else high,
             unit="s",
-            clause="physics of the swing",
+            clause=said("physics of the swing"),
             passed=low <= period <= high,
         )
     ]
@@ -277,12 +288,16 @@ def _transit_constant(orientation: Orientation, item: ReducedSession) -> list[Ch
         _made(
             "transit.constant",
             item,
-            f"C {here.transit_c.value * RHO_ARCSEC:.4g} stated, {theory * RHO_ARCSEC:.4g} "
-            "arcsec/(div s) from scale value, torsion ratio and the period of this session",
+            said(
+                "C {value:.4g} stated, {theory:.4g} arcsec/(div s) from scale value, "
+                "torsion ratio and the period of this session",
+                value=here.transit_c.value * RHO_ARCSEC,
+                theory=theory * RHO_ARCSEC,
+            ),
             value=100.0 * abs(apart),
             limit=MOST_APART_PERCENT,
             unit="%",
-            clause="C = (pi/2) mu (1 + lambda) / T2",
+            clause=said("C = (pi/2) mu (1 + lambda) / T2"),
         )
     ]
 
@@ -292,7 +307,7 @@ def _evenness(item: ReducedSession) -> list[Check]:
     swing = item.session.book.of_kind(ReadingKind.REVERSAL, ReadingKind.MISSED, ReadingKind.TRANSIT)
     kind = ReadingKind.TRANSIT if item.session.method == "transit" else ReadingKind.REVERSAL
     rows = [row for row in swing if row.kind in (kind, ReadingKind.MISSED)]
-    spans = _full_swings(rows, kind)
+    spans = full_swings(rows, kind)
     if item.session.method == "automatic" or len(spans) < 2:
         return []
     lengths = np.array([length for length, _ in spans])
@@ -302,28 +317,19 @@ def _evenness(item: ReducedSession) -> list[Check]:
         _made(
             "moments.even",
             item,
-            f"full swings of {middle:.1f} s (median); the one that ends at seq {spans[worst][1]} "
-            f"lasts {lengths[worst]:.1f} s",
+            said(
+                "full swings of {middle:.1f} s (median); the one that ends at seq {spans} "
+                "lasts {lengths:.1f} s",
+                middle=middle,
+                spans=spans[worst][1],
+                lengths=lengths[worst],
+            ),
             value=abs(float(lengths[worst]) - middle),
             limit=UNEVEN * abs(middle),
             unit="s",
-            clause="physics of the swing",
+            clause=said("physics of the swing"),
         )
     ]
-
-
-def _full_swings(rows: Sequence[Reading], kind: ReadingKind) -> list[tuple[float, int]]:
-    """Length [s] and last seq of every full swing: from a row to the next but one."""
-    spans = []
-    for first, middle, last in zip(rows, rows[1:], rows[2:], strict=False):
-        if first.kind is not kind or last.kind is not kind:
-            continue
-        if kind is ReadingKind.TRANSIT and len({first.value, middle.value, last.value}) > 1:
-            continue
-        times = moments([first, last])
-        if times is not None:
-            spans.append((float(times[1] - times[0]), last.seq))
-    return spans
 
 
 def _tape_zeros(orientation: Orientation, items: Items) -> list[Check]:
@@ -334,7 +340,7 @@ def _tape_zeros(orientation: Orientation, items: Items) -> list[Check]:
         (item, name, rest)
         for item, zero in zeros
         if zero is not None
-        for name, rest in (("before", zero.before), ("after", zero.after))
+        for name, rest in ((said("before"), zero.before), (said("after"), zero.after))
         if rest is not None and rest.points >= MIN_POINTS_FOR_RESIDUALS and rest.dof > 0
     ]
     checks = []
@@ -352,12 +358,16 @@ def _tape_zeros(orientation: Orientation, items: Items) -> list[Check]:
             _made(
                 "tape_zero.agree",
                 item,
-                f"tape zero before {zero.before.value_div:+.3f} div, after "
-                f"{zero.after.value_div:+.3f} div; the change is in the sigma of gyro north",
+                said(
+                    "tape zero before {value_div:+.3f} div, after {value_div2:+.3f} div; the "
+                    "change is in the sigma of gyro north",
+                    value_div=zero.before.value_div,
+                    value_div2=zero.after.value_div,
+                ),
                 value=abs(change),
                 limit=limit + normal_quantile(1.0 - 0.5 * level_of_one(len(both))) * noise,
                 unit="div",
-                clause="change of the tape zero during one session",
+                clause=said("change of the tape zero during one session"),
             )
         )
     for item, name, rest in swings:
@@ -369,8 +379,12 @@ def _tape_zeros(orientation: Orientation, items: Items) -> list[Check]:
             _made(
                 "tape_zero.readings",
                 item,
-                f"readings of the tape zero {name} about their damped swing, card "
-                f"{card.sigma.scale_div:g} div",
+                said(
+                    "readings of the tape zero {name} about their damped swing, card "
+                    "{scale_div:g} div",
+                    name=name,
+                    scale_div=card.sigma.scale_div,
+                ),
                 value=math.sqrt(rest.scale_variance),
                 limit=card.sigma.scale_div * math.sqrt(quantile / rest.dof),
                 unit="div",

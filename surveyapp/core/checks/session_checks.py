@@ -11,8 +11,9 @@ import math
 from dataclasses import replace
 from itertools import combinations
 
+from surveyapp.core.orientation.agreement import agreement_text
 from surveyapp.core.orientation.combined_lines import sides_of
-from surveyapp.core.orientation.instrument_constant import InstrumentConstant, agreement_text
+from surveyapp.core.orientation.instrument_constant import InstrumentConstant
 from surveyapp.core.orientation.lines import OrientedLine
 from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.core.statistics.distributions import student_quantile
@@ -23,16 +24,17 @@ from surveyapp.core.swing.sights import drift_probability
 from surveyapp.core.uncertain import Uncertain
 from surveyapp.domain.results import Check
 from surveyapp.domain.subject import Subject
+from surveyapp.languages import joined, said
 from surveyapp_models.angles import RHO_ARCSEC, wrap_pi
 
 _FIT_WORDS = {
-    "chi_square": "residuals against the card's reading sigma (v'v / sigma^2)",
-    "size": "residuals against what no reading of the kind exceeds (v'v / sigma^2)",
-    "largest_residual": "largest studentized residual",
-    "lag1_correlation": "lag-1 correlation of the residuals",
-    "runs": "number of runs of equal sign in the residuals",
+    "chi_square": said("residuals against the card's reading sigma (v'v / sigma^2)"),
+    "size": said("residuals against what no reading of the kind exceeds (v'v / sigma^2)"),
+    "largest_residual": said("largest studentized residual"),
+    "lag1_correlation": said("lag-1 correlation of the residuals"),
+    "runs": said("number of runs of equal sign in the residuals"),
 }
-_TEST_CLAUSE = "statistical test, level shared over the project"
+_TEST_CLAUSE = said("statistical test, level shared over the project")
 
 
 def statistical_checks(orientation: Orientation) -> list[Check]:
@@ -56,9 +58,9 @@ def _fit_checks(item: ReducedSession) -> list[Check]:
     checks = _fit_summary(item)
     for test in item.reduction.tests:
         words = _FIT_WORDS[test.name] + _point_name(item, test)
-        verdict = "fits" if test.passed else "does NOT fit the damped swing"
+        verdict = said("fits") if test.passed else said("does NOT fit the damped swing")
         if test.at_limit:
-            verdict += " (at the limit: the draws cannot tell on which side)"
+            verdict += said(" (at the limit: the draws cannot tell on which side)")
         checks.append(
             Check(
                 rule=f"fit.{test.name}",
@@ -68,7 +70,7 @@ def _fit_checks(item: ReducedSession) -> list[Check]:
                 confirmed=True,
                 passed=test.passed,
                 where=item.session.id,
-                text=f"{words}: the run {verdict}",
+                text=said("{words}: the run {verdict}", words=words, verdict=verdict),
                 subject=Subject.session(item.session.id),
             )
         )
@@ -81,8 +83,9 @@ def _point_name(item: ReducedSession, test: FitTest) -> str:
         return ""
     points = item.reduction.points
     if test.point >= len(points):
-        return f", passage {test.point - len(points) + 1}"
-    return f", turning point {test.point + 1} (seq {points[test.point].seq})"
+        return said(", passage {point}", point=test.point - len(points) + 1)
+    point = points[test.point]  # counted as in alarm, diagnosis and record: with missed ones
+    return said(", turning point {index} (seq {seq})", index=point.index + 1, seq=point.seq)
 
 
 def _fit_summary(item: ReducedSession) -> list[Check]:
@@ -101,9 +104,13 @@ def _fit_summary(item: ReducedSession) -> list[Check]:
         if test.name in ("chi_square", "size") and test.high is not None and test.value > 0.0:
             limit = rms * math.sqrt(test.high / test.value)
     if failed:
-        text = f'rms {rms:.1f}": the damped swing does NOT fit this run ({"; ".join(failed)})'
+        text = said(
+            'rms {rms:.1f}": the damped swing does NOT fit this run ({failed})',
+            rms=rms,
+            failed=joined("; ", failed),
+        )
     else:
-        text = f'rms {rms:.1f}": the damped swing fits'
+        text = said('rms {rms:.1f}": the damped swing fits', rms=rms)
     return [
         Check(
             rule="fit",
@@ -132,19 +139,21 @@ def _tape_zero_checks(orientation: Orientation, item: ReducedSession) -> list[Ch
     if zero is None or limit is None:
         return []
     checks = []
-    for name, rest in (("before", zero.before), ("after", zero.after)):
+    for name, rest in ((said("before"), zero.before), (said("after"), zero.after)):
         if rest is not None:
             checks.append(
                 Check(
                     rule="tape_zero.limit",
-                    clause=f"card {card.id}",
+                    clause=said("card {id}", id=card.id),
                     value=abs(rest.value_div),
                     limit=limit,
                     confirmed=True,
                     passed=abs(rest.value_div) <= limit,
                     unit="div",
                     where=f"{item.session.id} {name}",
-                    text=f"tape zero {name} {rest.value_div:+.3f} div",
+                    text=said(
+                        "tape zero {name} {value_div:+.3f} div", name=name, value_div=rest.value_div
+                    ),
                     subject=Subject.session(item.session.id),
                 )
             )
@@ -171,8 +180,8 @@ def _sight_checks(item: ReducedSession, sigma: SightSigma, level: float) -> list
                 confirmed=True,
                 passed=probability >= level,
                 unit="arcsec",
-                where=f"{item.session.id} to {target.target}",
-                text="sights after minus before: the tripod may have turned; it is taken out",
+                where=Subject.session(item.session.id, target.target).text,
+                text=said("sights after minus before: the tripod may have turned; it is taken out"),
                 subject=Subject.session(item.session.id, target.target),
             )
         )
@@ -201,7 +210,7 @@ def _constant_checks(constant: InstrumentConstant, level: float) -> list[Check]:
             checks.append(
                 Check(
                     rule=rule,
-                    clause="physics of the constant, statistical test, 5 %",
+                    clause=said("physics of the constant, statistical test, 5 %"),
                     value=test.difference * RHO_ARCSEC,
                     limit=test.limit * RHO_ARCSEC,
                     confirmed=test.agree or test.probability < level,
@@ -233,7 +242,7 @@ def _compare(
         passed=value <= limit if math.isfinite(limit) else None,
         unit="arcsec",
         where=subject.text,
-        text=text or "determined now against known beforehand",
+        text=text or said("determined now against known beforehand"),
         subject=subject,
     )
 
@@ -252,8 +261,12 @@ def _line_checks(line: OrientedLine, level: float) -> list[Check]:
             passed=test.probability >= level,
             where=f"{line.result.station}-{line.result.target}",
             text=(
-                f"{len(line.result.sessions)} sessions of one line, scatter against their own "
-                f"sigmas (p = {test.probability:.3g})"
+                said(
+                    "{sessions} sessions of one line, scatter against their own sigmas (p = "
+                    "{probability:.3g})",
+                    sessions=len(line.result.sessions),
+                    probability=test.probability,
+                )
             ),
             subject=line.result.subject,
         )
@@ -285,11 +298,14 @@ def _of_one_side(
     line: OrientedLine, other: OrientedLine, difference: Uncertain, *, level: float, alone: bool
 ) -> Check:
     own, its = line.result.instrument, other.result.instrument
-    rule, names = "line.instruments", f"{own} and {its}"
-    text = f"two instruments on one line ({names})"
+    rule, names = "line.instruments", said("{own} and {its}", own=own, its=its)
+    text = said("two instruments on one line ({names})", names=names)
     if line.result.station != other.result.station:
         difference = difference.shifted(math.pi)
-        rule, names = "line.forward_back", own if own == its else f"{own} there, {its} back"
-        text = f"forward against back, the two ends of one line ({names})"
+        rule, names = (
+            "line.forward_back",
+            own if own == its else said("{own} there, {its} back", own=own, its=its),
+        )
+        text = said("forward against back, the two ends of one line ({names})", names=names)
     check = _compare(rule, difference, line.result.subject, level, text=text)
     return check if alone else replace(check, where=f"{check.where} ({names})")

@@ -13,6 +13,7 @@ from surveyapp.domain.observations import Observation, ObservationKind
 from surveyapp.domain.results import Check
 from surveyapp.domain.subject import Subject
 from surveyapp.domain.traverse import Network
+from surveyapp.languages import said
 from surveyapp_models.angles import RHO_ARCSEC
 
 K = ObservationKind
@@ -37,14 +38,14 @@ def closure_check(item: Closure, subject: Subject) -> Check:
     scale = RHO_ARCSEC if angular else 1e3
     return Check(
         rule=f"traverse.{item.kind}_closure",
-        clause="3 sigma of the misclosure",
+        clause=said("3 sigma of the misclosure"),
         value=value,
         limit=None if sigma is None else SIGMAS * sigma * scale,
         confirmed=True,
         passed=item.passed,
         unit="arcsec" if angular else "mm",
         where="-".join(item.stations[:6]) + ("-..." if len(item.stations) > 6 else ""),
-        text=f"{item.angles} angles" if angular else "heights",
+        text=said("{angles} angles", angles=item.angles) if angular else "heights",
         subject=subject,
     )
 
@@ -66,14 +67,14 @@ def forward_back(network: Network, subject: Subject) -> list[Check]:
         checks.append(
             Check(
                 rule="traverse.forward_back",
-                clause="3 sigma of the difference",
+                clause=said("3 sigma of the difference"),
                 value=value * 1000.0,
                 limit=limit * 1000.0,
                 confirmed=True,
                 passed=value <= limit,
                 unit="mm",
                 where="-".join(pair),
-                text="length forward against back",
+                text=said("length forward against back"),
                 subject=subject,
             )
         )

@@ -17,6 +17,7 @@ from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.domain.results import Check
 from surveyapp.domain.subject import Subject
+from surveyapp.languages import said
 
 
 def validity_checks(orientation: Orientation) -> tuple[Check, ...]:
@@ -61,7 +62,7 @@ def _check(
 ) -> Check:
     return Check(
         rule=rule,
-        clause=f"card {card.id}",
+        clause=said("card {id}", id=card.id),
         value=value,
         limit=limit,
         confirmed=True,
@@ -80,11 +81,17 @@ def _temperature(session: OrientationSession, card: InstrumentCard) -> list[Chec
     rule, where = "card.temperature", session.id
     readings: Sequence[float] = session_temperatures_c(session)
     if not readings:
-        text = "missing: a temperature in the book"
+        text = said("missing: a temperature in the book")
         return [_check(rule, card, where, None, high, passed=None, unit="C", text=text)]
     coldest, hottest = min(readings), max(readings)
     value, limit = (coldest, low) if coldest < low else (hottest, high)
-    text = f"{coldest:g} to {hottest:g} C; the instrument is made for {low:g} to {high:g} C"
+    text = said(
+        "{coldest:g} to {hottest:g} C; the instrument is made for {low:g} to {high:g} C",
+        coldest=coldest,
+        hottest=hottest,
+        low=low,
+        high=high,
+    )
     passed = low <= coldest and hottest <= high
     return [_check(rule, card, where, value, limit, passed=passed, unit="C", text=text)]
 
@@ -95,9 +102,9 @@ def _latitude(orientation: Orientation, item: ReducedSession, card: InstrumentCa
         return []
     latitude = orientation.positions[item.session.station].latitude
     value = None if latitude is None else abs(math.degrees(latitude))
-    text = "missing: the latitude of the station"
+    text = said("missing: the latitude of the station")
     if value is not None:
-        text = f"latitude {value:.2f} degrees"
+        text = said("latitude {value:.2f} degrees", value=value)
     return [
         _check(
             "card.latitude",
@@ -118,8 +125,12 @@ def _due(session: OrientationSession, card: InstrumentCard) -> list[Check]:
     due = dt.date.fromisoformat(card.calibration_due)
     day = session_day(session)
     value = None if day is None else float((day - due).days)
-    text = f"calibration due {due.isoformat()}"
-    text += ": missing: the date of the session" if day is None else f", used {day.isoformat()}"
+    text = said("calibration due {isoformat}", isoformat=due.isoformat())
+    text += (
+        said(": missing: the date of the session")
+        if day is None
+        else said(", used {isoformat}", isoformat=day.isoformat())
+    )
     return [
         _check(
             "card.calibration_due",

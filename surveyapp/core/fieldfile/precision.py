@@ -47,11 +47,40 @@ def distance_precision(sets: Sequence[ReducedSet]) -> tuple[float, int] | None:
             if length is not None:
                 key = (item.name.rpartition("/")[0], item.at, sight.to)
                 found.setdefault(key, []).append(length)
-    for lengths in found.values():
-        mean = sum(lengths) / len(lengths)
-        total += sum((length - mean) ** 2 for length in lengths)
-        dof += len(lengths) - 1
+    between, more = _within(list(found.values()))
+    total, dof = total + between, dof + more
     return None if dof < LEAST_DOF or total <= 0.0 else (math.sqrt(total / dof), dof)
+
+
+def zenith_precision(sets: Sequence[ReducedSet]) -> tuple[float, int] | None:
+    """Scatter of a zenith angle (mean of both faces) [rad] and its degrees of freedom.
+
+    The index i = (L + R - 2 pi) / 2 is one quantity within a set, and its scatter over the targets
+    that of the mean of the faces; so are the zenith angles of a target in the sets of a set-up.
+    Refraction and the heights of instrument and target are not in it.
+    """
+    found: dict[tuple[str, str, str], list[float]] = {}
+    total, dof = _within([item.index_spread for item in sets])
+    for item in sets:
+        for sight in item.sights:
+            if sight.zenith is not None and sight.faces == 2:
+                key = (item.name.rpartition("/")[0], item.at, sight.to)
+                found.setdefault(key, []).append(sight.zenith)
+    between, more = _within(list(found.values()))
+    total, dof = total + between, dof + more
+    return None if dof < LEAST_DOF or total <= 0.0 else (math.sqrt(total / dof), dof)
+
+
+def _within(groups: Sequence[Sequence[float]]) -> tuple[float, int]:
+    """Sum of squares about the mean of each group, and its degrees of freedom."""
+    total, dof = 0.0, 0
+    for values in groups:
+        if len(values) < 2:
+            continue
+        mean = sum(values) / len(values)
+        total += sum((value - mean) ** 2 for value in values)
+        dof += len(values) - 1
+    return total, dof
 
 
 def face_precision(sets: Sequence[ReducedSet]) -> FacePrecision | None:
@@ -60,14 +89,7 @@ def face_precision(sets: Sequence[ReducedSet]) -> FacePrecision | None:
     Two sources with the same variance, independent of each other as difference and mean of the
     faces are: the collimation within sets, and the directions of a set-up between its sets.
     """
-    total, dof = 0.0, 0
-    for item in sets:
-        count = len(item.spread)
-        if count < 2:
-            continue
-        mean = sum(item.spread) / count
-        total += sum((value - mean) ** 2 for value in item.spread)
-        dof += count - 1
+    total, dof = _within([item.spread for item in sets])
     between, more = _between_sets(sets)
     total, dof = total + between, dof + more
     if dof < LEAST_DOF or total <= 0.0:

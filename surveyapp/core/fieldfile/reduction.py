@@ -96,6 +96,7 @@ def _reduced(made: Round, *, corrected: bool) -> ReducedSet:
         collimation=_mean(collimations),
         index=_mean(indices),
         spread=tuple(collimations),
+        index_spread=tuple(indices),
         length_gaps=tuple(gaps),
     )
 

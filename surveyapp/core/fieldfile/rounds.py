@@ -53,7 +53,7 @@ class _SetUp:
 
 @dataclass(frozen=True, slots=True)
 class Grouped:
-    """Sets in order, and the pointings that opened a set because theirs was taken."""
+    """Sets in order, and the pointings that opened a set while the one before was not complete."""
 
     rounds: tuple[Round, ...]
     repeated: tuple[Pointing, ...]
@@ -86,7 +86,9 @@ def group(pointings: Iterable[Pointing]) -> Grouped:
         setup = setups.setdefault(pointing.setup, _SetUp())
         home = _home(setup, pointing)
         if home is None:
-            if any((pointing.to, pointing.face) in r.sights for r in _rivals(setup, pointing)):
+            rivals = _rivals(setup, pointing)
+            twice = any((pointing.to, pointing.face) in rival.sights for rival in rivals)
+            if twice and not _is_complete(rivals[-1]):
                 repeated.append(pointing)
             home = Round(pointing.setup, pointing.at, len(setup.rounds) + 1, pointing.set)
             setup.rounds.append(home)
@@ -99,6 +101,12 @@ def group(pointings: Iterable[Pointing]) -> Grouped:
 def _rivals(setup: _SetUp, pointing: Pointing) -> list[Round]:
     """Sets that may still take a pointing: the last ones."""
     return setup.stated.get(pointing.set, [])[-MOST_OPEN:]
+
+
+def _is_complete(made: Round) -> bool:
+    """Whether a set holds every target in both faces: then the next set simply begins."""
+    targets = {to for to, _ in made.sights}
+    return all((to, face) in made.sights for to in targets for face in ("L", "R"))
 
 
 def _home(setup: _SetUp, pointing: Pointing) -> Round | None:

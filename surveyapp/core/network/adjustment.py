@@ -32,6 +32,7 @@ from surveyapp.domain.adjustment import (
 )
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network, Status
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 SOUND = 1e-3
@@ -89,10 +90,13 @@ def _skipped_warning(
     if not skipped:
         return []
     first = ", ".join(network.observations[i].where for i in skipped[:5])
-    more = f" and {len(skipped) - 5} more" if len(skipped) > 5 else ""
-    text = (
-        f"{len(skipped)} observations touch a coordinate that is neither fixed nor adjusted "
-        f"and were not used: {first}{more}"
+    more = said(" and {number} more", number=len(skipped) - 5) if len(skipped) > 5 else ""
+    text = said(
+        "{skipped} observations touch a coordinate that is neither fixed nor "
+        "adjusted and were not used: {first}{more}",
+        skipped=len(skipped),
+        first=first,
+        more=more,
     )
     return [ResultWarning("observations_not_used", text)]
 
@@ -141,9 +145,11 @@ def _unsound(redundancy: float, dof: int) -> list[ResultWarning]:
     """Redundancies sum to the degrees of freedom, or rounding has spoilt the cofactors."""
     if abs(redundancy - dof) <= SOUND * max(dof, 1):
         return []
-    text = (
-        f"the redundancies sum to {redundancy:.6g} instead of {dof}: the network is so weak that "
-        "its sigmas and tests are not reliable"
+    text = said(
+        "the redundancies sum to {redundancy:.6g} instead of {dof}: the network is "
+        "so weak that its sigmas and tests are not reliable",
+        redundancy=redundancy,
+        dof=dof,
     )
     return [ResultWarning("cofactors_inaccurate", text)]
 

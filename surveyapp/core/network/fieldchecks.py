@@ -18,6 +18,7 @@ from surveyapp.domain.adjustment import AdjustmentResult, Closure
 from surveyapp.domain.observations import Observation, ObservationKind
 from surveyapp.domain.subject import Subject
 from surveyapp.domain.traverse import Network, Status
+from surveyapp.languages import said
 from surveyapp_models.angles import RHO_ARCSEC, wrap_pi
 
 K = ObservationKind
@@ -50,7 +51,7 @@ def closure_measures(
         variables = {"n": float(item.angles)}
         if item.angular is not None:
             value = abs(item.angular) * RHO_ARCSEC
-            text = f"{item.kind}, {item.angles} angles"
+            text = said("{kind}, {angles} angles", kind=item.kind, angles=item.angles)
             found.append(
                 Measured(
                     "angular_closure_closed",
@@ -99,7 +100,7 @@ def repeated_angles(
             "last_angle_again",
             abs(wrap_pi(last[key].value - obs.value)) * RHO_ARCSEC,
             f"{key[1]}-{key[0]}-{key[2]}",
-            "measured again",
+            said("measured again"),
             {"n": 2.0},
             class_name,
             subject=subject,
@@ -139,7 +140,7 @@ def repeated_traverse(
             "angular_closure_repeated",
             abs(turn) * RHO_ARCSEC,
             where,
-            f"{n} angles together",
+            said("{n} angles together", n=n),
             {"n": float(n)},
             class_name,
             subject=subject,
@@ -320,8 +321,13 @@ def gyro_measures(
             "gyro_against_traverse",
             abs(item.difference) * RHO_ARCSEC,
             item.end,
-            f"against {item.start} over {item.angles} angles, expected within "
-            f"{2.0 * item.sigma * RHO_ARCSEC:.1f} arcsec (2 sigma)",
+            said(
+                "against {start} over {angles} angles, expected within {sigma:.1f} arcsec "
+                "(2 sigma)",
+                start=item.start,
+                angles=item.angles,
+                sigma=2.0 * item.sigma * RHO_ARCSEC,
+            ),
             {"n": float(item.angles)},
             class_name,
             subject=subject,

@@ -16,6 +16,7 @@ from surveyapp.core.network.solving import solve_network
 from surveyapp.domain.adjustment import AdjustedObservation, LeftOut
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 
@@ -78,9 +79,11 @@ def without_gross(network: Network, model: Model, state: Converged) -> Cleaned |
         return None
     used = np.array([places[i] if i >= 0 else -1 for i in model.used.tolist()], dtype=np.int64)
     names = [network.observations[place].where for place in gone]
-    text = (
-        f"{len(names)} observations miss by more than {network.tolerance_m:g} m and were left "
-        f"out: {'; '.join(names)}"
+    text = said(
+        "{names} observations miss by more than {tolerance_m:g} m and were left out: {names2}",
+        names=len(names),
+        tolerance_m=network.tolerance_m,
+        names2="; ".join(names),
     )
     values, misses = _against(whole, (model, state))
     misfits = gross_misfit(network, whole, values, np.nan_to_num(misses))

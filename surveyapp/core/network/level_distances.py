@@ -14,9 +14,10 @@ from dataclasses import replace
 from surveyapp.domain.observations import Observation, ObservationKind
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network, Status
+from surveyapp.languages import said
 
 K = ObservationKind
-NOTE = "horizontal, from slope distance and zenith angle"
+NOTE = said("horizontal, from slope distance and zenith angle")
 
 
 def _mean(observations: Sequence[Observation]) -> tuple[float, float]:
@@ -80,10 +81,13 @@ def with_level_distances(network: Network) -> tuple[Network, frozenset[int]]:
     if not used:
         return network, frozenset()
     names = [f"{at}-{to}" for (at, to), kinds in sights.items() if used & set(kinds[K.ZENITH])]
-    shown = ", ".join(names[:5]) + (f" and {len(names) - 5} more" if len(names) > 5 else "")
-    text = (
-        f"no height is known at an end of {shown}: slope distance and zenith angle of the sight "
-        "are used as a horizontal distance"
+    shown = ", ".join(names[:5]) + (
+        said(" and {number} more", number=len(names) - 5) if len(names) > 5 else ""
+    )
+    text = said(
+        "no height is known at an end of {shown}: slope distance and zenith angle "
+        "of the sight are used as a horizontal distance",
+        shown=shown,
     )
     warnings = (*network.warnings, ResultWarning("level_distances", text))
     return replace(network, observations=tuple(observations), warnings=warnings), frozenset(used)

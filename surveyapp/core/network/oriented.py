@@ -17,6 +17,7 @@ from surveyapp.core.orientation.side_errors import SideErrors, side_errors
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.results import LineResult
 from surveyapp.domain.traverse import GyroConstant, OrientedLine
+from surveyapp.languages import said
 
 NOTHING = 1e-12
 """Correlation of two sides that is rounding of the arithmetic."""
@@ -77,11 +78,16 @@ def oriented_lines(
         name, sight = _name(line), f"{line.station}-{line.target}"
         sigma = _own_sigma(line)
         if not 0.0 < sigma < math.inf:
-            text = f"gyro line {sight}: its sigma is not known, it is not used in the traverse"
+            text = said(
+                "gyro line {sight}: its sigma is not known, it is not used in the traverse",
+                sight=sight,
+            )
             warnings.append(ResultWarning("gyro_sigma_unknown", text, line.subject))
             continue
         if line.convergence is None:
-            text = f"gyro line {sight}: without a CRS its convergence is taken as 0"
+            text = said(
+                "gyro line {sight}: without a CRS its convergence is taken as 0", sight=sight
+            )
             warnings.append(ResultWarning("convergence_unknown", text, line.subject))
         reduction = (line.convergence or 0.0) + line.deflection + (line.arc_to_chord or 0.0)
         value, common = shared.get(name, (line.constant or 0.0, line.constant_sigma))

@@ -21,6 +21,7 @@ from surveyapp.domain.observations import CorrelatedBlock, Observation, Observat
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network
 from surveyapp.domain.traverse_book import Traverse
+from surveyapp.languages import said
 from surveyapp_models.angles import wrap_pi
 from surveyapp_models.arrays import Floats
 
@@ -167,8 +168,8 @@ def without_setup_blocks(network: Network) -> tuple[Network, tuple[ResultWarning
     )
     if len(kept) == len(network.blocks):
         return network, ()
-    text = (
-        "what the rounds of a set-up share (centring, heights) is written as independent: the "
-        "sigmas that others adjust from it are smaller than ours"
+    text = said(
+        "what the rounds of a set-up share (centring, heights) is written as "
+        "independent: the sigmas that others adjust from it are smaller than ours"
     )
     return replace(network, blocks=kept), (ResultWarning("correlation_lost", text),)

@@ -20,6 +20,7 @@ from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network, Status
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 _IN_THE_PLANE = frozenset(
@@ -174,10 +175,14 @@ def mirror_warning(network: Network, found: Solution) -> list[ResultWarning]:
         e, n, h = there[i].tolist()
         height = "" if np.isnan(h) or abs(h - here[i, 2]) < SAME_M else f", h {h:.3f}"
         places.append(f"{network.points[i].name} at e {e:.3f}, n {n:.3f}{height}")
-    more = f" and {len(moved) - 6} more points" if len(moved) > 6 else ""
-    text = (
-        f"a second solution serves as well (v'Pv {found.other.sum_of_squares:.4g} against "
-        f"{found.state.sum_of_squares:.4g}): {'; '.join(places)}{more}. Give approximate "
-        "coordinates, or another observation, to decide"
+    more = said(" and {number} more points", number=len(moved) - 6) if len(moved) > 6 else ""
+    text = said(
+        "a second solution serves as well (v'Pv {sum_of_squares:.4g} against "
+        "{sum_of_squares2:.4g}): {places}{more}. Give approximate coordinates, or "
+        "another observation, to decide",
+        sum_of_squares=found.other.sum_of_squares,
+        sum_of_squares2=found.state.sum_of_squares,
+        places="; ".join(places),
+        more=more,
     )
     return [ResultWarning("mirror_solution", text)]

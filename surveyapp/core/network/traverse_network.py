@@ -26,6 +26,7 @@ from surveyapp.domain.subject import Subject
 from surveyapp.domain.traverse import GyroConstant, Network, NetworkPoint, OrientedLine, Status
 from surveyapp.domain.traverse_book import Traverse, TraverseRow
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import said
 
 K = ObservationKind
 MM: Final = 1e-3
@@ -67,6 +68,8 @@ def _sigma(row: TraverseRow, header: Traverse, lengths: Lengths) -> float | None
             return None
         own = math.hypot(header.sigma_mm * MM, header.sigma_ppm * 1e-6 * (row.value or 0.0))
         return math.sqrt(own**2 + header.instrument_m**2 + header.target_m**2)
+    if row.kind is K.ZENITH and header.sigma_zenith is not None:
+        return header.sigma_zenith
     if row.kind in (K.HEIGHT_DIFFERENCE, K.GYRO) or header.sigma_angle is None:
         return None
     fore = lengths.get((row.at, row.to))
@@ -157,8 +160,10 @@ def book_observations(
             continue
         sigma = _sigma(row, traverse, lengths)
         if sigma is None:
-            where = f"{traverse.book}, line {row.line}"
-            expected = "a sigma in the row, or sigma_angle_arcsec / sigma_distance in [[traverse]]"
+            where = said("{book}, line {line}", book=traverse.book, line=row.line)
+            expected = said(
+                "a sigma in the row, or sigma_angle_arcsec / sigma_distance in [[traverse]]"
+            )
             problems.append(
                 Problem("an observation without a standard deviation", where, "nothing", expected)
             )
@@ -260,7 +265,11 @@ def _points(
     first = next((i for i in with_height if points[i].h is not None), with_height[0])
     height = points[first].h or 0.0
     points[first] = replace(points[first], h=height, status_h=Status.FIXED)
-    text = f"no height is fixed: heights count from {points[first].name} = {height:g} m"
+    text = said(
+        "no height is fixed: heights count from {name} = {height:g} m",
+        name=points[first].name,
+        height=height,
+    )
     return points, [
         ResultWarning("heights_relative", text, Subject.of("station", points[first].name))
     ]
@@ -274,9 +283,11 @@ def _header_warnings(header: Traverse) -> list[ResultWarning]:
         (header.constant_applied, "constant"),
     ):
         if flag is False:
-            text = (
-                f"traverse {header.name}: the {what} correction was not applied by the instrument "
-                "and is not applied here: enter corrected distances"
+            text = said(
+                "traverse {name}: the {what} correction was not applied by the instrument "
+                "and is not applied here: enter corrected distances",
+                name=header.name,
+                what=what,
             )
             warnings.append(ResultWarning(f"{what}_not_applied", text, subject))
     seen: dict[tuple[str, str, str], tuple[float, float]] = {}
@@ -287,8 +298,14 @@ def _header_warnings(header: Traverse) -> list[ResultWarning]:
             if heights != (row.hi, row.ht):
                 unlike[StationLine(row.at, row.to)] = row.line
     if unlike:
-        places = ", ".join(f"{sight} (line {line})" for sight, line in list(unlike.items())[:6])
-        text = f"zenith angle and distance of a sight have other heights hi, ht: {places}"
+        places = ", ".join(
+            said("{sight} (line {line})", sight=sight, line=line)
+            for sight, line in list(unlike.items())[:6]
+        )
+        text = said(
+            "zenith angle and distance of a sight have other heights hi, ht: {places}",
+            places=places,
+        )
         warnings.append(ResultWarning("heights_disagree", text, subject))
     return warnings
 

@@ -13,6 +13,7 @@ import re
 from dataclasses import dataclass
 from typing import Final
 
+from surveyapp.languages import said
 from surveyapp_models.angles import (
     FULL_CIRCLE,
     TWO_PI,
@@ -30,12 +31,14 @@ class EntryError(ValueError):
 
     Attributes
     ----------
+    what : str
     expected : str
         What would be accepted.
     """
 
     def __init__(self, what: str, expected: str = "") -> None:
         super().__init__(what)
+        self.what = what
         self.expected = expected
 
 
@@ -125,9 +128,9 @@ def _whole(typed: str) -> Entry:
     try:
         value = parse_angle(typed, AngleUnit.DMS)
     except AngleError as error:
-        raise EntryError(f"{typed} is no angle", error.expected) from None
+        raise EntryError(said("{typed} is no angle", typed=typed), error.expected) from None
     if value < 0.0:
-        raise EntryError("a circle reading is not negative", "0 to 360 degrees")
+        raise EntryError(said("a circle reading is not negative"), said("0 to 360 degrees"))
     numbers = re.findall(r"\d+(?:\.\d*)?", typed)
     degrees, minutes, seconds = numbers
     return Entry(wrap_two_pi(value), _dms(int(degrees), int(minutes), seconds), "dms")
@@ -136,11 +139,13 @@ def _whole(typed: str) -> Entry:
 def _packed(typed: str, *, allowed: bool) -> Entry:
     match = _PACKED.fullmatch(typed)
     if match is None:
-        raise EntryError(f"{typed} is no packed angle", "degrees.MMSS like 179.0156")
+        raise EntryError(
+            said("{typed} is no packed angle", typed=typed), said("degrees.MMSS like 179.0156")
+        )
     if not allowed:
         raise EntryError(
-            f"{typed} may be packed degrees or decimal degrees",
-            "179-01-56, or 179.0322d for decimal degrees",
+            said("{typed} may be packed degrees or decimal degrees", typed=typed),
+            said("179-01-56, or 179.0322d for decimal degrees"),
         )
     seconds = match[3] + (f".{match[4]}" if match[4] else "")
     return _whole(f"{match[1]}-{match[2]}-{seconds}")
@@ -149,9 +154,11 @@ def _packed(typed: str, *, allowed: bool) -> Entry:
 def _partial(*, minutes: str | None, seconds: str, near: float | None) -> Entry:
     """Complete to the nearest angle with these minutes and seconds."""
     if near is None:
-        raise EntryError("the rest of the reading is not known yet", "the whole reading")
+        raise EntryError(
+            said("the rest of the reading is not known yet"), said("the whole reading")
+        )
     if float(seconds) >= 60.0 or (minutes is not None and int(minutes) >= 60):
-        raise EntryError("minutes and seconds are below 60", "like 01-56 or 56")
+        raise EntryError(said("minutes and seconds are below 60"), said("like 01-56 or 56"))
     total = float(seconds) + (60 * int(minutes) if minutes is not None else 0)
     step = 3600.0 if minutes is not None else 60.0
     turn = FULL_CIRCLE[AngleUnit.DMS] * 3600.0
@@ -173,17 +180,22 @@ def _dms(degrees: int, minutes: int, seconds: str) -> str:
 def _plain(typed: str, unit: AngleUnit, near: float | None) -> Entry:
     full = FULL_CIRCLE[unit]
     if _NUMBER.fullmatch(typed) is None:
-        name = "gon" if unit is AngleUnit.GON else "decimal degrees"
-        raise EntryError(f"{typed} is no angle in {name}", f"a plain number in {name}")
+        name = "gon" if unit is AngleUnit.GON else said("decimal degrees")
+        raise EntryError(
+            said("{typed} is no angle in {name}", typed=typed, name=name),
+            said("a plain number in {name}", name=name),
+        )
     if typed.startswith("."):
         if near is None:
-            raise EntryError("the rest of the reading is not known yet", "the whole reading")
+            raise EntryError(
+                said("the rest of the reading is not known yet"), said("the whole reading")
+            )
         whole = round(wrap_two_pi(near) / TWO_PI * full - float(typed)) % round(full)
         text = f"{whole}{typed}"
         return Entry(float(text) / full * TWO_PI, text, str(unit), completed=True)
     value = float(typed)
     if not 0.0 <= value <= full:
-        raise EntryError(f"{typed} is not on the circle", f"0 to {full:g}")
+        raise EntryError(said("{typed} is not on the circle", typed=typed), f"0 to {full:g}")
     text = typed.lstrip("+")
     return Entry(wrap_two_pi(value / full * TWO_PI), text, str(unit))
 
@@ -207,9 +219,14 @@ def complete_number(text: str, *, unit: str, largest: float) -> Entry:
     """
     typed = text.strip().replace("−", "-")
     if _NUMBER.fullmatch(typed) is None:
-        hint = "decimals with a point" if "," in typed else ""
-        raise EntryError(f"{typed} is no number", hint or f"a number in {unit}")
+        hint = said("decimals with a point") if "," in typed else ""
+        raise EntryError(
+            said("{typed} is no number", typed=typed), hint or said("a number in {unit}", unit=unit)
+        )
     value = float(typed)
     if not math.isfinite(value) or abs(value) > largest:
-        raise EntryError(f"{typed} {unit} is impossible", f"at most {largest:g} {unit}")
+        raise EntryError(
+            said("{typed} {unit} is impossible", typed=typed, unit=unit),
+            said("at most {largest:g} {unit}", largest=largest, unit=unit),
+        )
     return Entry(value, typed, unit)

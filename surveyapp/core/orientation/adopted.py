@@ -33,12 +33,13 @@ from surveyapp.domain.instrument import AdoptedEffect, Instrument
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.station_line import StationLine
 from surveyapp.domain.subject import Subject
+from surveyapp.languages import joined, listed, said
 from surveyapp_models.angles import RHO_ARCSEC
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Effect
 
-SOURCE = "adopted effect"
+SOURCE = said("adopted effect")
 STEPS = 25
 """Values of a missing column that are tried over its range for the largest effect."""
 
@@ -134,10 +135,14 @@ def _not_moved(
     if not told or not isinstance(line, StationLine):
         return []
     size = ", ".join(f"{value:+.1f} {unit}" for _, value, _, unit in adopted.coefficients)
-    text = (
-        f"{', '.join(told)}: the line {line} stands off by {size} in its calibrations (adopted "
-        f"effect {adopted.id}): its known azimuth, centring or deflection; a survey of it is not "
-        "moved by that"
+    text = said(
+        "{told}: the line {line} stands off by {size} in its calibrations (adopted "
+        "effect {id}): its known azimuth, centring or deflection; a survey of it "
+        "is not moved by that",
+        told=joined(", ", told),
+        line=line,
+        size=size,
+        id=adopted.id,
     )
     return [ResultWarning("line_not_moved", text, Subject.side(line.station, line.target))]
 
@@ -190,7 +195,7 @@ def effect_shifts(
             for k, part in enumerate(rows.inside[i] @ root)
         }
         shift = Uncertain(float(rows.inside[i] @ values), parts)
-        beyond = f"{SOURCE} outside its range"
+        beyond = said("{source} outside its range", source=SOURCE)
         if rows.missing[i]:
             excess = _largest(effect, adopted, columns, (i, rows), values)
             shift = shift.with_part(Source(beyond, session, detail=name), excess)
@@ -350,11 +355,19 @@ def _missing_warning(
     session: str, adopted: AdoptedEffect, missing: Sequence[str], excess: float
 ) -> ResultWarning:
     known = {name for name, _ in adopted.reference}
-    where = "at its reference" if known.issuperset(missing) else "in the middle of its range"
-    text = (
-        f"session {session}: {' and '.join(missing)} missing: the adopted effect {adopted.id} is "
-        f'taken as {where}, and the most that it may differ, {excess * RHO_ARCSEC:.1f}", enters '
-        "the sigma"
+    where = (
+        said("at its reference")
+        if known.issuperset(missing)
+        else said("in the middle of its range")
+    )
+    text = said(
+        "session {session}: {missing} missing: the adopted effect {id} is taken as "
+        '{where}, and the most that it may differ, {excess:.1f}", enters the sigma',
+        session=session,
+        missing=listed(missing),
+        id=adopted.id,
+        where=where,
+        excess=excess * RHO_ARCSEC,
     )
     return ResultWarning("effect_outside_range", text, Subject.session(session))
 
@@ -363,14 +376,18 @@ def _outside_warning(
     session: str, adopted: AdoptedEffect, outside: Sequence[str], excess: float
 ) -> ResultWarning:
     ranges = {name: f"{name} {low:.6g} to {high:.6g}" for name, low, high in adopted.valid}
-    text = (
-        f"session {session} lies outside the range of the adopted effect {adopted.id} "
-        f"({', '.join(ranges[name] for name in outside)}): the correction is that of the edge, and "
-    )
+    beyond = said("beyond it the effect does not change: the sigma stays")
     if excess > 0.0:
-        text += f'what lies beyond, {excess * RHO_ARCSEC:.1f}", enters the sigma'
-    else:
-        text += "beyond it the effect does not change: the sigma stays"
+        size = excess * RHO_ARCSEC
+        beyond = said('what lies beyond, {size:.1f}", enters the sigma', size=size)
+    text = said(
+        "session {session} lies outside the range of the adopted effect {id} ({ranges}): the "
+        "correction is that of the edge, and {beyond}",
+        session=session,
+        id=adopted.id,
+        ranges=", ".join(ranges[name] for name in outside),
+        beyond=beyond,
+    )
     return ResultWarning("effect_outside_range", text, Subject.session(session))
 
 

@@ -19,6 +19,7 @@ from surveyapp.domain.project import (
     grid_bearing,
 )
 from surveyapp.domain.subject import Subject
+from surveyapp.languages import said
 from surveyapp_models.angles import RHO_ARCSEC, wrap_pi
 
 LARGEST_SHIFT_M = 0.1
@@ -51,12 +52,14 @@ def calibrations_of(
             own = session.azimuth_known if target.target == session.target else None
             grid_azimuth = own if own is not None else bearing
             if grid_azimuth is None or target.gyro_azimuth is None:
-                warnings.append(_unusable(session, target.target, "its azimuth is not known"))
+                warnings.append(_unusable(session, target.target, said("its azimuth is not known")))
                 continue
             known = known_error(project, session, line)
             true = known_astronomic(line, grid_azimuth, known.error)
             if true is None:
-                warnings.append(_unusable(session, target.target, "no crs gives its convergence"))
+                warnings.append(
+                    _unusable(session, target.target, said("no crs gives its convergence"))
+                )
                 continue
             for told in _assumed(session, target.target, known):
                 assumed.setdefault(frozenset((session.station, target.target)), told)
@@ -84,7 +87,13 @@ def calibrations_of(
 
 
 def _unusable(session: OrientationSession, target: str, why: str) -> ResultWarning:
-    text = f"session {session.id}, line {session.station}-{target}: no constant from it: {why}"
+    text = said(
+        "session {id}, line {station}-{target}: no constant from it: {why}",
+        id=session.id,
+        station=session.station,
+        target=target,
+        why=why,
+    )
     return ResultWarning("calibration_unusable", text, Subject.session(session.id, target))
 
 
@@ -94,10 +103,14 @@ def _contradiction(
     """Tell of a known azimuth that no error of the coordinates explains."""
     if not line.distance_m or abs(apart) * line.distance_m <= LARGEST_SHIFT_M:
         return []
-    text = (
-        f"session {session.id}: the known azimuth of {session.station}-{session.target} wins over "
-        f'the coordinates, which give {-apart * RHO_ARCSEC:+.1f}": '
-        f"{abs(apart) * line.distance_m:.2f} m at the target"
+    text = said(
+        "session {id}: the known azimuth of {station}-{target} wins over the "
+        'coordinates, which give {apart:+.1f}": {distance_m:.2f} m at the target',
+        id=session.id,
+        station=session.station,
+        target=session.target,
+        apart=-apart * RHO_ARCSEC,
+        distance_m=abs(apart) * line.distance_m,
     )
     return [ResultWarning("azimuth_known_differs", text, Subject.session(session.id))]
 
@@ -106,10 +119,13 @@ def _assumed(session: OrientationSession, target: str, known: KnownError) -> lis
     """Ask for the sigma of a known azimuth that nobody states."""
     if known.origin != "default":
         return []
-    text = (
-        f"line {session.station}-{target}: nobody states how well its azimuth is known:"
-        f' +-{known.error.sigma * RHO_ARCSEC:.1f}" is assumed; state '
-        "azimuth_known_sigma_arcsec, sigma_m of its stations, or station_sigma_m of the project"
+    text = said(
+        "line {station}-{target}: nobody states how well its azimuth is known: "
+        '+-{sigma:.1f}" is assumed; state azimuth_known_sigma_arcsec, sigma_m of '
+        "its stations, or station_sigma_m of the project",
+        station=session.station,
+        target=target,
+        sigma=known.error.sigma * RHO_ARCSEC,
     )
     subject = Subject.side(session.station, target)
     return [ResultWarning("known_azimuth_sigma_assumed", text, subject)]

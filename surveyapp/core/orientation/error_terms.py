@@ -107,10 +107,13 @@ def latitude_warnings(project: Project, positions: Mapping[str, Position]) -> li
             and min(abs(latitude - other) for other in known) > LATITUDE_WARNING
         }
         for station in sorted(far):
-            text = (
-                f"the constant of {instrument.id} was determined at another latitude than that of "
-                f"{station}: it changes by k (sec of the one - sec of the other); state k with "
-                "sigma = { latitude_arcsec = ... } of the instrument, or calibrate nearby"
+            text = said(
+                "the constant of {id} was determined at another latitude than that of "
+                "{station}: it changes by k (sec of the one - sec of the other); state k "
+                "with sigma = {{ latitude_arcsec = ... }} of the instrument, or calibrate "
+                "nearby",
+                id=instrument.id,
+                station=station,
             )
             subject = Subject.of("instrument", instrument.id)
             warnings.append(ResultWarning("constant_latitude", text, subject))

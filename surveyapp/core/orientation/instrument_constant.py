@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from surveyapp.core.orientation.agreement import Agreement, agreement_text
 from surveyapp.core.statistics.distributions import f_tail, student_quantile
 from surveyapp.core.statistics.levels import CONSISTENT
 from surveyapp.core.statistics.repeated import SHARED, weighted_mean
@@ -23,7 +24,7 @@ from surveyapp.domain.instrument import Instrument
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.station_line import StationLine
 from surveyapp.errors import Problem, SurveyError
-from surveyapp_models.angles import RHO_ARCSEC
+from surveyapp.languages import counted, said
 
 Phase = Literal["before", "between", "after"]
 POOLED = ConstantChoice("pooled")
@@ -68,33 +69,6 @@ class Calibration:
     def line(self) -> StationLine:
         """The line on which it was made."""
         return StationLine(self.station, self.target)
-
-
-@dataclass(frozen=True, slots=True)
-class Agreement:
-    """Comparison of group means.
-
-    Parameters
-    ----------
-    difference : float
-        Largest difference between two groups [rad].
-    limit : float
-        What chance makes at the 5 % level [rad] (two groups), else NaN-free 0.
-    agree : bool
-    scatter : float
-        Standard deviation to be added to the pooled mean where they do not agree [rad].
-    dof : int
-    probability : float
-    names : tuple of str
-    """
-
-    difference: float
-    limit: float
-    agree: bool
-    scatter: float
-    dof: int
-    probability: float
-    names: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,7 +199,7 @@ def _epoch_name(number: int, blocks: Mapping[int, Sequence[Calibration]]) -> str
     """before, after, or the place of a block between surveys."""
     phase = blocks[number][0].phase
     between = [n for n in sorted(blocks) if blocks[n][0].phase == "between"]
-    return f"between {between.index(number) + 1}" if phase == "between" else phase
+    return said("between {index}", index=between.index(number) + 1) if phase == "between" else phase
 
 
 @dataclass(frozen=True, slots=True)
@@ -289,9 +263,14 @@ def _not_predicted(constant: InstrumentConstant, where: str) -> Chosen:
     count = len(constant.calibrations)
     if not count:
         return Chosen(None, None)
-    text = (
-        f"{where}: the constant of {constant.instrument.id} cannot be predicted from {count} "
-        f"determination{'s' if count > 1 else ''}: all are pooled with their stated sigmas"
+    text = counted(
+        "{where}: the constant of {id} cannot be predicted from {count} determination: all are "
+        "pooled with their stated sigmas",
+        "{where}: the constant of {id} cannot be predicted from {count} determinations: all are "
+        "pooled with their stated sigmas",
+        count=count,
+        where=where,
+        id=constant.instrument.id,
     )
     return Chosen(constant.pooled, "pooled", (ResultWarning("prediction_impossible", text),))
 
@@ -325,7 +304,10 @@ def _nearest(
         if (distance := distance_to(item.station)) is not None
     }
     if not distances:
-        text = f"{where}: no positions tell which calibration line is nearest: all are pooled"
+        text = said(
+            "{where}: no positions tell which calibration line is nearest: all are pooled",
+            where=where,
+        )
         warning = ResultWarning("nearest_unknown", text)
         return Chosen(constant.pooled, "pooled", (warning,))
     nearest = min(distances, key=distances.__getitem__)
@@ -367,21 +349,13 @@ def _interpolated(
 
 
 def _not_interpolated(constant: InstrumentConstant, where: str) -> Chosen:
-    text = (
-        f"{where}: the constant cannot be interpolated: it needs calibrations before and after, "
-        "and times, dates or order on every session; all determinations are pooled"
+    text = said(
+        "{where}: the constant cannot be interpolated: it needs calibrations "
+        "before and after, and times, dates or order on every session; all "
+        "determinations are pooled",
+        where=where,
     )
     return Chosen(constant.pooled, "pooled", (ResultWarning("interpolation_impossible", text),))
-
-
-def agreement_text(test: Agreement, what: str) -> str:
-    """Tell an agreement or disagreement in one sentence."""
-    verdict = "agree" if test.agree else "disagree"
-    names = " and ".join(test.names) if len(test.names) < 4 else f"{len(test.names)} {what}"
-    return (
-        f'constants of {names} {verdict}: {test.difference * RHO_ARCSEC:.2f}" apart, '
-        f'chance makes {test.limit * RHO_ARCSEC:.2f}" (p = {test.probability:.3g})'
-    )
 
 
 __all__ = [

@@ -24,6 +24,7 @@ from surveyapp.core.uncertain import Source, Uncertain, aligned, combine
 from surveyapp.domain.mine_grid import StatedConvergence
 from surveyapp.domain.project import Centring, Station, grid_bearing, grid_distance_m
 from surveyapp.domain.results import AngleResult, BudgetLine, LineResult, Reference
+from surveyapp.languages import said, term
 from surveyapp_models.angles import wrap_two_pi
 
 NOTHING = 1e-18
@@ -304,10 +305,18 @@ def budget(item: Uncertain, calibration_sessions: frozenset[str]) -> tuple[Budge
         return ()
     ordered = sorted(by_source.items(), key=lambda entry: -entry[1])
     rows = [
-        BudgetLine(name, math.sqrt(value), value / total, origin_of(name))
+        BudgetLine(_words(name), math.sqrt(value), value / total, origin_of(name))
         for name, value in ordered
         if value > NOTHING * total
     ]
     named = {row.source.removeprefix("constant: ") for row in rows}
-    rows += [BudgetLine(name, 0.0, 0.0, origin_of(name)) for name in ALWAYS if name not in named]
+    rows += [
+        BudgetLine(term(name), 0.0, 0.0, origin_of(name)) for name in ALWAYS if name not in named
+    ]
     return tuple(rows)
+
+
+def _words(name: str) -> str:
+    """A source as a text: of a constant's terms the term is a text of its own."""
+    own = name.removeprefix("constant: ")
+    return term(name) if own == name else said("constant: {name}", name=term(own))

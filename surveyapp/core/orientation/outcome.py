@@ -23,6 +23,7 @@ from surveyapp.domain.results import (
     TargetResult,
 )
 from surveyapp.domain.subject import Subject
+from surveyapp.languages import said
 
 
 def outcome(
@@ -65,13 +66,14 @@ def outcome(
     )
 
 
-_CHOOSE = (
-    "; nothing is averaged silently: the pooled sigma contains the disagreement; "
-    "choose with constant_choice = pooled, nearest, interpolated or line:A-B"
+_CHOOSE = said(
+    "; nothing is averaged silently: the pooled sigma contains the "
+    "disagreement; choose with constant_choice = pooled, nearest, interpolated "
+    "or line:A-B"
 )
-_INSTEAD = (
-    "; the constant is predicted for each line, averaged over what may be behind it, and the "
-    "interval contains that"
+_INSTEAD = said(
+    "; the constant is predicted for each line, averaged over what may be "
+    "behind it, and the interval contains that"
 )
 
 

@@ -24,6 +24,7 @@ from surveyapp.core.statistics.repeated import SHARED, RunScatter
 from surveyapp.core.uncertain import Source, Spread, Uncertain
 from surveyapp.domain.priors import DEFAULT_PRIORS, Priors
 from surveyapp.domain.project import ResultWarning
+from surveyapp.languages import said
 from surveyapp_models.angles import wrap_pi
 from surveyapp_models.arrays import Floats
 
@@ -31,11 +32,11 @@ LEAST = 4
 """Determinations from which the constant is predicted."""
 MOST = 240
 """The latest determinations that are used: older ones tell of another instrument."""
-CAUSE = "constant: cause not known"
-SCATTER = "constant: scatter of the determinations"
+CAUSE = said("constant: cause not known")
+SCATTER = said("constant: scatter of the determinations")
 TOGETHER = 16
 """Lines that are predicted at once: work and memory grow with their number, no faster."""
-BESIDE = ("run-to-run scatter", "adopted effect outside its range")
+BESIDE = (said("run-to-run scatter"), said("adopted effect outside its range"))
 """Contributions that the prediction estimates itself, from the scatter and its causes."""
 UNIT_OF_EFFECT: Mapping[str, str] = {
     "temperature": "temperature",
@@ -229,16 +230,21 @@ def _columns(
         elif 2 * int(missing.sum()) < n and BY_NAME[name].mean_fills:
             mean = float(values[:n][~missing].mean())
             kept[name] = np.concatenate([np.where(missing, mean, values[:n]), values[n:]])
-            text = (
-                f"instrument {instrument}: {name} is missing at {int(missing.sum())} of {n} "
-                "determinations: the mean of the others stands for it in the prediction"
+            text = said(
+                "instrument {instrument}: {name} is missing at {int} of {n} "
+                "determinations: the mean of the others stands for it in the prediction",
+                instrument=instrument,
+                name=name,
+                int=int(missing.sum()),
+                n=n,
             )
             warnings.append(ResultWarning("covariate_missing", text))
     if "elapsed_days" not in kept:
         kept["elapsed_days"] = np.concatenate([np.arange(n), np.full(len(visits), float(n))])
-        text = (
-            f"instrument {instrument}: neither dates nor order: the prediction takes the "
-            "determinations in the order of the file and the lines after them"
+        text = said(
+            "instrument {instrument}: neither dates nor order: the prediction takes "
+            "the determinations in the order of the file and the lines after them",
+            instrument=instrument,
         )
         warnings.append(ResultWarning("no_dates", text))
     gaps = frozenset(name for name, values in kept.items() if np.isnan(values).any())

@@ -10,6 +10,7 @@ from surveyapp.core.uncertain import Uncertain
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.station_line import StationLine
 from surveyapp.domain.subject import Subject
+from surveyapp.languages import joined, listed, said
 from surveyapp_models.angles import RHO_ARCSEC
 
 ONE_TEMPERATURE_K = 3.0
@@ -45,16 +46,21 @@ def told_of(
             name for name in gaps if any(_lacks(visit, name) for _, visit in line.visits)
         )
         if missing:
-            text = (
-                f"line {line.line}: {', '.join(missing)} not told: the constant is predicted for "
-                "all that it may have been, and its interval is wider for it"
+            text = said(
+                "line {line}: {missing} not told: the constant is predicted for all that "
+                "it may have been, and its interval is wider for it",
+                line=line.line,
+                missing=joined(", ", missing),
             )
             warnings.append(ResultWarning("covariate_missing", text, subject))
         beyond = _beyond(line, known)
         if beyond:
-            text = (
-                f"line {line.line}: {' and '.join(beyond)}: the constant of {instrument} is "
-                "extrapolated, and its interval is wider for it"
+            text = said(
+                "line {line}: {beyond}: the constant of {instrument} is extrapolated, and "
+                "its interval is wider for it",
+                line=line.line,
+                beyond=listed(beyond),
+                instrument=instrument,
             )
             warnings.append(ResultWarning("prediction_extrapolated", text, subject))
     return warnings
@@ -66,9 +72,10 @@ def one_block(instrument: str, known: Sequence[Circumstances], wanted: bool) -> 
     one = len(blocks) == 1 and known[0].number("elapsed_days") is not None
     if not one or not wanted:
         return []
-    text = (
-        f"instrument {instrument}: all determinations were made in one block of work: "
-        "what changes from day to day is not seen in them"
+    text = said(
+        "instrument {instrument}: all determinations were made in one block of "
+        "work: what changes from day to day is not seen in them",
+        instrument=instrument,
     )
     return [ResultWarning("one_block", text)]
 
@@ -87,8 +94,13 @@ def _beyond(line: Wanted, known: Sequence[Circumstances]) -> list[str]:
         far = max(own, key=lambda theta: max(low - theta, theta - high))
         if not low <= far <= high:
             found.append(
-                f"its temperature of {far:.1f} C lies outside the {min(thetas):.1f} to "
-                f"{max(thetas):.1f} C of the determinations"
+                said(
+                    "its temperature of {far:.1f} C lies outside the {thetas:.1f} to "
+                    "{thetas2:.1f} C of the determinations",
+                    far=far,
+                    thetas=min(thetas),
+                    thetas2=max(thetas),
+                )
             )
     days, visits = _told(known, "elapsed_days"), _told(visited, "elapsed_days")
     if len(days) == len(known) and visits:
@@ -96,8 +108,12 @@ def _beyond(line: Wanted, known: Sequence[Circumstances]) -> list[str]:
         gap = max(max(visits) - max(days), min(days) - min(visits))
         if gap > max(span, 1.0):
             found.append(
-                f"it was observed {gap:.0f} days from the nearest determination, and they span "
-                f"{span:.0f} days"
+                said(
+                    "it was observed {gap:.0f} days from the nearest determination, and they "
+                    "span {span:.0f} days",
+                    gap=gap,
+                    span=span,
+                )
             )
     return found
 
@@ -108,10 +124,16 @@ def _told(items: Sequence[Circumstances], column: str) -> list[float]:
 
 def leaves_out(choice: str, chosen: Uncertain, predicted: Uncertain, where: str) -> ResultWarning:
     """What another choice of the constant leaves out, beside the prediction."""
-    text = (
-        f"{where}: constant_choice {choice} leaves out that the constant may have changed with "
-        f'time, temperature or place: it says {chosen.value * RHO_ARCSEC:.1f}" +- '
-        f'{chosen.interval95 * RHO_ARCSEC:.1f}", the average over what may be at work '
-        f'{predicted.value * RHO_ARCSEC:.1f}" +- {predicted.interval95 * RHO_ARCSEC:.1f}" (95 %)'
+    text = said(
+        "{where}: constant_choice {choice} leaves out that the constant may have "
+        'changed with time, temperature or place: it says {value:.1f}" +- '
+        '{interval95:.1f}", the average over what may be at work {value2:.1f}" +- '
+        '{interval952:.1f}" (95 %)',
+        where=where,
+        choice=choice,
+        value=chosen.value * RHO_ARCSEC,
+        interval95=chosen.interval95 * RHO_ARCSEC,
+        value2=predicted.value * RHO_ARCSEC,
+        interval952=predicted.interval95 * RHO_ARCSEC,
     )
     return ResultWarning("choice_leaves_out", text)

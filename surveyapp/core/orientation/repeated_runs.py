@@ -9,6 +9,7 @@ from surveyapp.core.statistics.repeated import RunScatter, run_scatter
 from surveyapp.core.swing.session import ReducedSession
 from surveyapp.core.uncertain import Uncertain, aligned
 from surveyapp.domain.project import Project
+from surveyapp.languages import said
 
 Groups = Mapping[tuple[str, str, str], Sequence[Uncertain]]
 """By station, target and epoch."""
@@ -25,7 +26,7 @@ def run_groups(project: Project, reduced: Sequence[ReducedSession], instrument: 
             if target.gyro_azimuth is not None:
                 phase: str = item.session.purpose
                 if phase == "calibration":
-                    phase = f"block {order.block(item.session.id)}"
+                    phase = said("block {id}", id=order.block(item.session.id))
                 key = (item.session.station, target.target, phase)
                 groups.setdefault(key, []).append(target.gyro_azimuth)
     return groups

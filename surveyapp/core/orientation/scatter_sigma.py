@@ -16,9 +16,10 @@ from surveyapp.core.swing.session import ReducedSession
 from surveyapp.core.uncertain import Source, Uncertain, aligned
 from surveyapp.domain.project import Project, ResultWarning
 from surveyapp.domain.subject import Subject
+from surveyapp.languages import said
 from surveyapp_models.angles import RHO_ARCSEC
 
-NAME = "scatter of determinations"
+NAME = said("scatter of determinations")
 
 
 def with_scatter_sigma(
@@ -54,11 +55,15 @@ def with_scatter_sigma(
             )
             result[place] = replace(item, targets=targets)
         if changed:
-            text = (
-                f"{instrument.id}: {len(changed)} sessions tell no sigma: that of their scatter is "
-                f'taken, {sigma * RHO_ARCSEC:.1f}" for one and, from the scatter alone, '
-                f'{sigma / math.sqrt(len(changed)) * RHO_ARCSEC:.1f}" for the mean of '
-                f"{len(changed)}, with {dof} degrees of freedom"
+            text = said(
+                "{id}: {changed} sessions tell no sigma: that of their scatter is taken, "
+                '{sigma:.1f}" for one and, from the scatter alone, {sigma2:.1f}" for the '
+                "mean of {changed}, with {dof} degrees of freedom",
+                id=instrument.id,
+                changed=len(changed),
+                sigma=sigma * RHO_ARCSEC,
+                sigma2=sigma / math.sqrt(len(changed)) * RHO_ARCSEC,
+                dof=dof,
             )
             subject = Subject.of("instrument", instrument.id)
             warnings.append(ResultWarning("sigma_from_scatter", text, subject))

@@ -19,6 +19,7 @@ from surveyapp.core.uncertain import Uncertain
 from surveyapp.domain.project import Project, ResultWarning, Station, grid_distance_m
 from surveyapp.domain.subject import Subject
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,10 +149,12 @@ def _round(
         moment=order.moment(session.id),
         block=order.block(session.id),
         distance_to=distance_to,
-        where=f"session {session.id}",
+        where=said("session {id}", id=session.id),
     )
     if predicted is not None and chosen.value is not None and choice.kind != "known":
-        told = leaves_out(str(choice), chosen.value, predicted.constant, f"session {session.id}")
+        told = leaves_out(
+            str(choice), chosen.value, predicted.constant, said("session {id}", id=session.id)
+        )
         chosen = replace(chosen, warnings=(*chosen.warnings, told))
     own = scatter.applied(azimuth, session.id)
     return Round(session.id, own, chosen, rounds_of(item), own_centring(session))
@@ -159,18 +162,22 @@ def _round(
 
 def _line_warnings(line: OrientedLine) -> list[ResultWarning]:
     result = line.result
-    name = f"line {result.station}-{result.target}"
+    name = said("line {station}-{target}", station=result.station, target=result.target)
     warnings = []
     if result.true_azimuth is None:
-        text = f"{name}: the instrument {result.instrument} has no constant: no true azimuth"
+        text = said(
+            "{name}: the instrument {instrument} has no constant: no true azimuth",
+            name=name,
+            instrument=result.instrument,
+        )
         warnings.append(ResultWarning("no_constant", text, result.subject))
     if result.convergence is None:
-        text = f"{name}: no crs or no position: no convergence, no grid azimuth"
+        text = said("{name}: no crs or no position: no convergence, no grid azimuth", name=name)
         warnings.append(ResultWarning("no_grid", text, result.subject))
     elif result.arc_to_chord is None:
-        text = f"{name}: the target has no position: arc-to-chord taken as zero"
+        text = said("{name}: the target has no position: arc-to-chord taken as zero", name=name)
         warnings.append(ResultWarning("arc_to_chord_unknown", text, result.subject))
     if result.distance_m is None:
-        text = f"{name}: its length is not known: centring is not in its sigma"
+        text = said("{name}: its length is not known: centring is not in its sigma", name=name)
         warnings.append(ResultWarning("centring_unknown", text, result.subject))
     return [*warnings, *azimuth_warnings(result)]

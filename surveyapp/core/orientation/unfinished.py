@@ -19,6 +19,7 @@ from surveyapp.domain.project import OrientationSession, Project, ResultWarning,
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.domain.subject import Subject
 from surveyapp.errors import SurveyError
+from surveyapp.languages import said
 
 CODE: Final = "session_unfinished"
 
@@ -27,10 +28,10 @@ def lacking(session: OrientationSession) -> str:
     """What a session lacks until its method can say anything; empty where it has enough."""
     if session.method == "automatic":
         rounds = session.book.of_kind(ReadingKind.AZIMUTH, ReadingKind.NORTH)
-        return "" if rounds else "no round yet, 1 is the least"
+        return "" if rounds else said("no round yet, 1 is the least")
     if session.method == "tracking":
-        return _points(session, ReadingKind.REVERSAL, "turning points", MIN_POINTS)
-    kind, name = ReadingKind.SCALE_REVERSAL, "turning points on the scale"
+        return _points(session, ReadingKind.REVERSAL, said("turning points"), MIN_POINTS)
+    kind, name = ReadingKind.SCALE_REVERSAL, said("turning points on the scale")
     found = _points(session, kind, name, LEAST_OF_SCALE[session.method])
     return found or (_passages(session) if session.method == "transit" else "")
 
@@ -38,20 +39,24 @@ def lacking(session: OrientationSession) -> str:
 def _points(session: OrientationSession, kind: ReadingKind, name: str, least: int) -> str:
     rows = session.book.of_kind(kind)
     if len(rows) < least:
-        return f"{len(rows)} {name}, {least} are the least"
+        return said("{rows} {name}, {least} are the least", rows=len(rows), name=name, least=least)
     missed = bool(session.book.of_kind(ReadingKind.MISSED))
     if missed and len({row.side for row in rows}) < 2:
-        return f"{name} of one side only, both are needed"
+        return said("{name} of one side only, both are needed", name=name)
     return ""
 
 
 def _passages(session: OrientationSession) -> str:
     passages = number_rows(session).passages
     if len(passages) < MIN_POINTS:
-        return f"{len(passages)} transits, {MIN_POINTS} are the least"
+        return said(
+            "{passages} transits, {min_points} are the least",
+            passages=len(passages),
+            min_points=MIN_POINTS,
+        )
     first = passages[0][1].value
     after = [turn for turn, row in passages if row.value == first]
-    return "" if triples_of(after) else "no three transits of one division in a row"
+    return "" if triples_of(after) else said("no three transits of one division in a row")
 
 
 def without_unfinished(project: Project, *, keep: Collection[str] = ()) -> Project:
@@ -84,7 +89,7 @@ def without_unfinished(project: Project, *, keep: Collection[str] = ()) -> Proje
     warnings = [
         ResultWarning(
             CODE,
-            f"session {name} is left out, it is not finished: {text}",
+            said("session {name} is left out, it is not finished: {text}", name=name, text=text),
             Subject.session(name),
         )
         for name, text in missing.items()

@@ -75,6 +75,7 @@ from surveyapp.domain.project import (
 )
 from surveyapp.domain.subject import Subject
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 
 
 @dataclass(frozen=True, slots=True)
@@ -302,13 +303,15 @@ def _reduce_one(
         session, reduction, sights, sigma=sigma, stations=setting.stations, card=card
     )
     if not targets:
-        text = f"session {session.id}: no sight of a target: gyro north only, no line"
+        text = said("session {id}: no sight of a target: gyro north only, no line", id=session.id)
         warnings.append(ResultWarning("no_line", text, Subject.session(session.id)))
     for target in targets:
         if target.sights is not None and target.sights.collimation is None:
-            text = (
-                f"session {session.id}: {target.target} was sighted in one face only: "
-                "the collimation error stays in the line"
+            text = said(
+                "session {id}: {target} was sighted in one face only: the collimation "
+                "error stays in the line",
+                id=session.id,
+                target=target.target,
             )
             subject = Subject.session(session.id, target.target)
             warnings.append(ResultWarning("one_face", text, subject))
@@ -322,15 +325,20 @@ def _latitude_warnings(
 ) -> list[ResultWarning]:
     """Refuse or warn of a latitude; the card's own limit replaces the general 75 degrees."""
     if latitude is None:
-        text = (
-            f"session {session.id}: the latitude of {session.station} is not known: "
-            "card values hold for their own latitude"
+        text = said(
+            "session {id}: the latitude of {station} is not known: card values hold "
+            "for their own latitude",
+            id=session.id,
+            station=session.station,
         )
         return [ResultWarning("latitude_unknown", text, Subject.session(session.id))]
     degrees = abs(math.degrees(latitude))
     limit = MAX_LATITUDE_DEG if allowed is None else math.degrees(allowed)
     if degrees > limit:
-        problem = latitude_problem(latitude, f"session {session.id}, station {session.station}")
+        problem = latitude_problem(
+            latitude,
+            said("session {id}, station {station}", id=session.id, station=session.station),
+        )
         if problem is None:
             problem = Problem(
                 what="the station lies beyond the latitude for which the instrument is made",
@@ -341,9 +349,12 @@ def _latitude_warnings(
             )
         raise SurveyError(problem)
     if degrees > WARN_LATITUDE_DEG:
-        text = (
-            f"session {session.id}: latitude {math.degrees(latitude):.2f} degrees: the "
-            f"meridian-seeking moment is {math.cos(latitude):.0%} of that at the equator"
+        text = said(
+            "session {id}: latitude {latitude:.2f} degrees: the meridian-seeking "
+            "moment is {latitude2:.0%} of that at the equator",
+            id=session.id,
+            latitude=math.degrees(latitude),
+            latitude2=math.cos(latitude),
         )
         return [ResultWarning("latitude_high", text, Subject.session(session.id))]
     return []

@@ -12,6 +12,7 @@ from surveyapp.domain.penetration import Penetration, StatedTolerance
 from surveyapp.domain.penetration_result import MissSigma, Tolerance
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.rulebook import Limit, RuleBook
+from surveyapp.languages import joined, said
 
 DEFAULT_FACTOR = 2.0
 QUANTITIES = ("lateral", "longitudinal", "vertical")
@@ -28,9 +29,10 @@ def factor_of(
         if found:
             limit, value = found[0]
             return value, f"{book.id}.{limit.id}", ()
-    text = (
-        f"neither the project nor a rule book states a factor: {DEFAULT_FACTOR:g} is taken; set "
-        "factor in [penetration]"
+    text = said(
+        "neither the project nor a rule book states a factor: {default_factor:g} "
+        "is taken; set factor in [penetration]",
+        default_factor=DEFAULT_FACTOR,
     )
     return DEFAULT_FACTOR, "assumed", (ResultWarning("factor_assumed", text),)
 
@@ -60,9 +62,13 @@ def tolerance_of(
             confirmed.append(True)
             sources.append(stated.source or "project")
             if limit is not None and abs(limit[1] - mine) > 1e-9:
-                text = (
-                    f"{quantity}: the project allows {mine:g} m, the rule book {limit[1]:g} m "
-                    f"({limit[0].id}); the project's is used"
+                text = said(
+                    "{quantity}: the project allows {mine:g} m, the rule book {limit:g} m "
+                    "({id}); the project's is used",
+                    quantity=quantity,
+                    mine=mine,
+                    limit=limit[1],
+                    id=limit[0].id,
                 )
                 warnings.append(ResultWarning("tolerance_contradiction", text))
         elif limit is not None and book is not None:
@@ -73,14 +79,17 @@ def tolerance_of(
             values.append(None)
             confirmed.append(True)
     if all(value is None for value in values):
-        text = "neither the project nor its rule book states a tolerance for this tunnel"
+        text = said("neither the project nor its rule book states a tolerance for this tunnel")
         return None, (ResultWarning("no_tolerance", text),)
     source = "; ".join(dict.fromkeys(sources))
     parts = (confirmed[0], confirmed[1], confirmed[2])
     found = Tolerance(values[0], values[1], values[2], source, all(parts), parts)
     if not found.confirmed:
         names = [q for q, sure in zip(QUANTITIES, parts, strict=True) if not sure]
-        text = f"the limit of {', '.join(names)} is not confirmed in a source: it only warns"
+        text = said(
+            "the limit of {names} is not confirmed in a source: it only warns",
+            names=joined(", ", names),
+        )
         warnings.append(ResultWarning("tolerance_unconfirmed", text))
     return found, tuple(warnings)
 
@@ -117,6 +126,9 @@ def judge(
             confirmed_failure = confirmed_failure or tolerance.confirmed_parts[i]
     told: tuple[ResultWarning, ...] = ()
     if open_ones:
-        text = f"{', '.join(open_ones)}: a tolerance is stated and nothing to predict it from"
+        text = said(
+            "{open_ones}: a tolerance is stated and nothing to predict it from",
+            open_ones=joined(", ", open_ones),
+        )
         told = (ResultWarning("component_not_judged", text),)
     return (passed if judged else None), confirmed_failure, told

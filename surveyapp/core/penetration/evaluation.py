@@ -28,6 +28,7 @@ from surveyapp.core.penetration.rows import RowKind
 from surveyapp.core.statistics.distributions import chi_square_tail
 from surveyapp.domain.penetration import MeasuredMiss, Wall, WallRefraction
 from surveyapp.domain.penetration_result import HeadingShare, MissCandidate, MissTest
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
 
@@ -104,16 +105,20 @@ def evaluate_miss(mine: Mine, miss: MeasuredMiss) -> MissTest:
 
 def _text(test: Closure) -> str:
     if test.consistent:
-        return "The miss is what the declared errors make; it accuses nothing."
+        return said("The miss is what the declared errors make; it accuses nothing.")
     lateral, along = (abs(t or 0.0) for t in test.t[:2])
-    text = (
-        "The miss is larger than the declared errors make. One number does not name its cause: "
-        "every line of the list would make it alone."
+    text = said(
+        "The miss is larger than the declared errors make. One number does not "
+        "name its cause: every line of the list would make it alone."
     )
     if along >= CRITICAL_T > lateral:
-        text += " A longitudinal miss without a lateral one points to the scale of the lengths."
+        text += said(
+            " A longitudinal miss without a lateral one points to the scale of the lengths."
+        )
     return text + (
-        " Gyro sides from both ends, sights in zigzag or a second gyro separate what is listed."
+        said(
+            " Gyro sides from both ends, sights in zigzag or a second gyro separate what is listed."
+        )
     )
 
 

@@ -20,6 +20,7 @@ from surveyapp.core.penetration.rows import HeadingRows, Row, RowKind
 from surveyapp.domain.observations import Observation
 from surveyapp.domain.penetration import MeasuredMiss
 from surveyapp.domain.penetration_result import MissTest, ResidualVerdict
+from surveyapp.languages import joined, said
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
 from surveyapp_models.sight_refraction import curvature_per_gradient
@@ -77,7 +78,13 @@ def explain(
         for effect in item.named:
             if separated(mine.headings[item.heading], effect.effect):
                 taken = taken + movement(mine, item.heading, effect)
-                names.append(f"{effect.effect.replace('_', ' ')} in traverse {item.traverse}")
+                names.append(
+                    said(
+                        "{replace} in traverse {traverse}",
+                        replace=effect.effect.replace("_", " "),
+                        traverse=item.traverse,
+                    )
+                )
     if not names:
         return test
     lateral = None if miss.lateral_m is None else miss.lateral_m - float(taken[0])
@@ -87,9 +94,12 @@ def explain(
     )
     if not left.consistent:
         return test
-    text = (
-        f"The residuals name {', '.join(names)}, the survey holds what separates it, and without "
-        f"it the miss is what the declared errors make (chi-square {left.chi2:.2f})."
+    text = said(
+        "The residuals name {names}, the survey holds what separates it, and "
+        "without it the miss is what the declared errors make (chi-square "
+        "{chi2:.2f}).",
+        names=joined(", ", names),
+        chi2=left.chi2,
     )
     return replace(test, verdict="explained", text=text)
 

@@ -18,6 +18,7 @@ from surveyapp.domain.placement import (
     PlacementPlan,
     PlannedSide,
 )
+from surveyapp.languages import said
 
 BETTER_ANGLES = 5.0 / 7.0
 """From the 7" class to 5"."""
@@ -113,7 +114,7 @@ def _least(
 ) -> tuple[LeastProgramme | None, str]:
     allowed, factor = judged
     if allowed is None:
-        return None, "no lateral tolerance is stated, so no programme can be judged by it"
+        return None, said("no lateral tolerance is stated, so no programme can be judged by it")
     found = least_sides(start, allowed / factor)
     if found is not None:
         chosen, value = found
@@ -122,16 +123,24 @@ def _least(
     parts = contributions(whole)
     value = math.sqrt(float(total(parts)[0][0, 0]))
     shared = math.sqrt(sum(float(p.plane[0, 0]) for p in parts if p.source == "gyro_constant"))
-    why = (
-        f"no number of further gyro sides is enough: with all {len(candidates)} free sides "
-        f"observed the prediction is {factor:g} x {value:.4f} = {factor * value:.3f} m, above the "
-        f"allowed {allowed:g} m"
+    why = said(
+        "no number of further gyro sides is enough: with all {candidates} free "
+        "sides observed the prediction is {factor:g} x {value:.4f} = {factor2:.3f} "
+        "m, above the allowed {allowed:g} m",
+        candidates=len(candidates),
+        factor=factor,
+        value=value,
+        factor2=factor * value,
+        allowed=allowed,
     )
     if shared > 0.0:
-        why += (
-            f"; of this the shared error of the constant alone is {factor:g} x {shared:.4f} = "
-            f"{factor * shared:.3f} m, which no further side of the same instrument lowers: a "
-            "second instrument or more rounds of calibration do"
+        why += said(
+            "; of this the shared error of the constant alone is {factor:g} x "
+            "{shared:.4f} = {factor2:.3f} m, which no further side of the same "
+            "instrument lowers: a second instrument or more rounds of calibration do",
+            factor=factor,
+            shared=shared,
+            factor2=factor * shared,
         )
     return None, why
 
@@ -145,7 +154,7 @@ def measures(mine: Mine) -> tuple[Measure, ...]:
             "angles",
             scaled(mine, RowKind.ANGLE, BETTER_ANGLES),
             0,
-            "angles with 5/7 of the sigma",
+            said("angles with 5/7 of the sigma"),
         )
     ]
     if gyro:
@@ -156,25 +165,27 @@ def measures(mine: Mine) -> tuple[Measure, ...]:
                 "gyro",
                 scaled(mine, RowKind.GYRO, BETTER_GYRO),
                 0,
-                "gyro sides with 2/3 of the sigma",
+                said("gyro sides with 2/3 of the sigma"),
             ),
             (
                 "second_instrument",
                 _second_instrument(mine),
                 gyro,
-                "every gyro side with a second instrument too",
+                said("every gyro side with a second instrument too"),
             ),
             (
                 "calibration_rounds",
                 assemble(mine.plan, mine.headings, rounds, mine.calibrated),
                 0,
-                "twice the rounds of calibration",
+                said("twice the rounds of calibration"),
             ),
         ]
         if more:
-            found.append(("reciprocal", mirrored, more, "gyro sides from both ends"))
+            found.append(("reciprocal", mirrored, more, said("gyro sides from both ends")))
     plan = replace(mine.plan, independent_surveys=mine.plan.independent_surveys + 1)
-    found.append(("second_survey", replace(mine, plan=plan), gyro, "one independent survey more"))
+    found.append(
+        ("second_survey", replace(mine, plan=plan), gyro, said("one independent survey more"))
+    )
     made = [
         Measure(kind, value, now - value, cost, text)
         for kind, changed, cost, text in found

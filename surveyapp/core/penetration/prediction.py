@@ -27,6 +27,7 @@ from surveyapp.domain.penetration_result import (
 )
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.rulebook import RuleBook
+from surveyapp.languages import said
 from surveyapp_models.angles import TWO_PI
 from surveyapp_models.arrays import Floats
 
@@ -119,13 +120,13 @@ def _not_stated(mine: Mine) -> list[ResultWarning]:
     """What the prediction takes for free of error because nobody says otherwise."""
     found = []
     if not any(float(np.max(heading.length_sigma)) > 0.0 for heading in mine.headings):
-        text = "no sigma of distances is stated: lengths count as free of error"
+        text = said("no sigma of distances is stated: lengths count as free of error")
         found.append(ResultWarning("sigma_distance_unknown", text))
     if not heights_known(mine):
-        text = "height = { method = ... } is not stated: the vertical error is not determined"
+        text = said("height = { method = ... } is not stated: the vertical error is not determined")
         found.append(ResultWarning("height_unknown", text))
     walls = any(any(heading.wall_signs()) for heading in mine.plan.headings)
     if mine.plan.refraction is not None and not walls:
-        text = "gradients are stated and no heading says along which wall: they count nothing"
+        text = said("gradients are stated and no heading says along which wall: they count nothing")
         found.append(ResultWarning("walls_unknown", text))
     return found

@@ -18,6 +18,7 @@ from surveyapp.core.penetration.covariance import Contribution
 from surveyapp.core.penetration.mine import Mine
 from surveyapp.core.penetration.rows import HeadingRows, RowKind
 from surveyapp.domain.penetration_result import SectionedSigma
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 LEAST_QUOTIENT = 1.0
@@ -32,7 +33,7 @@ def sectioned(mine: Mine, parts: Sequence[Contribution]) -> SectionedSigma:
     """Lateral 1 sigma by the sectioned formula."""
     if any(not _azimuths(heading) for heading in mine.headings):
         return SectionedSigma(
-            None, False, "a heading is oriented by neither a start nor a gyro side"
+            None, False, said("a heading is oriented by neither a start nor a gyro side")
         )
     variance = sum(_heading_variance(mine, heading) for heading in mine.headings)
     variance /= mine.plan.independent_surveys
@@ -103,24 +104,40 @@ def _reasons(mine: Mine, parts: Sequence[Contribution]) -> list[str]:
         quotient = _least_quotient(heading)
         if quotient is not None and quotient < LEAST_QUOTIENT:
             reasons.append(
-                f"heading {name}: q = k m_b^2/m_g^2 of a section is {quotient:.2f}, below "
-                f"{LEAST_QUOTIENT:g}: conservative by up to 16 %"
+                said(
+                    "heading {name}: q = k m_b^2/m_g^2 of a section is {quotient:.2f}, below "
+                    "{least_quotient:g}: conservative by up to 16 %",
+                    name=name,
+                    quotient=quotient,
+                    least_quotient=LEAST_QUOTIENT,
+                )
             )
         lever = abs(float(np.sum(heading.route.to_right @ mine.axes[:, 0])))
         length = float(heading.route.reach.sum())
         if length > BENT * lever:
             reasons.append(
-                f"heading {name} is bent: {length:.0f} m long, the formula's lever {lever:.0f} m"
+                said(
+                    "heading {name} is bent: {length:.0f} m long, the formula's lever "
+                    "{lever:.0f} m",
+                    name=name,
+                    length=length,
+                    lever=lever,
+                )
             )
         kinds = {row.kind for row in heading.rows}
         if {RowKind.GYRO, RowKind.AZIMUTH} <= kinds:
-            reasons.append(f"heading {name} has a start azimuth and gyro sides")
+            reasons.append(said("heading {name} has a start azimuth and gyro sides", name=name))
     lateral = sum(float(part.plane[0, 0]) for part in parts)
     bent_rays = sum(
         float(part.plane[0, 0]) for part in parts if part.source == "lateral_refraction"
     )
     if lateral > 0.0 and bent_rays > REFRACTION_SHARE * lateral:
-        reasons.append(f"lateral refraction is {bent_rays / lateral:.0%} of the variance")
+        reasons.append(
+            said(
+                "lateral refraction is {bent_rays:.0%} of the variance",
+                bent_rays=bent_rays / lateral,
+            )
+        )
     return reasons
 
 

@@ -40,6 +40,7 @@ from surveyapp.domain.shaft_result import (
     WireRest,
 )
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import said
 from surveyapp_models.angles import wrap_pi, wrap_two_pi
 from surveyapp_models.arrays import Floats
 
@@ -102,9 +103,9 @@ def orient_shaft(
     """
     join = _joined(shaft, known)
     wires, at, to = shaft.wires, *shaft.orient
-    upper = join.surface.per_row(lambda p: bearing(p, *wires), "the azimuth of the wires")
+    upper = join.surface.per_row(lambda p: bearing(p, *wires), said("the azimuth of the wires"))
     lower = join.underground.per_row(
-        lambda p: bearing(p, at, to) - bearing(p, *wires), "the side against the wires"
+        lambda p: bearing(p, at, to) - bearing(p, *wires), said("the side against the wires")
     )
     distance = length(join.surface.places, *wires)
     plumb = math.sqrt(2.0) * shaft.sigma_plumb_m / distance
@@ -182,7 +183,7 @@ def _gyro(
     for row in shaft.of_kind(K.AZIMUTH, "underground"):
         carried = net.per_row(
             lambda p, row=row: bearing(p, at, to) - bearing(p, row.at, row.to),  # type: ignore[misc]
-            f"the gyro side {row.at}-{row.to}",
+            said("the gyro side {at}-{to}", at=row.at, to=row.to),
         )
         turned = bearing(net.places, at, to) - bearing(net.places, row.at, row.to)
         values.append(row.value + turned)
@@ -302,7 +303,12 @@ def _wires(shaft: Shaft) -> tuple[tuple[WireRest, ...], list[ResultWarning]]:
             if not rows:
                 continue
             if len(rows) < 3:
-                text = f"shaft {shaft.id}, wire {wire} {axis}: fewer than 3 turning points"
+                text = said(
+                    "shaft {id}, wire {wire} {axis}: fewer than 3 turning points",
+                    id=shaft.id,
+                    wire=wire,
+                    axis=axis,
+                )
                 warnings.append(ResultWarning("swing_too_short", text))
                 continue
             stated = [row.sigma for row in rows if row.sigma is not None]
@@ -365,14 +371,27 @@ def _warnings(
 ) -> list[ResultWarning]:
     found = []
     if distance < CLOSEST_M:
-        text = f"shaft {shaft.id}: the wires are {distance:.3f} m apart, closer than 1 m"
+        text = said(
+            "shaft {id}: the wires are {distance:.3f} m apart, closer than 1 m",
+            id=shaft.id,
+            distance=distance,
+        )
         found.append(ResultWarning("wires_close", text))
     for item in triangles:
-        where = f"shaft {shaft.id}, triangle at {item.station} ({item.place})"
+        where = said(
+            "shaft {id}, triangle at {station} ({place})",
+            id=shaft.id,
+            station=item.station,
+            place=item.place,
+        )
         if item.gamma > WIDEST:
-            text = f"{where}: the angle between the wires is {math.degrees(item.gamma):.2f} degrees"
-            found.append(ResultWarning("gamma_large", f"{text}, above 3"))
+            text = said(
+                "{where}: the angle between the wires is {gamma:.2f} degrees",
+                where=where,
+                gamma=math.degrees(item.gamma),
+            )
+            found.append(ResultWarning("gamma_large", said("{text}, above 3", text=text)))
         if item.ratio > LONGEST:
-            text = f"{where}: a/c = {item.ratio:.2f}, above 1.5"
+            text = said("{where}: a/c = {ratio:.2f}, above 1.5", where=where, ratio=item.ratio)
             found.append(ResultWarning("triangle_long", text))
     return found

@@ -22,6 +22,7 @@ from surveyapp.core.shafts.plane import Place, PlaneSolution, bearing, length
 from surveyapp.domain.shaft import Shaft
 from surveyapp.domain.shaft_result import PlumbedPoint
 from surveyapp.errors import SurveyError
+from surveyapp.languages import said
 
 Places = Mapping[str, Place]
 
@@ -73,11 +74,11 @@ def _variance(shaft: Shaft, surface: PlaneSolution, underground: PlaneSolution, 
     for i in (0, 1):
         above = surface.per_row(
             lambda p, i=i: carried_place(p, low, wires, name)[i],  # type: ignore[misc]
-            f"the place of {name}",
+            said("the place of {name}", name=name),
         )
         below = underground.per_row(
             lambda p, i=i: carried_place(up, p, wires, name)[i],  # type: ignore[misc]
-            f"the place of {name}",
+            said("the place of {name}", name=name),
         )
         variance += float(above @ above) + float(below @ below)
     return variance

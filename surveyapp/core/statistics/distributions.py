@@ -194,3 +194,16 @@ def normal_quantile(probability: float) -> float:
 
 NORMAL_95 = normal_quantile(0.975)
 """Half-width of a two-sided 95 % interval in standard deviations."""
+
+
+@lru_cache(maxsize=256)
+def f_quantile(level: float, numerator: int, denominator: int) -> float:
+    """Upper quantile of F by bisection."""
+    low, high = 0.0, 1.0
+    while f_tail(high, dof_numerator=numerator, dof_denominator=denominator) > level:
+        high *= 2.0
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        tail = f_tail(middle, dof_numerator=numerator, dof_denominator=denominator)
+        low, high = (middle, high) if tail > level else (low, middle)
+    return high

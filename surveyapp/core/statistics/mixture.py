@@ -18,9 +18,10 @@ import numpy as np
 from surveyapp_models.arrays import Floats
 
 PROBABILITY = 0.95
-MOST_MEMBERS = 240
-LEAST_WEIGHT = 1e-4
-"""Members below it are left out of an interval."""
+MOST_MEMBERS = 600
+LEAST_WEIGHT = 1e-6
+"""Of the largest: members below it are left out of an interval. Hundreds of unlikely wide ones make
+a part of its tails (at 1e-4 half of one per cent was missing from the five of both)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -84,6 +85,34 @@ class Mixture:
             if high - low <= 1e-5 * high:
                 break
         return 0.5 * (low + high)
+
+
+def half_widths(weights: Floats, means: Floats, variance: Floats, dof: float) -> Floats:
+    """Half-width of the 95 % interval of each of several mixtures about its own mean.
+
+    Parameters
+    ----------
+    weights, means, variance : ndarray, shape (draws, m)
+        Or what is repeated to it.
+    dof : float
+        Of the Student members.
+
+    Returns
+    -------
+    ndarray, shape (draws,)
+    """
+    centre = (weights * means).sum(axis=1, keepdims=True)
+    offsets = means - centre
+    scale = np.sqrt(np.maximum(variance, 1e-12))
+    low = np.zeros(weights.shape[0])
+    high = (np.abs(offsets) + 6.0 * scale).max(axis=1)
+    for _ in range(25):
+        middle = 0.5 * (low + high)
+        inside = student_cdf((middle[:, None] - offsets) / scale, dof)
+        inside -= student_cdf((-middle[:, None] - offsets) / scale, dof)
+        enough = (weights * inside).sum(axis=1) >= PROBABILITY
+        high, low = np.where(enough, middle, high), np.where(enough, low, middle)
+    return np.asarray(0.5 * (low + high))
 
 
 def normal_cdf(z: Floats) -> Floats:

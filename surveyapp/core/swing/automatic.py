@@ -20,6 +20,7 @@ from surveyapp.domain.project import OrientationSession, ResultWarning
 from surveyapp.domain.readings import Reading, ReadingKind
 from surveyapp.domain.results import PointResult
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, wrap_two_pi
 
 
@@ -154,5 +155,7 @@ def _points(
 def _warnings(session: OrientationSession, origin: str | None) -> tuple[ResultWarning, ...]:
     if origin is not None:
         return ()
-    text = f"session {session.id}: neither the scatter of the rounds nor the card tells a sigma"
+    text = said(
+        "session {id}: neither the scatter of the rounds nor the card tells a sigma", id=session.id
+    )
     return (ResultWarning("sigma_unknown", text),)

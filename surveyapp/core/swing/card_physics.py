@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 
 from surveyapp.domain.instrument import InstrumentCard
+from surveyapp.languages import said
 from surveyapp_models.gyro.coefficients import (
     torsion_ratio_from_periods,
     transfer_torsion_ratio,
@@ -103,7 +104,9 @@ def _ratio(
     if card.transit_c is not None and card.scale_value and second is not None:
         # C = (pi/2) mu T1^2/T2^3 and 1 + lambda = T1^2/T2^2
         one_plus = 2.0 * card.transit_c * second.value / (math.pi * card.scale_value)
-        return Estimate(one_plus - 1.0, one_plus * second.sigma / second.value), "transit constant"
+        return Estimate(one_plus - 1.0, one_plus * second.sigma / second.value), said(
+            "transit constant"
+        )
     return None, ""
 
 

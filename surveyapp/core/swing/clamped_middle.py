@@ -26,6 +26,7 @@ from surveyapp.core.swing.reduction import UnitScatter, need_points, reading_sig
 from surveyapp.core.swing.swingfit import ClampedFit, ClampedSwing, fit_clamped
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession
+from surveyapp.languages import said
 from surveyapp_models.angles import RHO_ARCSEC
 from surveyapp_models.arrays import Floats
 from surveyapp_models.gyro.estimates import Estimate
@@ -129,11 +130,11 @@ def _closed(
         estimator="transit",
         source="passages",
         quantities=(
-            ("time difference east minus west", dt, "s"),
+            (said("time difference east minus west"), dt, "s"),
             ("amplitude", amplitude, "div"),
-            ("middle by the arcsine form", value, "div"),
-            ("middle by the linear form", linear, "div"),
-            ("linear minus arcsine", linear - value, "div"),
+            (said("middle by the arcsine form"), value, "div"),
+            (said("middle by the linear form"), linear, "div"),
+            (said("linear minus arcsine"), linear - value, "div"),
             *_by_transit_constant(here, amplitude, dt),
         ),
     )
@@ -217,7 +218,7 @@ def _by_transit_constant(
     if here.transit_c is None:
         return ()
     product = here.transit_c.value * amplitude * dt * RHO_ARCSEC
-    return (("linear form C a dt", product, "arcsec"),)
+    return ((said("linear form C a dt"), product, "arcsec"),)
 
 
 def _of_scale(
@@ -243,7 +244,7 @@ def _of_scale(
     if estimator == "amplitude":
         means = schuler_middle(fit, values, index=index, sides=sides)
     middle = fitted_middle(fit) if means is None else means
-    source = "scale readings"
+    source = said("scale readings")
     return Middle(
         value_div=middle.value,
         sigma_div=math.hypot(middle.weight_norm * sigma.value, middle.damping_left),
@@ -282,7 +283,7 @@ def _of_fit(observed: Observed, fit: ClampedFit) -> Middle:
     if fit.unit_variance is not None and fit.dof >= 2:
         floor_div = rounding_sigma(reading_resolution(observed.readings)) / observed.swing.sigma_div
         unit, origin, dof = max(fit.unit_variance, floor_div**2), "residuals", float(fit.dof)
-    source = "scale readings and passages"
+    source = said("scale readings and passages")
     return Middle(
         value_div=fit.middle_div,
         sigma_div=math.sqrt(unit * fit.cofactor_middle),

@@ -34,6 +34,7 @@ from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession, ResultWarning
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.domain.results import PointResult
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 LARGEST_SCALE_SIGMA_DIV = 0.3
@@ -162,10 +163,10 @@ def _quantities(
     clamp: float, middle: Middle, constants: _Constants
 ) -> tuple[tuple[str, float, str], ...]:
     return (
-        ("clamp reading", math.degrees(clamp), "deg"),
-        ("middle of the swing", middle.value_div, "div"),
-        ("sigma of the middle", middle.sigma_div, "div"),
-        ("torsion ratio", constants.ratio, ""),
+        (said("clamp reading"), math.degrees(clamp), "deg"),
+        (said("middle of the swing"), middle.value_div, "div"),
+        (said("sigma of the middle"), middle.sigma_div, "div"),
+        (said("torsion ratio"), constants.ratio, ""),
         *middle.quantities,
     )
 
@@ -175,10 +176,12 @@ def _warnings(
 ) -> tuple[ResultWarning, ...]:
     warnings = []
     if zero is None:
-        text = f"session {session.id}: no tape zero was observed"
+        text = said("session {id}: no tape zero was observed", id=session.id)
         warnings.append(ResultWarning("no_tape_zero", text))
     if middle.origin == "card":
-        text = f"session {session.id}: too few readings to judge by: sigma is the card's"
+        text = said(
+            "session {id}: too few readings to judge by: sigma is the card's", id=session.id
+        )
         warnings.append(ResultWarning("sigma_from_card", text))
     return tuple(warnings)
 
@@ -219,9 +222,9 @@ def _constants(
 ) -> _Constants:
     ratio = card_at(card, latitude).torsion_ratio
     if ratio is None or card.scale_value is None:
-        missing = "the torsion ratio (lambda, or both periods)" if ratio is None else ""
+        missing = said("the torsion ratio (lambda, or both periods)") if ratio is None else ""
         if card.scale_value is None:
-            missing = " and ".join(filter(None, [missing, "the scale value"]))
+            missing = " and ".join(filter(None, [missing, said("the scale value")]))
         raise session_problem(
             session,
             f"the method {session.method} needs the torsion ratio and the scale value",

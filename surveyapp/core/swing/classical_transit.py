@@ -17,6 +17,7 @@ from surveyapp.core.swing.tape_zero import reduce_tape_zero
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession, ResultWarning
+from surveyapp.languages import said
 from surveyapp_models.gyro.coefficients import transit_coefficient_ratio
 from surveyapp_models.gyro.estimates import Estimate
 
@@ -76,7 +77,7 @@ def reduce_classical(
     readings: Sequence[float] = swing.readings.tolist()
     blank = [None] * len(readings)
     return Reduction(
-        estimator="transit, C a dt",
+        estimator=said("transit, C a dt"),
         north=north,
         points_used=swing.count,
         sigma_source="card",
@@ -92,10 +93,10 @@ def reduce_classical(
             residuals=blank,
         ),
         quantities=(
-            ("clamp reading", math.degrees(clamp), "deg"),
-            ("time difference east minus west", dt.value, "s"),
+            (said("clamp reading"), math.degrees(clamp), "deg"),
+            (said("time difference east minus west"), dt.value, "s"),
             ("amplitude", a.value, "div"),
-            ("transit constant", math.degrees(c.value) * 3600.0, "arcsec/(div s)"),
+            (said("transit constant"), math.degrees(c.value) * 3600.0, said("arcsec/(div s)")),
         ),
         warnings=_warnings(session),
     )
@@ -156,15 +157,16 @@ def _zeros(session: OrientationSession) -> bool:
 
 
 def _warnings(session: OrientationSession) -> tuple[ResultWarning, ...]:
-    text = f"session {session.id}: too few readings to judge by: sigma is the card's"
+    text = said("session {id}: too few readings to judge by: sigma is the card's", id=session.id)
     warnings = [ResultWarning("sigma_from_card", text)]
     if _zeros(session):
-        text = (
-            f"session {session.id}: the tape zero is known, but neither torsion ratio and scale "
-            "value nor a correction: gyro north is not corrected"
+        text = said(
+            "session {id}: the tape zero is known, but neither torsion ratio and scale "
+            "value nor a correction: gyro north is not corrected",
+            id=session.id,
         )
         warnings.append(ResultWarning("tape_zero_correction_unknown", text))
     else:
-        text = f"session {session.id}: no tape zero was observed"
+        text = said("session {id}: no tape zero was observed", id=session.id)
         warnings.append(ResultWarning("no_tape_zero", text))
     return tuple(warnings)

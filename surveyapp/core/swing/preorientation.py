@@ -17,6 +17,7 @@ from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession, ResultWarning
 from surveyapp.domain.readings import ReadingKind
+from surveyapp.languages import said
 from surveyapp_models.angles import wrap_pi
 
 TYPICAL_LOSS = 0.02
@@ -56,12 +57,13 @@ def pre_orientation(session: OrientationSession, card: InstrumentCard) -> Reduct
     second = first + wrap_pi(second - first)
     sigma = card.sigma.reversal or 0.0
     north = two_turning_points(first, second, session=session.id, reading_sigma=sigma)
-    text = (
-        f"session {session.id}: two turning points give a pre-orientation, no azimuth: "
-        "the damping of the swing stays in it"
+    text = said(
+        "session {id}: two turning points give a pre-orientation, no azimuth: the "
+        "damping of the swing stays in it",
+        id=session.id,
     )
     return Reduction(
-        estimator="two turning points",
+        estimator=said("two turning points"),
         north=north,
         points_used=2,
         sigma_source="card",

@@ -18,6 +18,7 @@ from surveyapp.domain.project import OrientationSession, ResultWarning
 from surveyapp.domain.readings import Reading
 from surveyapp.domain.results import PointResult
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 
@@ -216,16 +217,16 @@ def tape_zero_parts(
             resolution=scale_resolution,
         )
         value = sigma.value if math.isfinite(sigma.value) else rounding_sigma(scale_resolution)
-        source = Source("tape zero", session.id, sigma.dof, name)
+        source = Source(said("tape zero"), session.id, sigma.dof, name)
         correction = correction.with_part(
             source, coefficient.value * factor * rest.weight_norm * value
         )
     change = zero.unexplained_change_div(limit_div)
     if change > 0.0:
-        source = Source("tape zero change", session.id)
+        source = Source(said("tape zero change"), session.id)
         correction = correction.with_part(source, coefficient.value * change)
     if coefficient.sigma > 0.0:
-        source = Source("torsion ratio", session.instrument)
+        source = Source(said("torsion ratio"), session.instrument)
         sign = -1.0 if coefficient.value < 0.0 else 1.0
         correction = correction.with_part(source, sign * coefficient.sigma * zero.value_div)
     return correction

@@ -28,6 +28,7 @@ from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession, ResultWarning, Station, grid_distance_m
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import said
 from surveyapp_models.angles import wrap_two_pi
 
 ESTIMATORS: Mapping[str, tuple[str, ...]] = {
@@ -189,13 +190,13 @@ def pooled_sight_sigma(
     floor = rounding_sigma(resolution)
     if dof > 0:
         sigma = math.sqrt(math.fsum(item.sum_of_squares for item in sights) / dof)
-        return SightSigma(max(sigma, floor), float(dof), "residuals of the sights")
+        return SightSigma(max(sigma, floor), float(dof), said("residuals of the sights"))
     scatter = _collimation_scatter(sights)
     if scatter is not None and (fallback is None or scatter.value < fallback):
         return replace(scatter, value=max(scatter.value, floor))
     if fallback is not None:
-        return SightSigma(max(fallback, floor), math.inf, "the card's reading sigma")
-    return SightSigma(floor, math.inf, "rounding alone")
+        return SightSigma(max(fallback, floor), math.inf, said("the card's reading sigma"))
+    return SightSigma(floor, math.inf, said("rounding alone"))
 
 
 def _collimation_scatter(sights: Sequence[SightSet]) -> SightSigma | None:
@@ -211,7 +212,7 @@ def _collimation_scatter(sights: Sequence[SightSet]) -> SightSigma | None:
     mean = math.fsum(w * c for w, (c, _) in zip(weights, found, strict=True)) / math.fsum(weights)
     squares = math.fsum(w * (c - mean) ** 2 for w, (c, _) in zip(weights, found, strict=True))
     dof = len(found) - 1
-    return SightSigma(math.sqrt(squares / dof), float(dof), "scatter of the collimation")
+    return SightSigma(math.sqrt(squares / dof), float(dof), said("scatter of the collimation"))
 
 
 def sight_resolution(session: OrientationSession) -> float:

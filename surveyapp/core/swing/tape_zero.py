@@ -18,6 +18,7 @@ from surveyapp.core.swing.gyrofit import fit_damped_swing, schuler_means, side_s
 from surveyapp.core.swing.sights import swing_moments
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.readings import FieldBook, Place, Reading, ReadingKind
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 LIMIT_DIV = 0.5
@@ -260,10 +261,12 @@ def tape_zero_coefficient(
     if zero.correction_per_div is not None:
         at, sigma = zero.latitude, zero.correction_sigma or 0.0
         if latitude is None or at is None:
-            return TapeZeroCoefficient(zero.correction_per_div, sigma, "card coefficient", False)
+            return TapeZeroCoefficient(
+                zero.correction_per_div, sigma, said("card coefficient"), False
+            )
         factor = math.cos(at) / math.cos(latitude)
         return TapeZeroCoefficient(
-            zero.correction_per_div * factor, sigma * factor, "card coefficient", True
+            zero.correction_per_div * factor, sigma * factor, said("card coefficient"), True
         )
     here = card_at(card, latitude)
     if here.torsion_ratio is None or card.scale_value is None:

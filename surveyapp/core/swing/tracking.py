@@ -52,6 +52,7 @@ from surveyapp.domain.project import OrientationSession, ResultWarning
 from surveyapp.domain.readings import Reading, ReadingKind
 from surveyapp.domain.results import PointResult
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, wrap_pi, wrap_two_pi
 from surveyapp_models.arrays import Floats
 
@@ -206,7 +207,9 @@ def reduce_tracking(
     )
     north = _north(session, points, middle, sigma)
     if modelled is not None:
-        chosen = f"least-squares with {', '.join(effect.id for effect in session.effects)}"
+        chosen = said(
+            "least-squares with {join}", join=", ".join(effect.id for effect in session.effects)
+        )
         north = _modelled_north(session, points, middle, modelled)
     return Reduction(
         estimator=chosen,
@@ -307,23 +310,28 @@ def tape_zero_of(
     zero = reduce_tape_zero(session.book, swing)
     coefficient = tape_zero_coefficient(card, latitude)
     if zero is None:
-        text = f"session {session.id}: no tape zero was observed"
+        text = said("session {id}: no tape zero was observed", id=session.id)
         if coefficient is not None and card.tape_zero.limit_div is not None:
             worst = abs(coefficient.value) * card.tape_zero.limit_div * RHO_ARCSEC
-            text += f"; at the card's limit of {card.tape_zero.limit_div:g} div it moves north by "
+            text += said(
+                "; at the card's limit of {limit_div:g} div it moves north by ",
+                limit_div=card.tape_zero.limit_div,
+            )
             text += f'{worst:.0f}"'
         return None, coefficient, None, [ResultWarning("no_tape_zero", text)]
     zero = with_levels(zero, session.book, card)
     zero = with_tilt(zero, tilt_change_across_north(session, _mean_direction(swing)), card)
     warnings = []
     if zero.interpolation == "single":
-        text = f"session {session.id}: tape zero observed on one side of the run only"
+        text = said("session {id}: tape zero observed on one side of the run only", id=session.id)
         warnings.append(ResultWarning("tape_zero_one_sided", text))
     if coefficient is None:
-        text = (
-            f"session {session.id}: the tape zero of {zero.value_div:+.3f} div is known, but the "
-            "card states neither torsion ratio and scale value nor a correction: gyro north is "
-            "not corrected"
+        text = said(
+            "session {id}: the tape zero of {value_div:+.3f} div is known, but the "
+            "card states neither torsion ratio and scale value nor a correction: gyro "
+            "north is not corrected",
+            id=session.id,
+            value_div=zero.value_div,
         )
         return zero, None, None, [*warnings, ResultWarning("tape_zero_correction_unknown", text)]
     rows = session.book.of_kind(ReadingKind.TAPE_ZERO)
@@ -380,9 +388,11 @@ def _point_results(points: RunPoints, found: Floats) -> tuple[PointResult, ...]:
 
 def _sigma_warnings(session: OrientationSession, sigma: ReadingSigma) -> list[ResultWarning]:
     if sigma.origin == "card":
-        text = f"session {session.id}: too few turning points to judge by: sigma is the card's"
+        text = said(
+            "session {id}: too few turning points to judge by: sigma is the card's", id=session.id
+        )
         return [ResultWarning("sigma_from_card", text)]
     if sigma.origin is None:
-        text = f"session {session.id}: neither residuals nor card tell a sigma"
+        text = said("session {id}: neither residuals nor card tell a sigma", id=session.id)
         return [ResultWarning("sigma_unknown", text)]
     return []

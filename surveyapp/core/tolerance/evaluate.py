@@ -14,6 +14,7 @@ from surveyapp.core.tolerance.quantities import PARAMETER, quantity
 from surveyapp.domain.results import Check
 from surveyapp.domain.rulebook import Limit, RuleBook
 from surveyapp.domain.subject import Subject
+from surveyapp.languages import joined, said
 
 _ROUNDING = 1e-9
 """Relative: a value that equals its limit but for the last bits of a float meets it."""
@@ -55,22 +56,22 @@ def apply_limit(book: RuleBook, limit: Limit, item: Measured) -> Check | None:
         return None
     kind = quantity(limit.quantity)
     # what a rule book states as a parameter is the least that a project may set for it
-    sense = "at least" if kind.subject == PARAMETER else limit.sense
+    sense = said("at least") if kind.subject == PARAMETER else limit.sense
     bound, missing = None, item.text if item.value is None else ""
     try:
         if not holds(limit.when, item.variables):
             return None
         bound = evaluate(limit.limit, item.variables)
     except FormulaError as error:
-        missing = missing or f"{kind.title}: {error}"
+        missing = missing or joined(": ", (kind.title, str(error)))
     value = None if item.value is None else kind.in_unit(item.value, limit.unit)
     passed = None
     if value is not None and bound is not None:
         slack = _ROUNDING * max(abs(bound), 1.0)
         passed = value <= bound + slack if sense == "at most" else value >= bound - slack
-    text = missing or (f"{kind.title}: {item.text}" if item.text else kind.title)
+    text = missing or (joined(": ", (kind.title, item.text)) if item.text else kind.title)
     if sense == "at least" and not missing:
-        text += " (at least)"
+        text += said(" (at least)")
     return Check(
         rule=f"{book.id}.{limit.id}",
         clause=limit.clause,
@@ -107,7 +108,7 @@ def rule_book_checks(book: RuleBook, measured: Sequence[Measured]) -> tuple[Chec
                 Measured(
                     limit.quantity,
                     None,
-                    text=f"missing: {quantity(limit.quantity).needs}",
+                    text=said("missing: {needs}", needs=quantity(limit.quantity).needs),
                     subject=Subject.project(),
                 )
             ]

@@ -21,6 +21,7 @@ from surveyapp.core.tolerance.quantities import quantity
 from surveyapp.core.uncertain import Uncertain, aligned, combine
 from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.subject import Subject
+from surveyapp.languages import said
 from surveyapp_models.angles import RHO_ARCSEC, wrap_pi
 
 
@@ -124,7 +125,10 @@ def independent_difference(orientation: Orientation) -> list[Measured]:
             found.append(_nothing(name, side))
             continue
         value, text = max(
-            (abs(_turned(b, a).value - a.azimuth.value), f"{_label(a)} and {_label(b)}")
+            (
+                abs(_turned(b, a).value - a.azimuth.value),
+                said("{a} and {b}", a=_label(a), b=_label(b)),
+            )
             for a, b in pairs
         )
         found.append(Measured(name, value * RHO_ARCSEC, side.text, text, subject=side))
@@ -144,14 +148,16 @@ def independent_mean_sigma(orientation: Orientation) -> list[Measured]:
         if not finite:
             found.append(_nothing(name, side))
         else:
-            text = "from the error budgets, without the deflection of the vertical"
+            text = said("from the error budgets, without the deflection of the vertical")
             value = max(finite) * RHO_ARCSEC
             found.append(Measured(name, value, side.text, text, subject=side))
     return found
 
 
 def _nothing(name: str, side: Subject) -> Measured:
-    return Measured(name, None, side.text, f"missing: {quantity(name).needs}", subject=side)
+    return Measured(
+        name, None, side.text, said("missing: {needs}", needs=quantity(name).needs), subject=side
+    )
 
 
 def _label(item: SideOrientation) -> str:

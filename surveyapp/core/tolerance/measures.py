@@ -18,6 +18,7 @@ from surveyapp.core.tolerance.quantities import quantity
 from surveyapp.core.tolerance.side_measures import gyro_side_length, gyro_side_sigma
 from surveyapp.domain.readings import SWING_KINDS, Place, ReadingKind
 from surveyapp.domain.subject import Subject
+from surveyapp.languages import said
 from surveyapp_models.angles import RHO_ARCSEC, circular_mean, wrap_pi
 
 Measure = Callable[[Orientation], list[Measured]]
@@ -42,7 +43,7 @@ def _found(
 
 
 def _missing(identity: str, subject: Subject, why: str = "", *, where: str = "") -> Measured:
-    text = f"missing: {why or quantity(identity).needs}"
+    text = said("missing: {why}", why=why or quantity(identity).needs)
     return Measured(identity, None, where or subject.text, text, subject=subject)
 
 
@@ -102,11 +103,11 @@ def rounds_difference(orientation: Orientation) -> list[Measured]:
     for key, values in sides.items():
         line = Subject.line(*key)
         if len(values) > 1:
-            text = f"{len(values)} rounds with {key[2]}"
+            text = said("{values} rounds with {key}", values=len(values), key=key[2])
             value = largest_difference(values) * RHO_ARCSEC
             found.append(_found(name, value, line, text, n=float(len(values))))
         else:
-            why = "the book holds only the mean of the rounds" if key in means else ""
+            why = said("the book holds only the mean of the rounds") if key in means else ""
             found.append(_missing(name, line, why))
     return found
 
@@ -120,10 +121,10 @@ def calibration_means_difference(orientation: Orientation) -> list[Measured]:
             own = [item for item in constant.calibrations if item.line == line]
             subject = Subject.line(line.station, line.target, constant.instrument.id)
             if len(own) < 2:
-                found.append(_missing(name, subject, "a second calibration of this side"))
+                found.append(_missing(name, subject, said("a second calibration of this side")))
                 continue
             value = largest_difference([item.value.value for item in own]) * RHO_ARCSEC
-            found.append(_found(name, value, subject, f"{len(own)} calibrations"))
+            found.append(_found(name, value, subject, said("{own} calibrations", own=len(own))))
     return found
 
 
@@ -142,7 +143,11 @@ def calibration_epochs_difference(orientation: Orientation) -> list[Measured]:
                 found.append(_missing(name, subject))
             continue
         means = [circular_mean(values) for values in groups.values()]
-        text = f"{len(groups['before'])} before, {len(groups['after'])} after"
+        text = said(
+            "{number} before, {number2} after",
+            number=len(groups["before"]),
+            number2=len(groups["after"]),
+        )
         found.append(_found(name, abs(wrap_pi(means[1] - means[0])) * RHO_ARCSEC, subject, text))
     return found
 
@@ -160,10 +165,14 @@ def tape_zero(orientation: Orientation) -> list[Measured]:
         for place, rest in (("before", zero.before), ("after", zero.after)):
             where = f"{item.session.id} {place}"
             if rest is None:
-                why = f"tape_zero rows {place} the observation"
+                why = said("tape_zero rows {place} the observation", place=place)
                 found.append(_missing(name, _session(item), why, where=where))
             else:
-                text = f"{rest.value_div:+.3f} div from {rest.points} turning points"
+                text = said(
+                    "{value_div:+.3f} div from {points} turning points",
+                    value_div=rest.value_div,
+                    points=rest.points,
+                )
                 value = abs(rest.value_div)
                 found.append(_found(name, value, _session(item), text, where=where))
     return found
@@ -200,7 +209,7 @@ def _pre_orientation(
             found.append(_missing(name, _session(item)))
             continue
         value = abs(wrap_pi(rows[0].value - north.value)) * RHO_ARCSEC
-        text = f"clamped at seq {rows[0].seq}"
+        text = said("clamped at seq {seq}", seq=rows[0].seq)
         found.append(_found(name, value, _session(item), text))
     return found
 
@@ -253,12 +262,14 @@ def rotor_rest(orientation: Orientation) -> list[Measured]:
             if times:
                 spans.append((min(times), max(times), item.session.id))
         if len(spans) < len(items):
-            why = "times on the rows of every round"
+            why = said("times on the rows of every round")
             found.append(_missing(name, Subject.of("station", station), why))
             continue
         spans.sort()
         for earlier, later in pairwise(spans):
-            text = f"after {earlier[2]}; the book does not show when the rotor stood"
+            text = said(
+                "after {earlier}; the book does not show when the rotor stood", earlier=earlier[2]
+            )
             pause = max(later[0] - earlier[1], 0.0)
             found.append(_found(name, pause, Subject.session(later[2]), text))
     return found
@@ -286,7 +297,7 @@ def circle_spacing(orientation: Orientation) -> list[Measured]:
             continue
         value = min(0.5 * abs(wrap_pi(2.0 * (a - b))) for a, b in combinations(norths, 2))
         n = float(len(norths))
-        found.append(_found(name, value * RHO_ARCSEC, subject, f"{n:.0f} rounds", n=n))
+        found.append(_found(name, value * RHO_ARCSEC, subject, said("{n:.0f} rounds", n=n), n=n))
     return found
 
 
@@ -300,7 +311,7 @@ def _programme(orientation: Orientation, name: str, phase: str) -> list[Measured
             continue
         subject = Subject.of("instrument", constant.instrument.id)
         if not constant.calibrations:
-            found.append(_missing(name, subject, "calibration sessions"))
+            found.append(_missing(name, subject, said("calibration sessions")))
             continue
         rounds = sum(item.rounds for item in constant.calibrations if item.phase == phase)
         found.append(_found(name, float(rounds), subject))

@@ -8,6 +8,7 @@ from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.core.tolerance.evaluate import Measured
 from surveyapp.core.tolerance.quantities import quantity
 from surveyapp.domain.subject import Subject
+from surveyapp.languages import said
 from surveyapp_models.angles import RHO_ARCSEC
 
 
@@ -19,7 +20,7 @@ def gyro_side_length(orientation: Orientation) -> list[Measured]:
         result = line.result
         subject = Subject.line(result.station, result.target, result.instrument)
         if result.distance_m is None:
-            text = f"missing: {quantity(name).needs}"
+            text = said("missing: {needs}", needs=quantity(name).needs)
             found.append(Measured(name, None, subject.text, text, subject=subject))
         else:
             found.append(Measured(name, result.distance_m, subject.text, subject=subject))
@@ -35,10 +36,10 @@ def gyro_side_sigma(orientation: Orientation) -> list[Measured]:
         subject = Subject.line(result.station, result.target, result.instrument)
         direction = line.grid if line.grid is not None else line.true
         if direction is None or not math.isfinite(direction.sigma):
-            text = f"missing: {quantity(name).needs}"
+            text = said("missing: {needs}", needs=quantity(name).needs)
             found.append(Measured(name, None, subject.text, text, subject=subject))
         else:
-            kind = "grid azimuth" if line.grid is not None else "true azimuth"
+            kind = said("grid azimuth") if line.grid is not None else said("true azimuth")
             value = direction.sigma * RHO_ARCSEC
             found.append(Measured(name, value, subject.text, kind, subject=subject))
     return found

@@ -19,6 +19,7 @@ from surveyapp.diagnosis.case import Case
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.subject import Subject
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Effect
@@ -138,12 +139,12 @@ def _other_line(columns: Mapping[str, Floats], /) -> dict[str, Floats] | None:
 
 
 ACTIONS = (
-    Action("repeat", "repeat the determination now", _now),
-    Action("tomorrow", "repeat it tomorrow", _tomorrow),
-    Action("warmer", "determine it 8 K warmer", _warmer),
-    Action("colder", "determine it 8 K colder", _colder),
-    Action("other_line", "determine it on another known line", _other_line),
-    Action("month", "determine it in 30 days", _in_a_month),
+    Action("repeat", said("repeat the determination now"), _now),
+    Action("tomorrow", said("repeat it tomorrow"), _tomorrow),
+    Action("warmer", said("determine it 8 K warmer"), _warmer),
+    Action("colder", said("determine it 8 K colder"), _colder),
+    Action("other_line", said("determine it on another known line"), _other_line),
+    Action("month", said("determine it in 30 days"), _in_a_month),
 )
 
 
@@ -193,13 +194,13 @@ def campaign(
         references["temperature_c"] = reference_temperature_c
     if sigma is None:
         warnings.append(
-            ResultWarning("no_sigmas", "no stated sigmas: all determinations count the same")
+            ResultWarning("no_sigmas", said("no stated sigmas: all determinations count the same"))
         )
     offset = float(np.median(values))
     return Case(
         subject="campaign",
         title="campaign",
-        value_name="the constant",
+        value_name=said("the constant"),
         actions=ACTIONS,
         observations=values - offset,
         base=np.ones((n, 1)),
@@ -215,9 +216,13 @@ def campaign(
         references=references,
         offset=offset,
         instrument=instrument,
-        identity=f"campaign of {instrument}" if instrument else "campaign",
+        identity=said("campaign of {instrument}", instrument=instrument)
+        if instrument
+        else "campaign",
         members=tuple(d.subject for d in determinations if d.subject is not None),
-        labels=tuple(d.label or f"determination {i + 1}" for i, d in enumerate(determinations)),
+        labels=tuple(
+            d.label or said("determination {i}", i=i + 1) for i, d in enumerate(determinations)
+        ),
         grid_labels=labels,
         warnings=tuple(warnings),
         position_unit="d" if all(d.day is not None for d in determinations) else "",
@@ -226,7 +231,7 @@ def campaign(
 
 def _check(determinations: Sequence[Determination], instrument: str) -> None:
     faults = []
-    where = f"campaign of {instrument}" if instrument else "campaign"
+    where = said("campaign of {instrument}", instrument=instrument) if instrument else "campaign"
     if len(determinations) < 2:
         faults.append(
             Problem(
@@ -289,9 +294,12 @@ def _columns(
         warnings.append(
             ResultWarning(
                 "no_dates",
-                "dates are missing or all the same: the order of the determinations stands for time"
+                said(
+                    "dates are missing or all the same: the order of the determinations stands "
+                    "for time"
+                )
                 if "elapsed_days" in columns
-                else "dates and order are missing: effects of time cannot be judged",
+                else said("dates and order are missing: effects of time cannot be judged"),
             )
         )
     return columns, labels, warnings

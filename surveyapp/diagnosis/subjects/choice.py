@@ -38,6 +38,7 @@ from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.domain.subject import Subject
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import said
 from surveyapp_models.angles import wrap_pi
 from surveyapp_models.effects.effect import Effect
 
@@ -189,7 +190,7 @@ def determinations(orientation: Orientation, instrument: str) -> tuple[Determina
     for calibration in constant.calibrations:
         facts = by_key[calibration.session, calibration.target]
         own = calibration.value.without(
-            *SHARED, "run-to-run scatter", f"{SOURCE} outside its range"
+            *SHARED, said("run-to-run scatter"), said("{source} outside its range", source=SOURCE)
         )
         label = f"{calibration.session} ({calibration.line})"
         subject = Subject.session(calibration.session, calibration.target)

@@ -10,6 +10,7 @@ import numpy as np
 from surveyapp.diagnosis.case import Case
 from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.angles import circular_mean, wrap_pi_array
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
@@ -85,7 +86,7 @@ def reversal_run(points: TurningPoints, extra: tuple[Effect, ...] = ()) -> Case:
     return Case(
         subject="reversal_run",
         title="run",
-        value_name="north over the run",
+        value_name=said("north over the run"),
         observations=y,
         base=np.ones((n, 1)),
         base_names=("north",),
@@ -103,7 +104,7 @@ def reversal_run(points: TurningPoints, extra: tuple[Effect, ...] = ()) -> Case:
         direction=True,
         instrument=points.instrument,
         identity=points.identity,
-        labels=tuple(f"turning point {int(k) + 1}" for k in number),
+        labels=tuple(said("turning point {int}", int=int(k) + 1) for k in number),
         warnings=_warnings(points, count),
     )
 
@@ -188,9 +189,9 @@ def _sides(points: TurningPoints, y: Floats, count: Floats) -> Floats:
 
 def _warnings(points: TurningPoints, count: Floats) -> tuple[ResultWarning, ...]:
     if points.elapsed_s is None:
-        text = (
-            "no times: the number of the turning point stands in for time, rates and time "
-            "constants are per half swing"
+        text = said(
+            "no times: the number of the turning point stands in for time, rates and "
+            "time constants are per half swing"
         )
         return (ResultWarning("no_times", text),)
     return tuple(_time_warnings(np.asarray(points.elapsed_s, dtype=np.float64), count))
@@ -198,7 +199,7 @@ def _warnings(points: TurningPoints, count: Floats) -> tuple[ResultWarning, ...]
 
 def _time_warnings(times: Floats, count: Floats) -> list[ResultWarning]:
     if not np.isfinite(times).all() or times.size < 3:
-        return [ResultWarning("times_incomplete", "times are incomplete and are not used")]
+        return [ResultWarning("times_incomplete", said("times are incomplete and are not used"))]
     slope, start = np.polyfit(count, times, 1)
     off = np.abs(times - start - slope * count) / max(abs(float(slope)), 1e-9)
     if float(off.max()) > IRREGULAR:
@@ -206,8 +207,11 @@ def _time_warnings(times: Floats, count: Floats) -> list[ResultWarning]:
         return [
             ResultWarning(
                 "times_disagree",
-                f"the time of turning point {int(count[k] - count[0]) + 1} does not agree with "
-                "the count of half swings; perhaps one was missed",
+                said(
+                    "the time of turning point {int} does not agree with the count of half "
+                    "swings; perhaps one was missed",
+                    int=int(count[k] - count[0]) + 1,
+                ),
             )
         ]
     return []

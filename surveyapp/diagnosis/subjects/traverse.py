@@ -29,6 +29,7 @@ from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Columns, Effect
@@ -42,6 +43,19 @@ MOST_OBSERVATIONS = 2000
 RANK = 1e-9
 """Singular values below this share of the largest are a free datum."""
 TRANSFORM = "conditions_of_observations"
+
+
+def _refuse_many(network: Network, identity: str) -> None:
+    if len(network.observations) > MOST_OBSERVATIONS:
+        raise SurveyError(
+            Problem(
+                "too many observations to diagnose them together",
+                identity,
+                str(len(network.observations)),
+                f"at most {MOST_OBSERVATIONS}",
+                "Diagnose one traverse at a time.",
+            )
+        )
 
 
 def traverse(
@@ -75,16 +89,7 @@ def traverse(
         What the adjustment refuses, no redundancy at all, or too many observations.
     """
     identity = name or network.name or "traverse"
-    if len(network.observations) > MOST_OBSERVATIONS:
-        raise SurveyError(
-            Problem(
-                "too many observations to diagnose them together",
-                identity,
-                str(len(network.observations)),
-                f"at most {MOST_OBSERVATIONS}",
-                "Diagnose one traverse at a time.",
-            )
-        )
+    _refuse_many(network, identity)
     network, repeated = one_a_pointing(network)
     model = compile_network(network)
     values = solve_network(network, model).values
@@ -109,10 +114,10 @@ def traverse(
     return Case(
         subject="traverse",
         title="traverse",
-        value_name="the place of the least certain point",
+        value_name=said("the place of the least certain point"),
         observations=transform @ right,
         base=base,
-        base_names=(f"place of {weakest}",),
+        base_names=(said("place of {weakest}", weakest=weakest),),
         value_base=np.ones(1),
         value_weights=np.zeros(size),
         position=np.zeros(size),
@@ -122,7 +127,10 @@ def traverse(
         unit="sigma",
         scale=1.0,
         identity=identity,
-        labels=(f"place of {weakest}", *[f"condition {i}" for i in range(1, size)]),
+        labels=(
+            said("place of {weakest}", weakest=weakest),
+            *[said("condition {i}", i=i) for i in range(1, size)],
+        ),
         grid_labels={**_labels(model), **told.labels},
         warnings=(*repeated, *_warnings(atmosphere_applied, columns, weakest)),
     )
@@ -204,20 +212,23 @@ def _labels(model: Model) -> dict[str, dict[float, str]]:
 def _warnings(
     atmosphere_applied: bool | None, columns: Mapping[str, Floats], weakest: str
 ) -> tuple[ResultWarning, ...]:
-    value = f"values are the place of {weakest}, the least certain point, in its own sigmas"
+    value = said(
+        "values are the place of {weakest}, the least certain point, in its own sigmas",
+        weakest=weakest,
+    )
     found = [ResultWarning("weakest_point", value)]
     if not columns["distance_m"].any():
         return tuple(found)
     if atmosphere_applied is None:
-        text = (
-            "atmosphere_applied is not stated: whether the distances hold the atmospheric "
-            "correction is unknown, and a scale may be nothing else"
+        text = said(
+            "atmosphere_applied is not stated: whether the distances hold the "
+            "atmospheric correction is unknown, and a scale may be nothing else"
         )
         found.append(ResultWarning("atmosphere_unknown", text))
     elif atmosphere_applied:
-        text = (
-            "the instrument has corrected the atmosphere: nothing is corrected again, and a scale "
-            "found here first asks whether somebody did"
+        text = said(
+            "the instrument has corrected the atmosphere: nothing is corrected again, "
+            "and a scale found here first asks whether somebody did"
         )
         found.append(ResultWarning("atmosphere_applied", text))
     return tuple(found)

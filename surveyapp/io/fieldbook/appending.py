@@ -18,6 +18,7 @@ from surveyapp.io.fieldbook.rows import COLUMNS
 from surveyapp.io.files import has_control, read_bytes, shown, shown_path
 from surveyapp.io.guarded import open_regular
 from surveyapp.io.tomltext import sync_folder
+from surveyapp.languages import said
 from surveyapp_models.angles import AngleUnit
 
 Judge = Callable[[FieldBook, str], Sequence[Problem]]
@@ -61,7 +62,11 @@ def append_row(
     text, tail = split_tail(data, where=where)
     if tail and not move_tail_aside(path, size=len(data), tail=tail):
         raise SurveyError(
-            Problem("the torn last line of the book cannot be moved aside", where, shown_path(path))
+            Problem(
+                said("the torn last line of the book cannot be moved aside"),
+                where,
+                shown_path(path),
+            )
         )
     before = judge(text, angle_unit=angle_unit, where=where)
     header = _header(text, where)
@@ -96,7 +101,9 @@ def _header(text: str, where: str) -> tuple[str, ...] | None:
             try:
                 cells = next(csv.reader([line.rstrip("\r")], strict=True))
             except csv.Error as error:
-                raise SurveyError(Problem(f"the header is no CSV ({error})", where)) from None
+                raise SurveyError(
+                    Problem(said("the header is no CSV ({error})", error=error), where)
+                ) from None
             return tuple(cell.strip().lower() for cell in cells)
     return None
 
@@ -107,7 +114,7 @@ def _line(header: Sequence[str], row: Mapping[str, str], where: str) -> str:
         if value and column not in header:
             problems.append(
                 Problem(
-                    f"the book has no column {shown(column)}",
+                    said("the book has no column {column}", column=shown(column)),
                     where,
                     shown(value),
                     ",".join(header),
@@ -116,7 +123,11 @@ def _line(header: Sequence[str], row: Mapping[str, str], where: str) -> str:
             )
         if has_control(value) or "\n" in value or "\r" in value:
             problems.append(
-                Problem(f"{shown(column)} is not one line of text", where, shown(value))
+                Problem(
+                    said("{column} is not one line of text", column=shown(column)),
+                    where,
+                    shown(value),
+                )
             )
     if problems:
         raise SurveyError(problems)
@@ -144,7 +155,7 @@ def append_line(path: Path, line: bytes) -> None:
         try:
             written = os.write(book, line)
             if written != len(line):
-                raise OSError(f"{written} of {len(line)} bytes")
+                raise OSError(said("{written} of {line} bytes", written=written, line=len(line)))
             os.fsync(book)
         except OSError as error:
             os.ftruncate(book, size)
@@ -160,10 +171,10 @@ def append_line(path: Path, line: bytes) -> None:
 def _not_written(path: Path, error: OSError) -> SurveyError:
     return SurveyError(
         Problem(
-            f"the reading could not be written ({error.strerror or error})",
+            said("the reading could not be written ({strerror})", strerror=error.strerror or error),
             path.name,
             shown_path(path),
-            "a disk with room that may be written to",
-            "the earlier rows stand; note the reading on paper and make room",
+            said("a disk with room that may be written to"),
+            said("the earlier rows stand; note the reading on paper and make room"),
         )
     )

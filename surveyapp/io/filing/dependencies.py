@@ -1,11 +1,14 @@
 """What the azimuth of a session depends on, each with its sha256: what a session's seal covers.
 
-Its own table, the stations that it names, its instrument with card, constant and adopted effects,
-the settings of the project, and the calibrations of the instrument with their books.
+Its own table, the stations that it names or sights, its instrument with card, constant, priors and
+adopted effects, the settings of the project, the calibrations of the instrument with their books,
+and the logs and cards of the sensors that level or pre-orient it.
 """
 
 from __future__ import annotations
 
+import csv
+import io
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
@@ -74,7 +77,9 @@ def dependencies(folder: Path, session: str) -> dict[str, str]:
         and row.get("id") != session
     ]
     found = {"settings of the project": digest_of(_settings(data))}
-    named = {str(row.get(key, "")) for row in (own, *calibrations) for key in ("station", "target")}
+    rows = (own, *calibrations)
+    named = {str(row.get(key, "")) for row in rows for key in ("station", "target")}
+    named |= {name for row in rows for name in _sighted(folder, str(row.get("book", "")))}
     for row in rows_of(data, "station"):
         if str(row.get("name", "")) in named:
             found[f"station {row.get('name')}"] = digest_of(plain(row))
@@ -82,9 +87,43 @@ def dependencies(folder: Path, session: str) -> dict[str, str]:
         if row.get("id") == instrument:
             found[f"instrument {instrument}"] = digest_of(plain(row))
             found[f"card of {instrument}"] = _card_digest(folder, str(row.get("card", "")))
+            if "priors" in row:
+                found[f"priors of {instrument}"] = _book_digest(folder, str(row["priors"]))
+    found |= _sensors(folder, data, rows)
     for row in calibrations:
         book = _book_digest(folder, str(row.get("book", "")))
         found[f"calibration {row.get('id')}"] = digest_of({"table": plain(row), "book": book})
+    return found
+
+
+def _sighted(folder: Path, book: str) -> set[str]:
+    """Targets that a book names beside the session's own."""
+    try:
+        text = decode(read_inside(folder, book, where=book), where=book)
+    except SurveyError:
+        return set()
+    try:
+        return {str(row.get("target") or "") for row in csv.DictReader(io.StringIO(text))}
+    except csv.Error:
+        return set()
+
+
+def _sensors(
+    folder: Path, data: Mapping[str, Any], rows: Sequence[Mapping[str, Any]]
+) -> dict[str, str]:
+    """Logs and cards by which sessions are levelled and pre-oriented."""
+    found = {}
+    for row in rows:
+        for key in ("levelling", "pre_orientation"):
+            named = row.get(key)
+            if not isinstance(named, Mapping):
+                continue
+            log, card = str(named.get("log", "")), str(named.get("card", ""))
+            found[f"sensor card {card}"] = _book_digest(folder, card)
+            for entry in rows_of(data, "sensor_log"):
+                if entry.get("id") == log:
+                    file = _book_digest(folder, str(entry.get("file", "")))
+                    found[f"sensor log {log}"] = digest_of({"table": plain(entry), "file": file})
     return found
 
 

@@ -26,6 +26,7 @@ from surveyapp.io.tomltext import atomic_write, sync_folder
 JOURNAL_FILE: Final = ".surveyapp.journal"
 PROJECT_FILE: Final = "project.toml"
 _LEFTOVER: Final = re.compile(r"\.(project\.toml|\.surveyapp\.journal)\.\w+\.tmp")
+_BOOK_LEFTOVER: Final = re.compile(r"\..+\.csv\.\w+\.tmp")
 
 
 def write_together(folder: Path, after: bytes, append: Callable[[], object]) -> None:
@@ -65,11 +66,17 @@ def write_together(folder: Path, after: bytes, append: Callable[[], object]) -> 
 
 def unsettled(folder: Path) -> bool:
     """Whether an interrupted program has left a journal or temporary files."""
+    names = _names(folder)
+    if any(name == JOURNAL_FILE or _LEFTOVER.fullmatch(name) for name in names):
+        return True
+    return any(_BOOK_LEFTOVER.fullmatch(name) for name in _names(folder / "observations"))
+
+
+def _names(folder: Path) -> list[str]:
     try:
-        names = [item.name for item in folder.iterdir()]
+        return [item.name for item in folder.iterdir()]
     except (OSError, ValueError):  # a path with a null character is no folder
-        return False
-    return any(name == JOURNAL_FILE or _LEFTOVER.fullmatch(name) for name in names)
+        return []
 
 
 def settle(folder: Path) -> None:
@@ -84,10 +91,13 @@ def settle(folder: Path) -> None:
         if journal is not None and now == journal["before"]:
             _cut_ledger(folder, journal)
         _take_away(folder)
-    with contextlib.suppress(OSError):
-        for item in folder.iterdir():
-            if _LEFTOVER.fullmatch(item.name) and is_regular(item):
-                item.unlink()
+    for place, pattern in ((folder, _LEFTOVER), (folder / "observations", _BOOK_LEFTOVER)):
+        if place.is_symlink():
+            continue
+        with contextlib.suppress(OSError):
+            for item in place.iterdir():
+                if pattern.fullmatch(item.name) and is_regular(item):
+                    item.unlink()
 
 
 def _read(folder: Path) -> dict[str, Any] | None:

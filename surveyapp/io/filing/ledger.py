@@ -243,6 +243,8 @@ def _append(path: Path, data: bytes) -> None:
             os.fsync(handle)
         except OSError:
             os.ftruncate(handle, size)
+            if new:
+                path.unlink(missing_ok=True)
             raise
     finally:
         os.close(handle)

@@ -64,17 +64,28 @@ def add_witness(folder: Path, entry: LedgerEntry) -> None:
     line = visible(f"{head_of(entry.sha256)}  {entry.at}  {entry.kind}  {what}").replace("\n", " ")
     path = folder / WITNESS_FILE
     try:
-        handle = open_regular(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT)
+        handle = open_regular(path, os.O_RDWR | os.O_APPEND | os.O_CREAT)
     except OSError:
         return
     try:
-        start = _HEADING if os.fstat(handle).st_size == 0 else ""
-        os.write(handle, f"{start}{line}\n".encode())
+        size = _whole_lines(handle)
+        os.ftruncate(handle, size)  # what was torn off is no line, and none is joined to it
+        data = f"{'' if size else _HEADING}{line}\n".encode()
+        if os.write(handle, data) != len(data):
+            os.ftruncate(handle, size)
         os.fsync(handle)
     except OSError:
         return
     finally:
         os.close(handle)
+
+
+def _whole_lines(handle: int) -> int:
+    """Bytes of an open file up to its last newline."""
+    data = b""
+    while part := os.read(handle, 1 << 20):
+        data += part
+    return data.rfind(b"\n") + 1
 
 
 def witnessed(folder: Path) -> tuple[str, ...]:

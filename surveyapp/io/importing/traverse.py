@@ -12,6 +12,7 @@ from surveyapp.core.fieldfile.precision import (
     FacePrecision,
     distance_precision,
     face_precision,
+    zenith_precision,
 )
 from surveyapp.core.fieldfile.reduction import reduce_file
 from surveyapp.core.network.collector import paused_collection
@@ -131,6 +132,7 @@ def _sigmas(
 ) -> tuple[dict[str, object], list[ResultWarning]]:
     """Sigmas of the header: told, from the file itself, or assumed and told as such."""
     angle, first = _angle_sigma(options.sigma_angle_arcsec, face_precision(sets))
+    zenith, more = _zenith_sigma(options.sigma_angle_arcsec, zenith_precision(sets))
     distance, second = _distance_sigma(options.sigma_distance, distance_precision(sets))
     centring = (
         f"{ASSUMED_CENTRING_MM:g} mm are assumed for centring and for the height of instrument and "
@@ -138,11 +140,17 @@ def _sigmas(
     )
     table: dict[str, object] = {
         "sigma_angle_arcsec": float(angle),
+        **({} if zenith is None else {"sigma_zenith_arcsec": zenith}),
         "sigma_distance": {"mm": float(distance[0]), "ppm": float(distance[1])},
         "centring_mm": {"instrument": ASSUMED_CENTRING_MM, "target": ASSUMED_CENTRING_MM},
         "sigma_height_mm": {"instrument": ASSUMED_CENTRING_MM, "target": ASSUMED_CENTRING_MM},
     }
-    return table, [*first, *second, ResultWarning("sigma_assumed", centring)]
+    return table, [*first, *more, *second, ResultWarning("sigma_assumed", centring)]
+
+
+def _two_digits(value: float) -> float:
+    """A standard deviation with two digits that count, and no less than anybody can point."""
+    return max(float(f"{value:.2g}"), 0.01)
 
 
 def _angle_sigma(
@@ -151,7 +159,7 @@ def _angle_sigma(
     warnings = []
     angle = told
     if angle is None and faces is not None:
-        angle = max(round(faces.angle * RHO_ARCSEC, 1), 0.1)
+        angle = _two_digits(faces.angle * RHO_ARCSEC)
         text = f'sigma of an angle {angle:g}" from faces and sets ({faces.dof} degrees of freedom)'
         warnings.append(ResultWarning("sigma_from_faces", text))
     elif angle is None:
@@ -159,6 +167,19 @@ def _angle_sigma(
         text = f'sigma of an angle {angle:g}" is assumed: too few pairs of faces to estimate it'
         warnings.append(ResultWarning("sigma_assumed", text + " (--sigma-angle tells it)"))
     return angle, warnings
+
+
+def _zenith_sigma(
+    told: float | None, scatter: tuple[float, int] | None
+) -> tuple[float | None, list[ResultWarning]]:
+    """Of a zenith angle; that of an angle holds where one was told or too little was observed."""
+    if told is not None or scatter is None:
+        return None, []
+    zenith = _two_digits(scatter[0] * RHO_ARCSEC)
+    text = (
+        f'sigma of a zenith angle {zenith:g}" from faces and sets ({scatter[1]} degrees of freedom)'
+    )
+    return zenith, [ResultWarning("sigma_from_faces", text)]
 
 
 def _distance_sigma(
@@ -170,7 +191,7 @@ def _distance_sigma(
         distance = (ASSUMED_MM, ASSUMED_PPM)
         text = f"sigma of a distance {distance[0]:g} mm + {distance[1]:g} ppm is assumed"
         return distance, [ResultWarning("sigma_assumed", text + " (--sigma-distance tells it)")]
-    distance = (max(round(scatter[0] * 1000.0, 1), 0.1), 0.0)
+    distance = (_two_digits(scatter[0] * 1000.0), 0.0)
     text = (
         f"sigma of a distance {distance[0]:g} mm from faces and sets ({scatter[1]} degrees of "
         "freedom): zero and scale of the instrument are not in it"

@@ -100,6 +100,7 @@ def _header(table: Table, number: int) -> Traverse:
     table.where = f"{PROJECT_FILE}, [[traverse]] {name}"
     book = table.text("book", required=True) or ""
     angle = table.number("sigma_angle_arcsec", positive=True)
+    zenith = table.number("sigma_zenith_arcsec", positive=True)
     distance = table.table("sigma_distance")
     centring = table.table("centring_mm")
     traverse = Traverse(
@@ -114,6 +115,7 @@ def _header(table: Table, number: int) -> Traverse:
         table.boolean("atmosphere_applied") if "atmosphere_applied" in table else None,
         table.boolean("constant_applied") if "constant_applied" in table else None,
         _heights(table),
+        sigma_zenith=None if zenith is None else zenith * ARCSEC,
     )
     for part in (distance, centring):
         if part is not None:

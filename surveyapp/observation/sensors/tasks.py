@@ -39,6 +39,8 @@ class Examined:
         Effects that a diagnosis has named.
     options : str
         The line under which this was found.
+    card : str
+        Path of a card that was written already; empty where none was.
     """
 
     task: str
@@ -48,6 +50,7 @@ class Examined:
     calibration: Calibration | None = None
     adoptable: tuple[str, ...] = ()
     options: str = ""
+    card: str = ""
 
 
 def examine(

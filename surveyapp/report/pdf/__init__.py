@@ -104,6 +104,7 @@ def write_pdf(
         title=document.title,
         author="",
         creator="surveyapp",
+        keywords=[document.stamp],
         invariant=1,
         pageCompression=1,
     )

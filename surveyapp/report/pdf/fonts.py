@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
@@ -13,7 +14,8 @@ from reportlab.pdfbase.cidfonts import UnicodeCIDFont
 from reportlab.pdfbase.ttfonts import TTFError, TTFont
 
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.report.faces import base_face, wide_face
+from surveyapp.report.faces import base_face, faces_of, further_faces, wide_face
+from surveyapp.report.pdf.bidi import can_order, drawn_order, is_right_to_left
 from surveyapp.report.typeface import Face, is_wide, language_of, runs
 
 BASE: Final = "SurveySans"
@@ -31,19 +33,30 @@ class Faces:
     """
 
     embedded: tuple[Face, ...]
+    further: list[Path] = field(default_factory=list, repr=False)
     _splits: dict[str, list[tuple[str, str]]] = field(default_factory=dict, repr=False)
     _widths: dict[str, float] = field(default_factory=dict, repr=False)
     _base: set[str] = field(default_factory=set, repr=False)
+    _taken: list[Face] = field(default_factory=list, repr=False)
     missing: dict[str, str] = field(default_factory=dict)
 
     def of(self, text: str) -> tuple[Face, ...]:
         """Faces for a text: the embedded ones, and a CID face where those lack a wide character."""
         if all(face_has(self.embedded, ord(c)) or not is_wide(ord(c)) for c in text):
-            return self.embedded
+            return (*self.embedded, *self._for_the_rest(text))
         name = _CID[language_of(text)]
         if name not in pdfmetrics.getRegisteredFontNames():
             pdfmetrics.registerFont(UnicodeCIDFont(name))
-        return (*self.embedded, Face(name, is_wide))
+        return (*self.embedded, Face(name, is_wide), *self._for_the_rest(text))
+
+    def _for_the_rest(self, text: str) -> tuple[Face, ...]:
+        """Further faces, opened only when a text has letters that all faces so far lack."""
+        rest = {ord(c) for c in text if c.isprintable() and not is_wide(ord(c))}
+        while self.further and not all(face_has((*self.embedded, *self._taken), c) for c in rest):
+            path = self.further.pop(0)
+            with suppress(SurveyError):
+                self._taken.append(_register(f"Further-{path.stem}", path))
+        return tuple(self._taken)
 
     def split(self, text: str) -> list[tuple[str, str]]:
         """Runs of a text, each with the name of the face that draws it."""
@@ -55,13 +68,21 @@ class Faces:
         return known
 
     def _runs(self, text: str) -> list[tuple[str, str]]:
-        faces = self.of(text)
-        lost = sorted({c for c in text if c.isprintable() and not face_has(faces, ord(c))})
+        drawn = drawn_order(text)
+        faces = self.of(drawn)
+        lost = {c for c in drawn if c.isprintable() and not face_has(faces, ord(c))}
+        if not can_order():  # letters in the wrong order would be another name
+            lost |= {c for c in drawn if is_right_to_left(c)}
         if not lost:
-            return runs(text, faces)
-        self.missing[text] = "".join(lost)
+            return runs(drawn, faces)
+        if lost <= set(text):
+            self.missing[text] = "".join(sorted(lost))
+        else:  # a joined form that no face has: the letters as they were written are told
+            lost = {c for c in text if is_right_to_left(c)} | (lost & set(text))
+            self.missing[text] = "".join(sorted(lost))
+            drawn = text
         codes = {ord(letter): f"[{ord(letter):04X}]" for letter in lost}
-        return runs(text.translate(codes), faces)
+        return runs(drawn.translate(codes), faces)
 
     def markup(self, text: str) -> str:
         """Text with a font tag for every run that the base face cannot draw."""
@@ -119,13 +140,31 @@ def _register(name: str, path: Path) -> Face:
 
 
 def register_faces(named: Path | None) -> Faces:
-    """Register the faces: base, then the one named by the user, else the one found."""
+    """Register the faces: base, then those named by the user, else one found for wide letters.
+
+    Parameters
+    ----------
+    named : Path or None
+        A TrueType face, or a folder of them.
+    """
     faces = [_register(BASE, base_face())]
-    wide = named if named is not None else wide_face()
+    if named is not None:
+        own = faces_of(named)
+        many = named.is_dir()  # of a folder, what cannot be embedded is passed over
+        for path in own:
+            with suppress(*((SurveyError,) if many else ())):
+                faces.append(_register(f"Named-{path.stem}", path))
+        if len(faces) == 1:
+            raise SurveyError(
+                Problem(
+                    "there is no face that can be embedded",
+                    str(named),
+                    f"{len(own)} files",
+                    "a TrueType face (.ttf or .ttc) with glyf outlines, or a folder of them",
+                )
+            )
+    wide = wide_face() if named is None else None
     if wide is not None:
-        try:
+        with suppress(SurveyError):
             faces.append(_register(f"Wide-{wide.stem}", wide))
-        except SurveyError:
-            if named is not None:
-                raise
-    return Faces(tuple(faces))
+    return Faces(tuple(faces), list(further_faces()))

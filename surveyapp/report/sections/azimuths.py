@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import AngleResult, CombinedResult, LineResult, OrientationResult
-from surveyapp.languages import joined, said, said_each
+from surveyapp.languages import joined, said, said_each, term
 from surveyapp.report.blocks import Block, Heading, Paragraph, Table
 from surveyapp.report.numbers import (
     NOTHING,
@@ -42,7 +42,7 @@ def _combined(project: Project, sides: Sequence[CombinedResult]) -> tuple[Block,
     for side in sides:
         test = f"{plain(side.chi_square, 2)} ({side.dof})"
         verdict = said("agree") if side.agree else said("disagree, not combined")
-        lines = "; ".join(f"{of.name} {_share(of.weight)}" for of in side.lines)
+        lines = joined("; ", [joined(" ", (of.name, _share(of.weight))) for of in side.lines])
         name = line_name(side.station, side.target)
         value = with_sigma(side.grid_azimuth, project.angle_unit)
         rows.append((name, *value, test, verdict, lines))
@@ -98,12 +98,12 @@ def _budget(line: LineResult) -> tuple[Block, ...]:
     if not line.budget:
         return ()
     rows = tuple(
-        (item.source, seconds(item.sigma), plain(100.0 * item.share, 1))
+        (term(item.source), seconds(item.sigma), plain(100.0 * item.share, 1))
         for item in line.budget
         if item.sigma > 0.0
     )
     head = said_each("source of error", '±"', "share of variance %")
-    zero = [item.source for item in line.budget if item.sigma == 0.0]
+    zero = [term(item.source) for item in line.budget if item.sigma == 0.0]
     found: list[Block] = [Table(head, rows, "lrr")] if rows else []
     if zero:
         found.append(Paragraph(said("Zero: {sources}.", sources=joined(", ", zero)), "small"))

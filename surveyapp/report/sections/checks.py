@@ -8,7 +8,7 @@ from typing import Final
 
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.results import Check
-from surveyapp.languages import joined, said
+from surveyapp.languages import joined, said, term
 from surveyapp.report.blocks import Block, ForWidth, Heading, Paragraph, Table
 from surveyapp.report.numbers import four_digits
 
@@ -34,12 +34,12 @@ class Column:
 
 
 _TERMINAL: Final = (
-    Column(said("verdict"), lambda check: check.verdict),
+    Column(said("verdict"), lambda check: term(check.verdict)),
     Column(said("check"), lambda check: check.rule, open_head=said("check")),
     Column(said("where"), lambda check: check.where, open_head=said("where")),
     Column(said("value"), lambda check: four_digits(check.value), "r"),
     Column(said("limit"), lambda check: four_digits(check.limit), "r", said("limit")),
-    Column(said("unit"), lambda check: check.unit, open_head=said("unit")),
+    Column(said("unit"), lambda check: term(check.unit), open_head=said("unit")),
 )
 COLUMNS: Final = (
     *_TERMINAL,
@@ -58,7 +58,7 @@ def row(check: Check) -> tuple[str, ...]:
 
 def details(check: Check) -> str:
     """The running text of a check: its sentence and its clause."""
-    return "\n".join(column.of(check) for column in COLUMNS[len(_TERMINAL) :])
+    return joined("\n", (column.of(check) for column in COLUMNS[len(_TERMINAL) :]))
 
 
 def ordered(checks: Iterable[Check]) -> list[Check]:
@@ -90,7 +90,7 @@ def blocks(checks: Sequence[Check], warnings: Sequence[ResultWarning] = ()) -> t
         ]
     if warnings:
         found.append(Heading(said("Warnings"), 2))
-        found += [Paragraph(f"{item.code}: {item.text}", "warning") for item in warnings]
+        found += [Paragraph(joined(": ", (item.code, item.text)), "warning") for item in warnings]
     return tuple(found)
 
 
@@ -113,7 +113,7 @@ def _narrow(checks: Sequence[Check], warnings: Sequence[ResultWarning]) -> tuple
     ]
     loud = {(warning.code, warning.subject) for warning in warnings}
     found += [
-        Paragraph(joined(": ", filter(None, (check.verdict, check.where, check.text))))
+        Paragraph(joined(": ", filter(None, (term(check.verdict), check.where, check.text))))
         for check in checks
         if check.passed is False
         and check.text

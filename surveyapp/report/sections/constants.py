@@ -13,7 +13,7 @@ from surveyapp.domain.results import (
     to_arcsec,
 )
 from surveyapp.domain.subject import Subject
-from surveyapp.languages import joined, said, said_each
+from surveyapp.languages import joined, said, said_each, term
 from surveyapp.report.blocks import Block, Figure, Heading, Paragraph, Table
 from surveyapp.report.numbers import NOTHING, four_digits, line_name, plain, seconds
 from surveyapp.report.plots import Axis, Frame, axis
@@ -63,7 +63,7 @@ def summary(result: OrientationResult) -> Table:
         if constant.value is not None:
             strong.add(len(rows))
             value, sigma = seconds(constant.value, sign=True), seconds(constant.sigma)
-            choice = joined(" ", (constant.choice, *filter(None, [_STABLE[constant.stable]])))
+            choice = joined(" ", (term(constant.choice), *filter(None, [_STABLE[constant.stable]])))
             rows.append((constant.instrument, choice, value, sigma, str(constant.count), "", ""))
     return Table(SUMMARY, tuple(rows), "llrrrrr", strong=frozenset(strong))
 
@@ -83,7 +83,7 @@ def told(result: OrientationResult, constant: ConstantResult) -> list[str]:
     value = said(
         '{instrument}: {choice} {value}" ±{sigma}", ±{interval}" (95 %)',
         instrument=constant.instrument,
-        choice=constant.choice,
+        choice=term(constant.choice),
         value=seconds(constant.value, sign=True),
         sigma=seconds(constant.sigma),
         interval=seconds(constant.interval95),
@@ -96,10 +96,10 @@ def told(result: OrientationResult, constant: ConstantResult) -> list[str]:
 def _test(check: Check) -> str:
     """A test in words, with its numbers where the words do not tell them."""
     if '"' in check.text:
-        return said("{verdict}: {text}", verdict=check.verdict, text=check.text)
+        return said("{verdict}: {text}", verdict=term(check.verdict), text=check.text)
     return said(
         '{verdict}: {text}: {value}", limit {limit}"',
-        verdict=check.verdict,
+        verdict=term(check.verdict),
         text=check.text or check.rule,
         value=four_digits(check.value),
         limit=four_digits(check.limit),
@@ -116,7 +116,7 @@ def _determinations(constant: ConstantResult) -> Table:
             (
                 item.session,
                 line_name(item.station, item.target),
-                item.phase,
+                term(item.phase),
                 seconds(item.value, sign=True),
                 seconds(item.sigma),
                 NOTHING if difference is None else seconds(difference, sign=True),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from surveyapp.diagnosis.result import Diagnosis, Estimate, ModelResult
-from surveyapp.languages import said, said_each
+from surveyapp.languages import joined, said, said_each, term
 from surveyapp.report.blocks import Block, Figure, Heading, Paragraph, Table
 from surveyapp.report.numbers import plain
 from surveyapp.report.plots import Frame, axis
@@ -45,7 +45,7 @@ def blocks(
 
 def told(diagnosis: Diagnosis, words: Sequence[str]) -> tuple[Block, ...]:
     """Verdict and words of a diagnosis."""
-    verdict = diagnosis.verdict.replace("_", " ")
+    verdict = term(diagnosis.verdict.replace("_", " "))
     heading = Heading(
         said("Diagnosis of {heading}: {verdict}", heading=diagnosis.heading, verdict=verdict)
     )
@@ -63,7 +63,7 @@ def candidates(diagnosis: Diagnosis) -> tuple[Block, ...]:
             key = (item.verdict.replace("_", " "), item.reason)
             reasons.setdefault(key, []).append(item.effect)
     found += [
-        Paragraph(f"{verdict}: {', '.join(names)}: {reason}", "small")
+        Paragraph(joined(": ", (term(verdict), ", ".join(names), reason)), "small")
         for (verdict, reason), names in reasons.items()
     ]
     if diagnosis.lines:
@@ -128,7 +128,7 @@ def _figures(
         if len(points) < 2:
             continue
         frame = Frame(
-            axis([x for x, _ in points], count=10),
+            axis([x for x, _ in points], count=10, whole=True),
             axis([y for _, y in points], about_zero=True),
             height_mm=40.0,
         )

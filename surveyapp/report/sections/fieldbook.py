@@ -7,7 +7,7 @@ from typing import Final
 
 from surveyapp.domain.project import OrientationSession, Project
 from surveyapp.domain.readings import Reading, ReadingKind
-from surveyapp.languages import said, said_each
+from surveyapp.languages import joined, said, said_each, term
 from surveyapp.report.blocks import Block, Heading, KeyValues, Paragraph, Table
 from surveyapp.report.numbers import plain
 
@@ -42,8 +42,8 @@ def _session(session: OrientationSession) -> list[Block]:
     line = session.station if session.target is None else f"{session.station}-{session.target}"
     facts = [
         (said("line"), line),
-        (said("instrument, method"), f"{session.instrument}, {session.method}"),
-        (said("purpose"), session.purpose),
+        (said("instrument, method"), joined(", ", (session.instrument, term(session.method)))),
+        (said("purpose"), term(session.purpose)),
         (said("book"), session.book_path),
     ]
     if session.date is not None:
@@ -83,7 +83,8 @@ def _rows(session: OrientationSession) -> Table:
     for row in rows:
         remark = row.note
         if row.seq in session.book.struck:
-            remark = "; ".join(part for part in (row.note, reasons.get(row.seq, "struck")) if part)
+            struck_by = reasons.get(row.seq, said("struck"))
+            remark = joined("; ", [part for part in (row.note, struck_by) if part])
         lines.append((*(text(row) for _, _, text in used), remark or ""))
     head = (*(name for name, _, _ in used), said("note"))
     if not any(line[-1] for line in lines):

@@ -8,7 +8,7 @@ from surveyapp.domain.mine_grid import MineGrid
 from surveyapp.domain.project import Project, Station
 from surveyapp.domain.results import OrientationResult
 from surveyapp.domain.rulebook import RuleBook
-from surveyapp.languages import counted, said, said_each
+from surveyapp.languages import counted, said, said_each, term
 from surveyapp.report.blocks import Block, Heading, KeyValues, Paragraph, Table
 from surveyapp.report.numbers import NOTHING, plain, seconds
 from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, format_angle
@@ -29,7 +29,7 @@ def blocks(
         (said("observer"), ", ".join(observers(project)) or NOTHING),
         (said("date of observation"), ", ".join(dates(project)) or NOTHING),
         (said("grid"), _grid(project)),
-        (said("unit of angles"), str(project.angle_unit)),
+        (said("unit of angles"), term(str(project.angle_unit))),
         (
             said("rule book"),
             NOTHING if rule_book is None else f"{rule_book.title} ({rule_book.id})",

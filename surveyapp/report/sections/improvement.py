@@ -6,7 +6,7 @@ from typing import Final
 
 from surveyapp.core.improvement import most_helpful
 from surveyapp.domain.results import LineResult
-from surveyapp.languages import said
+from surveyapp.languages import said, term
 from surveyapp.report.numbers import seconds
 
 ADVICE: Final = {
@@ -55,7 +55,7 @@ def most_helps(line: LineResult) -> str:
     found = most_helpful(line.budget)
     if found is None:
         return ""
-    advice = ADVICE.get(found.source, found.source)
+    advice = ADVICE.get(found.source, term(found.source))
     if found.at_calibration:
         advice = said("at the calibration, {advice}", advice=advice)
     if sum(item.sigma > 0.0 for item in line.budget) == 1:

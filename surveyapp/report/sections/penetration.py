@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from surveyapp.domain.penetration import STEP_TITLES
 from surveyapp.domain.penetration_result import MissTest, Prediction
-from surveyapp.languages import said, said_each
+from surveyapp.languages import joined, said, said_each, term
 from surveyapp.report.blocks import (
     Block,
     Figure,
@@ -44,7 +44,7 @@ def blocks(result: Prediction) -> tuple[Block, ...]:
     if result.measured is not None:
         found += [Heading(said("After the breakthrough"), 2), *_measured(result.measured)]
     found += [Heading(said("The six steps of the procedure"), 2), _steps(result)]
-    found += [Paragraph(f"{w.code}: {w.text}", "warning") for w in result.warnings]
+    found += [Paragraph(joined(": ", (w.code, w.text)), "warning") for w in result.warnings]
     return tuple(found)
 
 
@@ -100,7 +100,7 @@ def _verdict(result: Prediction) -> Table:
 def _budget(result: Prediction) -> Table:
     rows: list[tuple[str, ...]] = [
         (
-            row.source.replace("_", " "),
+            term(row.source.replace("_", " ")),
             row.heading or said("common"),
             plain(row.lateral_m, 4),
             plain(row.longitudinal_m, 4),

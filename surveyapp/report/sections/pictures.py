@@ -38,6 +38,8 @@ def picture_blocks(pictures: Sequence[Picture]) -> tuple[Block, ...]:
             continue
         blocks.append(figure)
         words = [legend(picture)] if isinstance(picture, Chart) else []
+        if isinstance(picture, Coverage):
+            words.append("numbers: readings in a cell; crosses: none")
         told = "; ".join(word for word in (*words, picture.note) if word)
         if told:
             blocks.append(Paragraph(told, "small"))

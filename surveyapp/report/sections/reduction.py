@@ -11,7 +11,7 @@ from surveyapp.domain.results import (
     TapeZeroResult,
     TargetResult,
 )
-from surveyapp.languages import joined, said, said_each
+from surveyapp.languages import joined, said, said_each, term
 from surveyapp.report.blocks import Block, Figure, Heading, Paragraph, Table
 from surveyapp.report.numbers import (
     NOTHING,
@@ -23,6 +23,7 @@ from surveyapp.report.numbers import (
     with_sigma,
 )
 from surveyapp.report.plots import Frame, axis, half_wave
+from surveyapp.report.sections import session_sensors
 from surveyapp.report.sections.azimuths import STEPS
 from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, wrap_pi, wrap_two_pi
 
@@ -49,7 +50,7 @@ def summary(project: Project, result: OrientationResult) -> tuple[Block, ...]:
     sights = tuple(
         (
             item.id,
-            item.purpose,
+            term(item.purpose),
             line_name(item.station, target.target),
             with_sigma(target.line_reading, unit)[0],
             *with_sigma(target.gyro_azimuth, unit)[:2],
@@ -68,7 +69,7 @@ def summary_row(item: SessionResult, unit: AngleUnit) -> tuple[str, ...]:
     azimuth = None if item.main is None else item.main.gyro_azimuth
     return (
         item.id,
-        joined(", ", (item.method, item.estimator)),
+        joined(", ", (term(item.method), term(item.estimator))),
         str(item.points_used),
         with_sigma(item.gyro_north, unit)[0],
         with_sigma(azimuth, unit)[0],
@@ -90,14 +91,16 @@ def session_blocks(project: Project, item: SessionResult) -> tuple[Block, ...]:
     line = line_name(item.station, item.target)
     found: list[Block] = [
         Heading(
-            said("Session {id}: {line}, {method}", id=item.id, line=line, method=item.method), 2
+            said("Session {id}: {line}, {method}", id=item.id, line=line, method=term(item.method)),
+            2,
         ),
         Table(STEPS, tuple(rows), "lrrrl", strong=frozenset(strong)),
+        *session_sensors.blocks(item, unit),
         *_effects(project, session),
         _figures_of_merit(item),
     ]
     found += _points(item, unit)
-    found += [Paragraph(f"{w.code}: {w.text}", "warning") for w in item.warnings]
+    found += [Paragraph(joined(": ", (w.code, w.text)), "warning") for w in item.warnings]
     return tuple(found)
 
 
@@ -129,7 +132,7 @@ def _north(item: SessionResult, unit: AngleUnit) -> list[Row]:
         if item.sigma_source
         else said("no sigma: nothing tells")
     )
-    text = f"{how}; {origin}" if how else origin
+    text = joined("; ", (how, origin)) if how else origin
     rows.append((said("= gyro north"), *with_sigma(north, unit), text))
     return rows
 
@@ -283,7 +286,7 @@ def _figures_of_merit(item: SessionResult) -> Table:
     if item.reading_sigma is not None and item.method in ("tracking", "automatic"):
         rows.append((said("sigma of one reading"), seconds(item.reading_sigma), said("arcsec")))
     rows += [
-        (name.replace("_", " "), _quantity(value, unit), unit)
+        (term(name.replace("_", " ")), _quantity(value, unit), unit)
         for name, value, unit in item.quantities
     ]
     known = tuple(row for row in rows if row[1] != NOTHING)
@@ -365,7 +368,8 @@ def _swing(item: SessionResult) -> Figure:
     observed = [(float(p.index + 1), minutes(p.observed)) for p in item.points]
     fitted = [(float(p.index + 1), minutes(p.fitted)) for p in item.points if p.fitted is not None]
     frame = Frame(
-        axis([x for x, _ in observed], count=10), axis([y for _, y in observed], about_zero=True)
+        axis([x for x, _ in observed], count=10, whole=True),
+        axis([y for _, y in observed], about_zero=True),
     )
     parts = frame.axes(said("turning point"), said("arcmin from gyro north as observed"))
     parts.append(frame.level(0.0, "mean"))
@@ -379,7 +383,9 @@ def _scale_swing(item: SessionResult) -> Figure:
     """Turning points on the scale, the fitted swing between them."""
     observed = [(float(p.index + 1), p.observed) for p in item.points]
     fitted = [(float(p.index + 1), p.fitted) for p in item.points if p.fitted is not None]
-    frame = Frame(axis([x for x, _ in observed], count=10), axis([y for _, y in observed]))
+    frame = Frame(
+        axis([x for x, _ in observed], count=10, whole=True), axis([y for _, y in observed])
+    )
     parts = frame.axes(said("turning point"), said("divisions"))
     middle = {name: value for name, value, _ in item.quantities}.get("middle of the swing")
     if middle is not None:
@@ -397,7 +403,9 @@ def _residuals(item: SessionResult, points: list[tuple[float, float]], unit: str
         sigma = item.reading_sigma * (RHO_ARCSEC if unit == "arcsec" else 1.0)
     values = [y for _, y in points] + ([2.0 * sigma] if sigma else [])
     frame = Frame(
-        axis([x for x, _ in points], count=10), axis(values, about_zero=True), height_mm=45.0
+        axis([x for x, _ in points], count=10, whole=True),
+        axis(values, about_zero=True),
+        height_mm=45.0,
     )
     parts = frame.axes(said("point"), unit)
     parts.append(frame.level(0.0, "axis"))

@@ -14,6 +14,7 @@ from surveyapp.domain.motion import Motion
 from surveyapp.domain.noise import FilterResult
 from surveyapp.domain.north import NorthResult
 from surveyapp.domain.project import ResultWarning
+from surveyapp.languages import joined, term
 from surveyapp.report.blocks import Block, Heading, KeyValues, Paragraph, Table
 from surveyapp.report.numbers import NOTHING, four_digits, plain
 
@@ -22,7 +23,7 @@ PM = "\N{PLUS-MINUS SIGN}"
 
 def warning_blocks(warnings: Sequence[ResultWarning]) -> tuple[Block, ...]:
     """Every warning as a paragraph of its own."""
-    return tuple(Paragraph(f"{item.code}: {item.text}", "warning") for item in warnings)
+    return tuple(Paragraph(joined(": ", (item.code, item.text)), "warning") for item in warnings)
 
 
 def filter_blocks(result: FilterResult) -> tuple[Block, ...]:
@@ -169,7 +170,7 @@ def north_blocks(result: NorthResult) -> tuple[Block, ...]:
     if third:
         blocks += _roots(third)
     rows = tuple(
-        (p.name.replace("_", " "), four_digits(p.value), four_digits(p.sigma), p.unit)
+        (term(p.name.replace("_", " ")), four_digits(p.value), four_digits(p.sigma), p.unit)
         for p in result.parameters
     )
     blocks.append(Table(("parameter", "value", PM, "unit"), rows, "lrrl"))

@@ -7,10 +7,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import chain
 
+from surveyapp.core.sensors.charts.results import slopes
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.noise import AllanChannel, AllanResult
 from surveyapp.domain.project import ResultWarning
-from surveyapp.languages import said, said_each
+from surveyapp.languages import joined, said, said_each, term
 from surveyapp.report.blocks import Block, Figure, Heading, KeyValues, Paragraph, Table
 from surveyapp.report.numbers import NOTHING, four_digits
 from surveyapp.report.plots import Axis, Frame
@@ -94,7 +95,12 @@ def _facts(result: Calibration) -> KeyValues:
 
 def _parameters(result: Calibration) -> Table:
     rows = tuple(
-        (item.name.replace("_", " "), four_digits(item.value), four_digits(item.sigma), item.unit)
+        (
+            term(item.name.replace("_", " ")),
+            four_digits(item.value),
+            four_digits(item.sigma),
+            item.unit,
+        )
         for item in result.parameters
     )
     return Table(said_each("parameter", "value", "±", "unit"), rows, "lrrl")
@@ -103,7 +109,7 @@ def _parameters(result: Calibration) -> Table:
 def _models(result: Calibration) -> Table:
     rows = tuple(
         (
-            model.id.replace("_", " "),
+            term(model.id.replace("_", " ")),
             four_digits(model.rms),
             four_digits(model.held_out_rms),
             said("chosen") if model.chosen else "",
@@ -173,6 +179,9 @@ def allan_figures(channel: AllanChannel) -> tuple[Figure, ...]:
     parts = frame.axes(said("averaging time [s]"), label, x_names)
     for x, low, high in bars:
         parts += frame.bar(x, low=low, high=high, cap_mm=0.8)
+    for guide in slopes(channel):
+        ends = [(math.log10(tau), math.log10(value)) for tau, value in guide.points]
+        parts.append(frame.curve(ends, "limit"))
     parts += [frame.curve(curve, "data"), *frame.marks(curve, "dot")]
     return (
         frame.figure(
@@ -191,4 +200,4 @@ def _decades(values: Sequence[float]) -> tuple[Axis, list[str]]:
 
 
 def _warnings(warnings: Sequence[ResultWarning]) -> tuple[Block, ...]:
-    return tuple(Paragraph(f"{item.code}: {item.text}", "warning") for item in warnings)
+    return tuple(Paragraph(joined(": ", (item.code, item.text)), "warning") for item in warnings)

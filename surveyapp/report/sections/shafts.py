@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from surveyapp.domain.shaft import CHECK_IDS
 from surveyapp.domain.shaft_result import ShaftOrientation, ShaftResult, SideAzimuth
-from surveyapp.languages import said, said_each
+from surveyapp.languages import joined, said, said_each, term
 from surveyapp.report.blocks import Block, Heading, Paragraph, Table
 from surveyapp.report.numbers import NOTHING, direction, plain
 from surveyapp_models.angles import RHO_ARCSEC, AngleUnit
@@ -29,7 +29,7 @@ def blocks(result: ShaftResult, *, unit: AngleUnit) -> tuple[Block, ...]:
         found += [Heading(said("Rest of the wires"), 2), _wires(shaft)]
         found += [Heading(said("Error of one orientation through the shaft"), 2), _budget(shaft)]
         found += [Heading(said("Checks of the plumbing"), 2), _plumbing(shaft)]
-    found += [Paragraph(f"{w.code}: {w.text}", "warning") for w in result.warnings]
+    found += [Paragraph(joined(": ", (w.code, w.text)), "warning") for w in result.warnings]
     return tuple(found)
 
 
@@ -108,7 +108,11 @@ def _wires(shaft: ShaftOrientation) -> Table:
 
 def _budget(shaft: ShaftOrientation) -> Table:
     rows = tuple(
-        (line.source.replace("_", " "), plain(line.sigma * RHO_ARCSEC, 2), f"{line.share:.0%}")
+        (
+            term(line.source.replace("_", " ")),
+            plain(line.sigma * RHO_ARCSEC, 2),
+            f"{line.share:.0%}",
+        )
         for line in shaft.budget
     )
     return Table(said_each("source", '±"', "share"), rows, "lrr")
@@ -120,8 +124,8 @@ def _plumbing(shaft: ShaftOrientation) -> Table:
     for name in CHECK_IDS:
         check = recorded.get(name)
         if check is None:
-            rows.append((name.replace("_", " "), said("open"), "", ""))
+            rows.append((term(name.replace("_", " ")), said("open"), "", ""))
         else:
             done = check.done_at or said("open")
-            rows.append((name.replace("_", " "), done, check.by, check.note))
+            rows.append((term(name.replace("_", " ")), done, check.by, check.note))
     return Table(said_each("check", "done", "by", "note"), tuple(rows), "llll")

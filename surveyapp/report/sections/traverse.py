@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from surveyapp.domain.adjustment import AdjustedObservation, AdjustmentResult, Closure
 from surveyapp.domain.observations import ObservationKind
-from surveyapp.languages import said, said_each
+from surveyapp.languages import joined, said, said_each, term
 from surveyapp.report.blocks import Block, Heading, KeyValues, Paragraph, Table
 from surveyapp.report.numbers import NOTHING, direction, plain
 from surveyapp.report.plan import plan_figure
@@ -50,7 +50,7 @@ def blocks(
         found += [Heading(said("Constants and orientations"), 2), _shared(result, unit)]
     found += [Heading(said("Observations"), 2), *_observations(result, unit)]
     found += [*_suspects(result), *_removals(result)]
-    found += [Paragraph(f"{w.code}: {w.text}", "warning") for w in result.warnings]
+    found += [Paragraph(joined(": ", (w.code, w.text)), "warning") for w in result.warnings]
     return tuple(found)
 
 
@@ -256,7 +256,9 @@ def _shared(result: AdjustmentResult, unit: AngleUnit) -> Table:
             if item.kind == "orientation"
             else f'{item.value * RHO_ARCSEC:+.1f}"'
         )
-        rows.append((item.kind.replace("_", " "), item.name, value, plain(item.sigma * RHO_ARCSEC)))
+        rows.append(
+            (term(item.kind.replace("_", " ")), item.name, value, plain(item.sigma * RHO_ARCSEC))
+        )
     return Table(said_each("kind", "name", "value", '±"'), tuple(rows), "llrr")
 
 
@@ -313,7 +315,7 @@ def _observation(item: AdjustedObservation, unit: AngleUnit) -> tuple[str, ...]:
     to = f"{item.back} - {item.to}" if item.back else item.to
     bias = NOTHING if item.mdb is None else f"{item.mdb * small:.1f}{what}"
     return (
-        str(item.kind).replace("_", " "),
+        term(str(item.kind).replace("_", " ")),
         item.at,
         to,
         observed,

@@ -18,6 +18,7 @@ from textual.widgets import DataTable, Footer
 
 from surveyapp import api
 from surveyapp.errors import SurveyError
+from surveyapp.languages import translated
 from surveyapp.tui import texts
 from surveyapp.tui.screens.confirm import ConfirmScreen
 from surveyapp.tui.views.diagnosis import SUBJECT_COLUMNS, Diagnosed, diagnosis_view, subject_rows
@@ -140,7 +141,7 @@ class DiagnosisScreen(Screen[None]):
         if found is None or found.diagnosis is None or not found.diagnosis.adopted:
             self.notify(texts.NOTHING_TO_ADOPT, severity="warning", markup=False)
             return
-        names = ", ".join(item.title for item in found.diagnosis.adopted)
+        names = ", ".join(translated(item.title) for item in found.diagnosis.adopted)
         self.app.push_screen(ConfirmScreen(texts.ADOPT_ASK.format(names=names)), self._adopt)
 
     def _adopt(self, confirmed: bool | None) -> None:

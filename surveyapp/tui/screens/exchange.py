@@ -20,8 +20,10 @@ from textual.widgets.option_list import Option
 from surveyapp.domain.fieldfile import ImportResult
 from surveyapp.domain.filing import ExportResult
 from surveyapp.errors import SurveyError
+from surveyapp.languages import shown, translated
 from surveyapp.observation import exchange
 from surveyapp.tui import texts
+from surveyapp.tui.cells import padded
 from surveyapp.tui.views.exchange import entry_text, import_text
 from surveyapp.tui.widgets.field import TextField, typed
 from surveyapp.tui.widgets.problems import problems_text
@@ -158,7 +160,10 @@ class ExportScreen(Screen[None]):
         name = Path(self.folder).resolve().name
         yield TitleBar(texts.EXPORT_TITLE.format(name=name))
         with Vertical():
-            lines = [Option(f"{form:<8} {title}") for form, title in self.formats.items()]
+            lines = [
+                Option(f"{padded(form, 8)} {translated(title)}")
+                for form, title in self.formats.items()
+            ]
             yield OptionList(*lines, id="formats", compact=True)
             yield TextField(texts.EXPORT_FILE, "file")
             yield Static(id="told", markup=False)
@@ -196,7 +201,7 @@ class ExportScreen(Screen[None]):
     def show(self, result: ExportResult) -> None:
         """Say what was written and what was left out."""
         lines = [texts.EXPORT_DONE.format(path=result.path, items=result.items)]
-        lines += [f"{item.code}: {item.text}" for item in result.warnings]
+        lines += [f"{item.code}: {shown(item.text)}" for item in result.warnings]
         self.query_one("#told", Static).update("\n".join(lines))
 
     def action_leave(self) -> None:

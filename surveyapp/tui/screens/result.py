@@ -18,8 +18,9 @@ from surveyapp.api.office import undrawn_text
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import SurveyError
+from surveyapp.languages import shown
 from surveyapp.observation.practice import Practice
-from surveyapp.observation.record import record_written, write_record
+from surveyapp.observation.record import record_outdated, record_written, write_record
 from surveyapp.tui import texts
 from surveyapp.tui.drafts import Draft
 from surveyapp.tui.entry_desk import problem_text
@@ -123,6 +124,8 @@ class ResultScreen(Screen[None]):
             self.query_one("#truth", Static).update(truth)
             self.query_one("#truth").display = bool(truth)
         self.show_sections()
+        if record_outdated(message.project):
+            self.post_message(self.Told(texts.RECORD_OLD))
 
     def on_resize(self) -> None:
         """The drawing takes the width that there is."""
@@ -175,7 +178,7 @@ class ResultScreen(Screen[None]):
         try:
             again = texts.PDF_AGAIN.format(path=write_record(self.folder))
         except SurveyError as error:
-            again = texts.PDF_OUT_OF_DATE.format(what=error.problems[0].what)
+            again = texts.PDF_OUT_OF_DATE.format(what=shown(error.problems[0].what))
         self.post_message(self.Told(f"{told}\n{again}"))
 
     def on_result_screen_told(self, message: Told) -> None:

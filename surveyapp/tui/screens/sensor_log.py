@@ -56,6 +56,8 @@ class SensorLogScreen(Screen[None]):
     folder : str
         The project.
     entry : SensorLogEntry
+    found : Examined or None
+        What is shown to begin with.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -88,12 +90,12 @@ class SensorLogScreen(Screen[None]):
             super().__init__()
             self.error = error
 
-    def __init__(self, folder: str, entry: SensorLogEntry) -> None:
+    def __init__(self, folder: str, entry: SensorLogEntry, found: Examined | None = None) -> None:
         super().__init__()
         self.folder = folder
         self.entry = entry
         self.chosen_task = "calibrate"
-        self.found: Examined | None = None
+        self.found = found
         self.place = 0
         self.job: Worker[None] | None = None
 
@@ -111,6 +113,8 @@ class SensorLogScreen(Screen[None]):
     def on_mount(self) -> None:
         """The keys of the tasks work at once."""
         self.query_one("#result VerticalScroll").focus()
+        if self.found is not None:
+            self.post_message(self.Found(self.found))
 
     def action_run(self, task: str) -> None:
         """Begin a task."""

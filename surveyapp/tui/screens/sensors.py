@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 from typing import ClassVar, cast
 
@@ -14,10 +15,19 @@ from textual.message import Message
 from textual.screen import Screen
 from textual.widgets import DataTable, Footer, TabbedContent, TabPane
 
+from surveyapp import api
+from surveyapp.core.sensors.programmes.catalogue import PROGRAMMES
 from surveyapp.errors import SurveyError
 from surveyapp.observation.sensors.desk import SensorDesk, sensor_desk
+from surveyapp.observation.sensors.programmes import (
+    ProgrammeDesk,
+    RunShown,
+    free_id,
+    runs_of,
+)
 from surveyapp.tui import texts
 from surveyapp.tui.page_keys import page_bindings
+from surveyapp.tui.views import programmes as run_view
 from surveyapp.tui.views import sensors as view
 from surveyapp.tui.widgets.problems import Problems
 from surveyapp.tui.widgets.records import Records
@@ -26,6 +36,7 @@ from surveyapp.tui.widgets.titlebar import TitleBar
 PAGES = {
     "logs": texts.TAB_LOGS,
     "cards": texts.TAB_CARDS,
+    "programmes": texts.TAB_PROGRAMMES,
 }
 
 
@@ -43,9 +54,10 @@ class SensorsScreen(Screen[None]):
     class Read(Message):
         """The folder was read."""
 
-        def __init__(self, desk: SensorDesk) -> None:
+        def __init__(self, desk: SensorDesk, runs: tuple[RunShown, ...]) -> None:
             super().__init__()
             self.desk = desk
+            self.runs = runs
 
     class Failed(Message):
         """The folder cannot be used."""
@@ -58,6 +70,7 @@ class SensorsScreen(Screen[None]):
         super().__init__()
         self.folder = folder
         self.desk: SensorDesk | None = None
+        self.runs: tuple[RunShown, ...] = ()
         self.left = False
 
     def compose(self) -> ComposeResult:
@@ -68,6 +81,8 @@ class SensorsScreen(Screen[None]):
                 yield Records(view.LOG_COLUMNS, empty=texts.SENSOR_NO_LOGS, details=self._log)
             with TabPane(texts.TAB_CARDS, id="cards"):
                 yield Records(view.CARD_COLUMNS, empty=texts.SENSOR_NO_CARDS, details=self._card)
+            with TabPane(texts.TAB_PROGRAMMES, id="programmes"):
+                yield Records(run_view.RUN_COLUMNS, empty="", details=self._programme)
         yield Footer(show_command_palette=False)
 
     def on_mount(self) -> None:
@@ -86,16 +101,17 @@ class SensorsScreen(Screen[None]):
 
     def action_reload(self) -> None:
         """Read the folder again."""
-        from surveyapp.tui.app import SurveyApp
-
-        moment = cast("SurveyApp", self.app).now()
-        self.read(moment)
+        self.read(self.moment())
 
     @work(thread=True, exclusive=True)
     def read(self, moment: datetime) -> None:
         """Read logs and cards in a thread."""
         try:
-            self.post_message(self.Read(sensor_desk(self.folder, moment.date())))
+            runs, problems = runs_of(self.folder)
+            self.post_message(self.Read(sensor_desk(self.folder, moment.date()), runs))
+            for problem in problems:
+                told = partial(self.notify, str(problem), severity="error", markup=False)
+                self.app.call_from_thread(told)
         except SurveyError as error:
             self.post_message(self.Failed(error))
 
@@ -103,10 +119,11 @@ class SensorsScreen(Screen[None]):
         """Fill the pages."""
         await self.query(Problems).remove()
         self.query_one(TabbedContent).display = True
-        self.desk = message.desk
+        self.desk, self.runs = message.desk, message.runs
         rows = {
             "logs": view.log_rows(message.desk.logs, message.desk.cards),
             "cards": view.card_rows(message.desk.cards),
+            "programmes": run_view.run_rows(message.runs),
         }
         for page, found in rows.items():
             table = self.query_one(f"#{page} DataTable", DataTable)
@@ -134,14 +151,41 @@ class SensorsScreen(Screen[None]):
         self.action_open()
 
     def action_open(self) -> None:
-        """Open the log under the cursor."""
-        if self.desk is None or self.query_one(TabbedContent).active != "logs":
+        """Open the log or the programme under the cursor."""
+        page = self.query_one(TabbedContent).active
+        row = self.query_one(f"#{page} DataTable", DataTable).cursor_row
+        if self.desk is None or page == "cards":
             return
-        row = self.query_one("#logs DataTable", DataTable).cursor_row
-        if self.desk.logs:
+        if page == "programmes":
+            self.open_programme(row)
+        elif self.desk.logs:
             from surveyapp.tui.screens.sensor_log import SensorLogScreen
 
             self.app.push_screen(SensorLogScreen(self.folder, self.desk.logs[row]))
+
+    def open_programme(self, row: int) -> None:
+        """Go on with a run, or begin a new one."""
+        from surveyapp.tui.screens.programme import ProgrammeScreen
+
+        begun = row < len(self.runs)
+        try:
+            if begun:
+                identity = self.runs[row].run.id
+            else:
+                programme = PROGRAMMES[row - len(self.runs)]
+                identity = free_id(self.folder, programme.id)
+                api.begin_programme(self.folder, programme.id, identity, now=self.moment())
+            desk = ProgrammeDesk(self.folder, identity, now=self.moment)
+        except SurveyError as error:
+            self.notify(str(error), severity="error", markup=False)
+            return
+        self.app.push_screen(ProgrammeScreen(desk))
+
+    def moment(self) -> datetime:
+        """The wall clock of the program."""
+        from surveyapp.tui.app import SurveyApp
+
+        return cast("SurveyApp", self.app).now()
 
     def action_add(self) -> None:
         """Take a log into the project."""
@@ -155,6 +199,9 @@ class SensorsScreen(Screen[None]):
 
     def _log(self, row: int) -> Text:
         return Text() if self.desk is None else view.log_details(self.desk.logs[row])
+
+    def _programme(self, row: int) -> Text:
+        return run_view.run_details(self.runs, row)
 
     def _card(self, row: int) -> Text:
         return Text() if self.desk is None else view.card_details(self.desk.cards[row])

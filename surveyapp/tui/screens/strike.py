@@ -14,6 +14,7 @@ from textual.widgets.option_list import Option
 
 from surveyapp.domain.readings import Reading
 from surveyapp.tui import texts
+from surveyapp.tui.cells import padded
 from surveyapp.tui.drafts import Draft, keep, put_back
 
 
@@ -79,4 +80,4 @@ def _line(row: Reading, *, struck: bool) -> str:
     kind = texts.KIND_NAMES[row.kind].split(",")[0]
     time = "" if row.time is None else f"{row.time:%H:%M:%S}"
     back = f"  {texts.STRIKE_BACK}" if struck else ""
-    return f"{row.seq:>4}  {time:<8}  {kind:<14}  {row.text}{back}"
+    return f"{row.seq:>4}  {time:<8}  {padded(kind, 14)}  {row.text}{back}"

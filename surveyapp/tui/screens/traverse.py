@@ -20,6 +20,7 @@ from surveyapp import api
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.results import Check
 from surveyapp.errors import SurveyError
+from surveyapp.languages import shown
 from surveyapp.tui import texts
 from surveyapp.tui.page_keys import page_bindings
 from surveyapp.tui.views import traverse as view
@@ -165,4 +166,4 @@ class TraverseScreen(Screen[None]):
         if not self.checks:
             return Text()
         check = view.ordered(self.checks)[row]
-        return Text("\n".join(part for part in (check.where, check.clause) if part))
+        return Text("\n".join(shown(part) for part in (check.where, check.clause) if part))

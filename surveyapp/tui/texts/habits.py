@@ -41,6 +41,9 @@ EDIT_NO_TERMINAL: Final = "This terminal cannot step back for an editor: nothing
 EDIT_FAILED: Final = "{editor} could not be started: {reason}. Set EDITOR to a text editor."
 EDIT_CODE: Final = "({editor} ended with {code}.)"
 
+# the record on the disk
+RECORD_OLD: Final = "The PDF in results/ is OUT OF DATE: F4 makes it again."
+
 # corrections in a form
 KEY_CORRECT: Final = "Correct"
 LONG_CORRECT: Final = "Correct a station, an instrument or a session"

@@ -295,7 +295,21 @@ value of one count, rate-hz=F stands for a missing time. kind= is
 compass, tilt, rate or fog-station. The log is copied into sensors/ and
 pinned by its hash; one that lies in the project stays where it is.
 """
+_PROGRAMME: Final = """\
+The steps of a calibration, one below the other: + is done, ! was done
+before its minutes were over, > is next. Enter writes down that a step
+is done, or the reading that was typed; it is on the disk then. Up and
+down choose another step, Ctrl+Z strikes the latest entry, which stays
+in the file. Leave with Escape whenever you like, and go on later.
+
+What is recorded by itself is found in the log: log=FILE names it, with
+map.time_s=t and the like behind. The file may still be growing: the
+steps follow it, with the turns that are whole. What the readings do not
+yet determine stands below. F8 calibrates and writes the card; options
+such as latitude=47.1 stand in the line before F8.
+"""
 PAGES: Final = {
+    "ProgrammeScreen": ("A guided programme", _PROGRAMME),
     "SensorsScreen": ("Sensors", _SENSORS),
     "SensorLogScreen": ("A sensor log", _SENSOR_LOG),
     "AddLogScreen": ("Add a log", _ADD_LOG),

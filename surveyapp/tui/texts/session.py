@@ -163,6 +163,14 @@ SCHULER_DIV: Final = "Schuler, div"
 AFTER_TWO: Final = '±{interval}" after two more'
 WANTED: Final = 'wanted ±{interval}"'
 ENOUGH: Final = "ENOUGH"
+NEXT_ACTION: Final = 'next: {action}: ±{interval}", cause {share}'
+ELSE_ACTION: Final = 'else: {action}: ±{interval}", cause {share}'
+ACTIONS: Final = {
+    "two_points": "two more points",
+    "reversed_start": "2nd run now, other side",
+    "second_run": "2nd run in 4 h, set up anew",
+    "other_observer": "2nd run by another observer",
+}
 RULE_TARGET: Final = 'rule book ±{interval}"'
 TARGET_SOURCE: Final = 'm {sigma}" x 1.96: {book}, {clause}'
 TARGET_UNCONFIRMED: Final = ", unconfirmed"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from surveyapp.domain.results import OrientationResult
+from surveyapp.languages import translated
 from surveyapp.tui import texts
 
 
@@ -10,7 +11,7 @@ def quantity_text(value: float | None, unit: str) -> str:
     """A value or limit with its unit."""
     if value is None:
         return texts.NOT_DETERMINED
-    mark = {"arcsec": '"'}.get(unit, f" {unit}" if unit else "")
+    mark = {"arcsec": '"'}.get(unit, f" {translated(unit)}" if unit else "")
     return f"{value:.4g}{mark}"
 
 

@@ -6,9 +6,11 @@ from collections.abc import Mapping, Sequence
 
 from rich.text import Text
 
+from surveyapp.languages import shown, translated
 from surveyapp.report.sections import diagnosis as section
 from surveyapp.report.text import blocks_text
 from surveyapp.tui import texts
+from surveyapp.tui.cells import padded
 from surveyapp.workflows.diagnosing import Diagnosed
 from surveyapp_models.angles import AngleUnit
 
@@ -29,7 +31,7 @@ def subject_rows(
         made = found.get(place)
         verdict = ""
         if made is not None and made.diagnosis is not None:
-            verdict = made.diagnosis.verdict.replace("_", " ")
+            verdict = translated(made.diagnosis.verdict.replace("_", " "))
         name = {
             "session": texts.SUBJECT_RUN,
             "campaign": texts.SUBJECT_CAMPAIGN,
@@ -46,14 +48,14 @@ def diagnosis_view(found: Diagnosed, unit: AngleUnit = AngleUnit.DMS) -> Text:
         return Text(texts.NO_SUBJECTS)
     text = Text()
     for sentence in found.words:
-        text.append(texts.D_SENTENCE.format(sentence=sentence))
+        text.append(texts.D_SENTENCE.format(sentence=shown(sentence)))
     text.append(f"\n{blocks_text([section.models(diagnosis, unit)], COLUMNS)}\n")
     for name, before, after in found.channels:
         text.append(f"\n{texts.CHANNEL_NAMES.get(name, name)}\n", style="bold")
         for state, series in ((texts.D_BEFORE, before), (texts.D_AFTER, after)):
             largest = max((abs(value) for value in series), default=0.0) / diagnosis.scale
             bars = sparkline(series)
-            text.append(f"{state:<8}{bars}  ±{largest:.1f} {diagnosis.unit}\n")
+            text.append(f"{padded(state, 8)}{bars}  ±{largest:.1f} {diagnosis.unit}\n")
     return text.append(f"\n{blocks_text(section.candidates(diagnosis), COLUMNS)}\n")
 
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from rich.text import Text
 
 from surveyapp.domain.fieldfile import ImportResult
+from surveyapp.languages import shown
 from surveyapp.observation.exchange import Entry
 from surveyapp.tui import texts
 from surveyapp.tui.views.form import number_text
@@ -39,8 +40,8 @@ def import_text(result: ImportResult) -> Text:
         variant=result.variant, readings=result.readings, rows=result.rows
     )
     text = Text(f"{head}\n")
-    _block(text, texts.IMPORT_TOLD, [f"{x.code}: {x.text}" for x in result.warnings])
-    skipped = [texts.IMPORT_LINE.format(line=x.line, text=x.text) for x in result.skipped]
+    _block(text, texts.IMPORT_TOLD, [f"{x.code}: {shown(x.text)}" for x in result.warnings])
+    skipped = [texts.IMPORT_LINE.format(line=x.line, text=shown(x.text)) for x in result.skipped]
     _block(text, texts.IMPORT_LEFT_OUT, skipped)
     stations = [
         f"{x.name}  {number_text(x.e, 3)}  {number_text(x.n, 3)}  {number_text(x.h, 3)}  {x.state}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from surveyapp.languages import translated
 from surveyapp.observation.session import SessionDesk
 from surveyapp.tui import texts
 
@@ -12,7 +13,7 @@ def session_title(observation: SessionDesk) -> str:
     return texts.SESSION_TITLE.format(
         project=observation.project.name,
         session=session.id,
-        method=session.method,
+        method=translated(session.method),
         line=f"{session.station}-{session.target}" if session.target else session.station,
     )
 

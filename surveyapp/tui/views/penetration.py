@@ -7,6 +7,7 @@ import math
 from surveyapp.api import Trial
 from surveyapp.domain.penetration import STEP_TITLES, ProcedureStep
 from surveyapp.domain.penetration_result import Prediction
+from surveyapp.languages import shown, translated
 from surveyapp.tui import texts
 
 BUDGET_COLUMNS = (
@@ -71,7 +72,7 @@ def budget_rows(result: Prediction) -> list[tuple[str, ...]]:
     """Every cause, the total last."""
     rows = [
         (
-            cause.source.replace("_", " "),
+            translated(cause.source.replace("_", " ")),
             cause.heading or texts.P_COMMON,
             number(cause.lateral_m),
             number(cause.longitudinal_m),
@@ -88,8 +89,8 @@ def evaluation_rows(result: Prediction) -> list[tuple[str, ...]]:
         return []
     return [
         (
-            f"{item.effect.replace('_', ' ')} {item.subject}".strip(),
-            item.component,
+            f"{translated(item.effect.replace('_', ' '))} {item.subject}".strip(),
+            translated(item.component),
             f"{item.needed:+.4g} {item.unit}",
             number(item.sigmas, 1),
         )
@@ -103,9 +104,9 @@ def evaluation_text(result: Prediction) -> str:
     if test is None:
         return texts.P_NOT_MEASURED
     t = " ".join("-" if value is None else f"{value:+.2f}" for value in test.t)
-    return (
-        f"miss / sigma {t}; chi-square {test.chi2:.2f}, p {test.p:.4f}: "
-        f"{test.verdict.replace('_', ' ')}. {test.text}"
+    verdict = translated(test.verdict.replace("_", " "))
+    return texts.P_MISS.format(
+        t=t, chi2=f"{test.chi2:.2f}", p=f"{test.p:.4f}", verdict=verdict, text=shown(test.text)
     )
 
 

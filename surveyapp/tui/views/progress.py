@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from surveyapp.core.observing.passage_forecast import PassageForecast
 from surveyapp.core.observing.progress import Progress
@@ -11,6 +13,9 @@ from surveyapp.observation.aim import Aim
 from surveyapp.tui import texts
 from surveyapp.tui.views.form import arcsec_text, number_text
 from surveyapp_models.angles import AngleUnit, format_angle
+
+if TYPE_CHECKING:
+    from surveyapp.diagnosis.outlook import ActionResult
 
 WIDTH = 54
 """Columns beside the steps in a terminal of 80."""
@@ -115,6 +120,21 @@ def outlook_text(progress: Progress, aim: Aim) -> str:
     if progress.enough(target.interval95):
         parts.insert(0, texts.ENOUGH)  # in sight in the narrowest window
     return "  ".join(parts)
+
+
+def next_lines(actions: Sequence[ActionResult], shown: int = 2) -> list[str]:
+    """What to observe next, best first: how sure the cause would be, and the interval of north."""
+    lines = []
+    for place, item in enumerate(actions[:shown]):
+        pattern = texts.NEXT_ACTION if place == 0 else texts.ELSE_ACTION
+        lines.append(
+            pattern.format(
+                action=texts.ACTIONS.get(item.action, item.text),
+                share=f"{item.separation:.0%}",
+                interval=arcsec_text(item.interval95),
+            )
+        )
+    return lines
 
 
 def _no_target(aim: Aim) -> str:

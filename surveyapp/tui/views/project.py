@@ -6,6 +6,7 @@ from rich.text import Text
 
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
+from surveyapp.languages import shown
 from surveyapp.report.sections import azimuths, checks, reduction
 from surveyapp.tui import texts
 from surveyapp.tui.views.blocks import blocks_as_text
@@ -43,5 +44,5 @@ def details_of(
     if page == "lines":
         return blocks_as_text(azimuths.line_blocks(project, result.lines[row]), width)
     if page == "checks":
-        return Text(checks.details(checks.ordered(result.checks)[row]))
-    return Text(result.warnings[row].text)
+        return Text(shown(checks.details(checks.ordered(result.checks)[row])))
+    return Text(shown(result.warnings[row].text))

@@ -8,6 +8,7 @@ from rich.text import Text
 
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import AngleResult, OrientationResult
+from surveyapp.languages import translated
 from surveyapp.report.numbers import line_name, with_sigma
 from surveyapp.report.sections import azimuths, checks, constants, reduction
 from surveyapp.tui import texts
@@ -30,7 +31,9 @@ def result_headline(result: OrientationResult, session: str, unit: AngleUnit) ->
         if line.grid_azimuth is not None:
             return _headline(name, texts.COL_GRID, line.grid_azimuth, unit)
         if line.true_azimuth is not None:
-            label = texts.R_TRUE.format(reference=(line.true_azimuth.reference or "").lower())
+            label = texts.R_TRUE.format(
+                reference=translated((line.true_azimuth.reference or "").lower())
+            )
             return _headline(name, label, line.true_azimuth, unit)
         return _headline(name, texts.COL_AZIMUTH, line.gyro_azimuth, unit)
     own = next(item for item in result.sessions if item.id == session)
@@ -74,5 +77,5 @@ def truth_text(outcome: PracticeOutcome | None, unit: AngleUnit) -> str:
         interval=arcsec_text(outcome.interval95),
         verdict=verdict,
     )
-    hidden = texts.PRACTICE_HIDDEN.format(effect=outcome.effect.replace("_", " "))
+    hidden = texts.PRACTICE_HIDDEN.format(effect=translated(outcome.effect.replace("_", " ")))
     return f"{truth}\n{hidden if outcome.effect else texts.PRACTICE_CLEAN}"

@@ -8,6 +8,7 @@ from rich.text import Text
 
 from surveyapp.domain.log_preview import LogPreview, PreviewedColumn
 from surveyapp.domain.sensor_entry import SensorLogEntry
+from surveyapp.languages import shown, translated
 from surveyapp.observation.sensors.desk import CardShown
 from surveyapp.report.numbers import four_digits
 from surveyapp.tui import texts
@@ -107,7 +108,12 @@ def card_details(shown: CardShown) -> Text:
         text.append(f"{shown.problem}\n", style="bold")
     text.append("\n")
     rows = [
-        (item.name.replace("_", " "), four_digits(item.value), four_digits(item.sigma), item.unit)
+        (
+            translated(item.name.replace("_", " ")),
+            four_digits(item.value),
+            four_digits(item.sigma),
+            item.unit,
+        )
         for item in card.parameters
     ]
     return text.append_text(table_text(rows, left=(0, 3)))
@@ -120,7 +126,7 @@ def preview_text(preview: LogPreview) -> Text:
     if preview.rows:
         text.append(texts.ADD_LOG_HEAD.format(rows=preview.rows, rate=rate) + "\n")
     _block(text, texts.ADD_LOG_WRONG, preview.problems)
-    _block(text, texts.ADD_LOG_TOLD, [f"{w.code}: {w.text}" for w in preview.warnings])
+    _block(text, texts.ADD_LOG_TOLD, [f"{w.code}: {shown(w.text)}" for w in preview.warnings])
     text.append("\n")
     rows = [texts.ADD_LOG_COLUMNS, *(_column_row(column) for column in preview.columns)]
     return text.append_text(table_text(rows, left=(0, 1, 2, 5)))

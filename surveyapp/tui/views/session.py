@@ -5,6 +5,7 @@ from __future__ import annotations
 from surveyapp.core.observing.steps import current_step
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
+from surveyapp.languages import translated
 from surveyapp.report.sections.reduction import summary_row
 from surveyapp.tui import texts
 
@@ -21,7 +22,7 @@ def session_rows(project: Project, result: OrientationResult) -> list[tuple[str,
         name = texts.CLOSED_MARK.format(id=item.id) if whole or item.id in closed else item.id
         if session is None:
             step = current_step(item.book, item.method)
-            rows.append((name, item.method, "", texts.STEP_NAMES[step], "", "", ""))
+            rows.append((name, translated(item.method), "", texts.STEP_NAMES[step], "", "", ""))
             continue
         rows.append((name, *summary_row(session, unit)[1:]))
     return rows

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from surveyapp.domain.shaft import CHECK_IDS
 from surveyapp.domain.shaft_result import ShaftOrientation, SideAzimuth
+from surveyapp.languages import translated
 from surveyapp.tui import texts
 from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, format_angle
 
@@ -62,7 +63,10 @@ def azimuth_rows(shaft: ShaftOrientation, unit: AngleUnit) -> list[tuple[str, ..
 def budget_pairs(shaft: ShaftOrientation) -> list[tuple[str, str]]:
     """The error of one orientation by the wires."""
     return [
-        (line.source.replace("_", " "), f'{line.sigma * RHO_ARCSEC:.2f}"  {line.share:.0%}')
+        (
+            translated(line.source.replace("_", " ")),
+            f'{line.sigma * RHO_ARCSEC:.2f}"  {line.share:.0%}',
+        )
         for line in shaft.budget
     ]
 
@@ -73,7 +77,7 @@ def plumbing_rows(shaft: ShaftOrientation) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = []
     for name in CHECK_IDS:
         check = recorded.get(name)
-        words = name.replace("_", " ")
+        words = translated(name.replace("_", " "))
         if check is None:
             rows.append((words, texts.P_OPEN, "", ""))
         else:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from surveyapp.domain.adjustment import AdjustedObservation, AdjustmentResult
 from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.results import Check
+from surveyapp.languages import translated
 from surveyapp.tui import texts
 from surveyapp.tui.views.checks import quantity_text
 from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, format_angle, wrap_two_pi
@@ -85,7 +86,7 @@ def observation_rows(result: AdjustmentResult) -> list[tuple[str, ...]]:
         word = texts.SUSPECT if item.place in accused and item.place >= 0 else ""
         rows.append(
             (
-                str(item.kind).replace("_", " "),
+                translated(str(item.kind).replace("_", " ")),
                 _sight(item),
                 f"{item.residual * scale:+.1f}{unit}",
                 f"{_number(item.standardized, 1, sign=True)} {word}".strip(),
@@ -153,7 +154,7 @@ def check_rows(checks: Sequence[Check]) -> list[tuple[str, ...]]:
     """Each check in one row."""
     return [
         (
-            check.verdict,
+            translated(check.verdict),
             check.rule,
             quantity_text(check.value, check.unit),
             quantity_text(check.limit, check.unit),

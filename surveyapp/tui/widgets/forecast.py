@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 from rich.text import Text
 from textual.app import ComposeResult
 from textual.containers import Vertical
@@ -16,6 +19,7 @@ from surveyapp.tui.views.progress import (
     countdown_text,
     forecast_text,
     is_near,
+    next_lines,
     north_text,
     outlook_text,
     schuler_text,
@@ -23,6 +27,9 @@ from surveyapp.tui.views.progress import (
     time_difference_text,
 )
 from surveyapp_models.angles import AngleUnit
+
+if TYPE_CHECKING:
+    from surveyapp.diagnosis.outlook import ActionResult
 
 
 class Forecast(Vertical):
@@ -41,8 +48,8 @@ class Forecast(Vertical):
         yield Static(id="facts", markup=False)
         yield Static(id="alert", markup=False)
 
-    def show(self, progress: Progress) -> None:
-        """Show another state of the run."""
+    def show(self, progress: Progress, actions: Sequence[ActionResult] = ()) -> None:
+        """Show another state of the run, and what could be observed next once it is enough."""
         self.progress = progress
         north = north_text(progress, self.unit, self.method)
         text = Text(f"{north}  ", no_wrap=True)
@@ -52,6 +59,8 @@ class Forecast(Vertical):
             text.append(f"\n{outlook}", style=style)
             if source := target_source_text(self.aim.target):
                 text.append(f"\n{source}")
+            for line in next_lines(actions):
+                text.append(f"\n{line}")
         lines = (time_difference_text(progress), schuler_text(progress, self.unit))
         for line in (*filter(None, lines), *channel_lines(progress, 6)):
             text.append(f"\n{line}")

@@ -10,6 +10,7 @@ from textual.containers import Vertical, VerticalScroll
 from textual.widgets import Static
 
 from surveyapp.tui import texts
+from surveyapp.tui.cells import columns, padded
 
 STATE, RESIDUAL = 4, 5
 RIGHT = (0, RESIDUAL)
@@ -41,12 +42,9 @@ class Ledger(Vertical):
         head = texts.LEDGER_COLUMNS_DIV if scale else texts.LEDGER_COLUMNS
         table = [head, *rows]
         shown = [i for i in range(len(head)) if any(row[i] for row in rows)]
-        widths = {i: max(len(row[i]) for row in table if not _reason(row, i)) for i in shown}
+        widths = {i: max(columns(row[i]) for row in table if not _reason(row, i)) for i in shown}
         lines = [
-            " ".join(
-                row[i].rjust(width) if i in RIGHT else row[i].ljust(width)
-                for i, width in widths.items()
-            )
+            " ".join(padded(row[i], width, right=i in RIGHT) for i, width in widths.items())
             for row in table
         ]
         self.query_one("#ledger-head", Static).update(Text(lines[0], style="bold underline"))

@@ -8,6 +8,7 @@ from textual.containers import VerticalScroll
 from textual.widgets import Static
 
 from surveyapp.errors import SurveyError
+from surveyapp.languages import shown
 from surveyapp.tui import texts
 
 
@@ -28,14 +29,15 @@ def problems_text(error: SurveyError) -> Text:
     """Every problem as a paragraph."""
     text = Text()
     for problem in error.problems:
-        head = f"{problem.where}: {problem.what}" if problem.where else problem.what
+        what = shown(problem.what)
+        head = f"{shown(problem.where)}: {what}" if problem.where else what
         text.append(f"{head}\n")
         if problem.found:
-            text.append(f"  {texts.FOUND.format(text=problem.found)}\n")
+            text.append(f"  {texts.FOUND.format(text=shown(problem.found))}\n")
         if problem.expected:
-            text.append(f"  {texts.EXPECTED.format(text=problem.expected)}\n")
+            text.append(f"  {texts.EXPECTED.format(text=shown(problem.expected))}\n")
         if problem.hint:
-            text.append(f"  {problem.hint}\n")
+            text.append(f"  {shown(problem.hint)}\n")
         text.append("\n")
     text.rstrip()
     return text

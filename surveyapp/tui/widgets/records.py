@@ -10,6 +10,7 @@ from textual.containers import Container, VerticalScroll
 from textual.widgets import DataTable, Static
 
 from surveyapp.languages import shown
+from surveyapp.tui.cells import columns, padded
 
 NUMERIC = "+-±.0123456789"
 
@@ -87,10 +88,10 @@ class Records(Container):
 
 def pairs_text(pairs: Sequence[tuple[str, str]]) -> Text:
     """Labels and values, one a line, values below each other."""
-    width = max((len(label) for label, _ in pairs), default=0)
+    width = max((columns(label) for label, _ in pairs), default=0)
     text = Text()
     for label, value in pairs:
-        text.append(f"{label:<{width}}  ")
+        text.append(f"{padded(label, width)}  ")
         text.append(f"{value}\n", style="bold")
     return text
 
@@ -99,11 +100,11 @@ def table_text(rows: Sequence[Sequence[str]], *, left: tuple[int, ...] = (0,)) -
     """A small table: some columns to the left, the others to the right."""
     if not rows:
         return Text()
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    widths = [max(columns(row[i]) for row in rows) for i in range(len(rows[0]))]
     text = Text()
     for row in rows:
         cells = [
-            cell.ljust(width) if i in left else cell.rjust(width)
+            padded(cell, width, right=i not in left)
             for i, (cell, width) in enumerate(zip(row, widths, strict=True))
         ]
         text.append(("  ".join(cells)).rstrip() + "\n")

@@ -5,6 +5,8 @@ The judgement is computed in a thread on the project as it then was; it comes ba
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from textual import work
 from textual.app import ComposeResult
 from textual.containers import Vertical
@@ -17,6 +19,7 @@ from surveyapp.core.observing.steps import Step, kinds_of
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.errors import SurveyError
 from surveyapp.observation import session as api_session
+from surveyapp.observation.next_action import next_actions
 from surveyapp.tui import texts
 from surveyapp.tui.entry_desk import Desk
 from surveyapp.tui.views.ledger import QUIET, book_rows, ledger_rows
@@ -24,6 +27,9 @@ from surveyapp.tui.views.step_values import care_text, value_lines
 from surveyapp.tui.widgets.forecast import Forecast
 from surveyapp.tui.widgets.ledger import Ledger
 from surveyapp.tui.widgets.swing import SwingPlot
+
+if TYPE_CHECKING:
+    from surveyapp.diagnosis.outlook import ActionResult
 
 
 class RunPane(Vertical):
@@ -37,9 +43,10 @@ class RunPane(Vertical):
     class Judged(Message):
         """The run has been judged as it was at some row."""
 
-        def __init__(self, progress: Progress) -> None:
+        def __init__(self, progress: Progress, actions: tuple[ActionResult, ...] = ()) -> None:
             super().__init__()
             self.progress = progress
+            self.actions = actions
 
     class Near(Message):
         """The next turning point is near."""
@@ -116,13 +123,16 @@ class RunPane(Vertical):
             result = api_session.progress(observation.project, observation.session_id)
         except SurveyError:
             result = Progress()
-        self.post_message(self.Judged(result))
+        target = observation.aim().target
+        enough = target is not None and result.enough(target.interval95)
+        actions = next_actions(observation.project, observation.session_id) if enough else ()
+        self.post_message(self.Judged(result, actions))
 
     def on_run_pane_judged(self, message: Judged) -> None:
         """Show forecast and alarm."""
         self.desk.progress = message.progress
         self.query_one(SwingPlot).show(message.progress)
-        self.query_one(Forecast).show(message.progress)
+        self.query_one(Forecast).show(message.progress, message.actions)
         self.show_rows()
         self.show_values()
         self.tick()

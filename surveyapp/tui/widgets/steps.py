@@ -9,6 +9,7 @@ from textual.widgets import Static
 
 from surveyapp.core.observing.steps import Step, StepState
 from surveyapp.tui import texts
+from surveyapp.tui.cells import cut, padded
 
 
 class StepList(Static):
@@ -28,6 +29,7 @@ class StepList(Static):
             mark = texts.STEP_HERE if state.step is here else texts.STEP_MARKS[state.state]
             count = f"{state.count:>3}" if state.count else "   "
             text.append(
-                f"{mark} {name:<15}{count}\n", style="reverse" if state.step is here else ""
+                f"{mark} {padded(cut(name, 15), 15)}{count}\n",
+                style="reverse" if state.step is here else "",
             )
         self.update(text)

@@ -60,7 +60,7 @@ def card_of(
         sha256=calibration.sha256,
         covariance=covariance,
         constants=calibration.constants,
-        notes=calibration.notes,
+        notes={**calibration.notes, **_procedure(request)},
         extra=_owner(request),
     )
 
@@ -72,6 +72,12 @@ def _owner(request: CalibrationRequest) -> dict[str, object]:
         return {}
     stated = (("instrument", entry.instrument), ("serial", entry.serial))
     return {key: value for key, value in stated if value is not None}
+
+
+def _procedure(request: CalibrationRequest) -> dict[str, str]:
+    """By which procedure the record was made, where the project says so."""
+    note = request.option("note")
+    return {"procedure": note} if isinstance(note, str) and note else {}
 
 
 def _day(request: CalibrationRequest) -> date:

@@ -46,7 +46,7 @@ def _allan_chart(channel: AllanChannel) -> Chart:
         Series("95 %", pairs(channel.taus_s, channel.low), "bound"),
         Series("95 %", pairs(channel.taus_s, channel.high), "bound"),
     ]
-    curves += _slopes(channel)
+    curves += slopes(channel)
     return Chart(
         f"Allan deviation of {channel.name}",
         TAU,
@@ -58,7 +58,7 @@ def _allan_chart(channel: AllanChannel) -> Chart:
     )
 
 
-def _slopes(channel: AllanChannel) -> list[Series]:
+def slopes(channel: AllanChannel) -> list[Series]:
     """Through the point where a term matters most: a line of its slope over a decade and more."""
     taus = np.array(channel.taus_s)
     values = np.array(channel.deviation)

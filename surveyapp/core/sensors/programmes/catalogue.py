@@ -46,7 +46,7 @@ def _reversal(prefix: str = "zero") -> tuple[ProgrammeStep, ...]:
     return tuple(
         ProgrammeStep(
             f"{prefix}-{180 * flip}",
-            f"0/180 zero: {180 * flip} degrees",
+            f"At {180 * flip} degrees",
             "Near the horizontal; turn the sensor by 180 degrees on its base between the two.",
             "read",
             asks=("output",),
@@ -55,6 +55,10 @@ def _reversal(prefix: str = "zero") -> tuple[ProgrammeStep, ...]:
         )
         for flip in (0, 1)
     )
+
+
+def _signed(angle: float) -> str:
+    return f"{angle:+g}" if angle else "0"
 
 
 def _static(*sets: int) -> tuple[ProgrammeStep, ...]:
@@ -66,8 +70,8 @@ def _static(*sets: int) -> tuple[ProgrammeStep, ...]:
             found.append(
                 ProgrammeStep(
                     f"static-{number}-{k + 1:02d}",
-                    f"{angle:+g} degrees",
-                    f"Set the dividing head to {angle:+g} degrees and read the output.",
+                    f"{_signed(angle)} of +-{half:g} degrees",
+                    f"Set the dividing head to {_signed(angle)} degrees and read the output.",
                     "read",
                     asks=("output",),
                     row={"test": "static", "set": float(number), "angle_deg": angle},

@@ -27,10 +27,15 @@ from surveyapp.io.importers.fieldfiles.units import (
 from surveyapp_models.angles import AngleError, AngleUnit, parse_angle
 
 _LEAST_ROWS: Final = 5
+_USUAL: Final = 0.9
+_LEAST_CELLS: Final = 40
+"""Of so many numbers without idle zeros (one in ten ends in one) at least two are shorter: 92 %."""
+_MOST_OTHERS: Final = 0.03
 _LATEST_HEADER: Final = 50
 _SAMPLE: Final = 2000
 _SEPARATORS: Final = (",", ";", "\t", "|")
 _NUMBER = re.compile(r"[+\-−]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][+-]?\d{1,3})?")
+_SIXTY = re.compile(r"(.*[-: '′])60(?:\.0*)?([\"″]?)")
 
 
 class CellError(ValueError):
@@ -107,9 +112,18 @@ class Columns:
         if not text:
             return None
         try:
-            return parse_angle(text.replace(",", ".") if self.comma else text, AngleUnit.DMS)
+            plain = text.replace(",", ".") if self.comma else text
+            sixty = _SIXTY.fullmatch(plain)  # others round 59.96 so: carried over
+            if sixty is not None:
+                return parse_angle(f"{sixty[1]}0{sixty[2]}", AngleUnit.DMS) + ANGLES["deg"] / 60.0
+            return parse_angle(plain, AngleUnit.DMS)
         except AngleError as error:
             raise CellError(f"{quantity} is no angle: {text[:40]}, {error.expected}") from None
+
+    def carries(self, cells: Sequence[str], quantity: str) -> bool:
+        """Whether an angle has 60 seconds."""
+        sixty = self.units.get(quantity) == "dms"
+        return sixty and _SIXTY.fullmatch(self.text(cells, quantity).replace(",", ".")) is not None
 
     def length(self, cells: Sequence[str], quantity: str) -> float | None:
         """A length [m]."""
@@ -125,6 +139,13 @@ class Columns:
         """A pressure [hPa]."""
         value = self.number(cells, "pressure")
         return None if value is None else value * PRESSURES[self.units.get("pressure", "hPa")]
+
+    def is_number(self, place: int, text: str) -> bool:
+        """Whether a cell holds a number, or an angle in degrees, minutes and seconds."""
+        if _NUMBER.fullmatch(text) is not None:
+            return True
+        sixties = {self.places[name] for name, unit in self.units.items() if unit == "dms"}
+        return place in sixties and text[:1].isdigit()
 
     @property
     def told(self) -> str:
@@ -260,49 +281,84 @@ def cells_of(line: str, columns: Columns) -> list[str]:
     return cells
 
 
-def usual_decimals(text: FieldText, columns: Columns) -> int | None:
-    """Decimals of the last column, if the table writes every column with a fixed number of them.
+@dataclass(frozen=True, slots=True)
+class Style:
+    """How a table writes its cells.
 
-    A spreadsheet that drops idle zeros does so in every column; then nothing can be said.
+    Parameters
+    ----------
+    decimals : mapping
+        Decimals by the place of a column, where the table keeps idle zeros.
+    filled : frozenset of int
+        Columns of heights that nearly all rows fill.
+    """
+
+    decimals: Mapping[int, int]
+    filled: frozenset[int]
+
+
+def style_of(text: FieldText, columns: Columns) -> Style:
+    """How a table writes its cells.
+
+    A spreadsheet that drops idle zeros does so with every tenth number; then nothing can be said
+    of decimals.
 
     Parameters
     ----------
     text : FieldText
     columns : Columns
-
-    Returns
-    -------
-    int or None
-        A last cell with fewer was cut.
     """
-    sign = "," if columns.comma else "."
-    counts: dict[int, Counter[int]] = {}
-    number = 0
+    counts: dict[int, Counter[int]] = {place: Counter() for place in columns.places.values()}
+    heights = [place for name, place in columns.places.items() if name in ("hi", "ht")]
+    given: Counter[int] = Counter()
+    rows = 0
     for line_number, line in text.lines():
         if line_number <= columns.header_line:
             continue
         row = _split(line, columns.separator)
         if len(row) != columns.width:
             continue
-        number += 1
-        if number == 1:
-            numeric = [p for p in columns.places.values() if _NUMBER.fullmatch(row[p])]
-            counts = {place: Counter() for place in {*numeric, columns.width - 1}}
+        rows += 1
+        given.update(place for place in heights if row[place])
         for place, count in counts.items():
-            count[len(row[place].rpartition(sign)[2]) if sign in row[place] else 0] += 1
-    if number < _LEAST_ROWS:
-        return None
-    last = counts.pop(columns.width - 1)
-    usual, most = last.most_common(1)[0]
-    if not counts or any(len(found) > 1 for found in counts.values()) or most < 0.8 * number:
-        return None
-    return usual or None
+            if columns.is_number(place, row[place]):
+                count[decimals_of(row[place], comma=columns.comma)] += 1
+    filled = frozenset(
+        place for place in heights if rows >= _LEAST_ROWS and given[place] >= _USUAL * rows
+    )
+    return Style(_fixed_decimals(counts), filled)
 
 
-def cut_short(cells: Sequence[str], usual: int | None, columns: Columns) -> bool:
-    """Whether the last cell has lost decimals that every row of the table has."""
-    sign = "," if columns.comma else "."
-    text = cells[-1].strip()
-    if usual is None or not text:
-        return False
-    return (len(text.rpartition(sign)[2]) if sign in text else 0) < usual
+def _fixed_decimals(counts: Mapping[int, Counter[int]]) -> dict[int, int]:
+    usual = {p: c.most_common(1)[0][0] for p, c in counts.items() if c.total() >= _LEAST_ROWS}
+    fixed = [place for place, decimals in usual.items() if decimals > 0]
+    cells = sum(counts[place].total() for place in fixed)
+    others = cells - sum(counts[place][usual[place]] for place in fixed)
+    if cells < _LEAST_CELLS or others > max(1.0, _MOST_OTHERS * cells):
+        return {}
+    return {place: usual[place] for place in fixed}
+
+
+def decimals_of(text: str, *, comma: bool) -> int:
+    """Decimals of a number, or of the seconds of an angle."""
+    sign = "," if comma else "."
+    return len(text.rstrip("\"' ").rpartition(sign)[2]) if sign in text else 0
+
+
+def check_style(cells: Sequence[str], style: Style, columns: Columns) -> None:
+    """Refuse a row that is written otherwise than nearly all of its table.
+
+    Raises
+    ------
+    CellError
+        With what is wrong.
+    """
+    for place, decimals in style.decimals.items():
+        text = cells[place].strip()
+        if columns.is_number(place, text):
+            found = decimals_of(text, comma=columns.comma)
+            if found != decimals:
+                raise CellError(f"{text[:40]} has {found} decimals, its column {decimals}")
+    for place in style.filled:
+        if not cells[place].strip():
+            raise CellError("a height is missing that nearly every other row has")

@@ -74,6 +74,7 @@ class Gathering:
     warnings: list[ResultWarning] = field(default_factory=list)
     ignored: Counter[str] = field(default_factory=Counter)
     parts: Parts = field(default_factory=Parts)
+    carried: list[int] = field(default_factory=list)
     feet: bool = False
 
     def lines(self, text: FieldText, *, cut: Cut | None = None) -> Iterator[tuple[int, str]]:
@@ -127,6 +128,11 @@ class Gathering:
             self.feet = True
             return self.foot.metres
         return factor
+
+    def carry(self, line: int) -> None:
+        """Note 60 seconds that were carried over to the next minute."""
+        if len(self.carried) < _SHOWN:
+            self.carried.append(line)
 
     def point(self, point: KnownPoint) -> None:
         """Take coordinates; a second, different statement about a point is told."""
@@ -195,6 +201,9 @@ class Gathering:
     def _tell(self, form: str) -> None:
         if self.feet:
             self.warn("foot", self.foot.text)
+        if self.carried:
+            lines = ", ".join(str(line) for line in self.carried)
+            self.warn("sixty_carried", f"60 seconds carried over: lines {lines}")
         if self.ignored:
             parts = [f"{kind} ({count})" for kind, count in self.ignored.most_common(_SHOWN)]
             more = len(self.ignored) - _SHOWN

@@ -9,22 +9,26 @@ observation. What stands behind a damaged station block is left out with it.
 from __future__ import annotations
 
 import math
-import re
-from array import array
-from collections import Counter
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
 from surveyapp.domain.fieldfile import Face, FieldFile, KnownPoint, Pointing
-from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.importers.fieldfiles.gathering import (
-    Gathering,
     ReadOptions,
     gathering,
 )
+from surveyapp.io.importers.fieldfiles.gsi_state import (
+    MOST_LAYOUTS,
+    State,
+    check_heights,
+    check_stations,
+    doubt,
+    follow_number,
+    lose,
+    occupy,
+)
 from surveyapp.io.importers.fieldfiles.gsi_words import (
-    Layout,
     Word,
     WordError,
     block_width,
@@ -44,32 +48,8 @@ _USED: Final = frozenset(
     | {str(i) for i in range(81, 89)}
 )
 _REMARKS: Final = frozenset(str(i) for i in range(71, 80))
-_MEASURED = re.compile(r"\s(?:21|22|31|32)\.")
 _TWO_PI: Final = 2.0 * math.pi
-_TWO_TENTHS_M: Final = 2e-4
-_MOST_LAYOUTS: Final = 1000
-"""An instrument writes a handful of kinds of blocks; of garbage no more are kept."""
-
-
-@dataclass(slots=True)
-class _State:
-    """Where the reading stands: the current station and what may have been lost."""
-
-    gathered: Gathering
-    station: str | None = None
-    hi: float | None = None
-    setup: int = 0
-    lost: str = ""
-    number: int | None = None
-    doubtful: int = 0
-    previous: str = ""
-    gaps: int = 0
-    widths: set[int] = field(default_factory=set)
-    conventions: set[str] = field(default_factory=set)
-    codes: Counter[str] = field(default_factory=Counter)
-    homeless: array[int] = field(default_factory=lambda: array("Q"))
-    cut: frozenset[Layout] = frozenset()
-    layouts: dict[Layout, int] = field(default_factory=dict)
+_SHOWN: Final = 6
 
 
 def read_gsi(path: Path, options: ReadOptions) -> FieldFile:
@@ -93,23 +73,28 @@ def read_gsi(path: Path, options: ReadOptions) -> FieldFile:
     if options.station_code is not None:  # blocks pad codes with zeros
         options = replace(options, station_code=options.station_code.lstrip("0") or "0")
     text = look_through(path)
-    state = _passed(text, _State(gathering(path, options)))
-    cut = cut_layouts(state.layouts)
+    state = _passed(text, State(gathering(path, options)))
+    cut = cut_layouts(state.layouts, state.last)
     if cut:
         state.gathered.pointings.clear()
-        state = _passed(text, _State(gathering(path, options), cut=cut))
+        state = _passed(text, State(gathering(path, options), cut=cut))
     if text.encoding == "latin-1":
         state.gathered.warn("code_page", "names that are no ASCII were read as Latin-1")
-    _check_stations(state)
+    check_stations(state)
+    check_heights(state)
     if state.gaps:
-        told = f"the running block numbers leap {state.gaps} times: were blocks deleted?"
+        places = ", ".join(str(line) for line in state.gaps[:_SHOWN])
+        told = (
+            f"the running block numbers leap {len(state.gaps)} times (line {places}): were blocks "
+            "deleted? If one named a station, what follows stands on the wrong one"
+        )
         state.gathered.warn("block_numbers", told)
     widths = "/".join(str(width) for width in sorted(state.widths))
     names = " and ".join(sorted(state.conventions))
     return state.gathered.finish(form=("gsi", f"GSI-{widths}, {names}"), applied=(True, True))
 
 
-def _passed(text: FieldText, state: _State) -> _State:
+def _passed(text: FieldText, state: State) -> State:
     """Go through the file; which layouts are cut ones is known only behind its end."""
     layouts = state.layouts
     for number, raw in state.gathered.lines(text, cut=last_opening):
@@ -118,13 +103,14 @@ def _passed(text: FieldText, state: _State) -> _State:
             continue
         for block in blocks(line):
             kind = layout(block)
-            if kind in layouts or len(layouts) < _MOST_LAYOUTS:
+            if kind in layouts or len(layouts) < MOST_LAYOUTS:
                 layouts[kind] = layouts.get(kind, 0) + 1
+            state.last = kind
             _block(state, number, block, cut=kind in state.cut)
     return state
 
 
-def _block(state: _State, line: int, block: str, *, cut: bool) -> None:
+def _block(state: State, line: int, block: str, *, cut: bool) -> None:
     gathered = state.gathered
     try:
         found = words(block)
@@ -134,58 +120,37 @@ def _block(state: _State, line: int, block: str, *, cut: bool) -> None:
             raise WordError(f"the line is cut short behind {len(found)} words")
     except WordError as error:
         gathered.damaged(line, str(error), block, "words of 8 or 16 characters, parted by blanks")
-        if block.lstrip("*").startswith("41") or re.search(r"\s8[4568]\.", block):
-            _lose(state, line)
-        elif not _MEASURED.search(block):
-            state.doubtful = line
+        doubt(state, line, block)
         return
     if block.rstrip() == state.previous:
         gathered.skip(line, "duplicate", "the same block as the one before, number included")
         return
     state.previous = block.rstrip()
-    _numbered(state, found[0])
+    follow_number(state, line, found[0])
     state.widths.add(block_width(block))
     try:
         _meaning(state, line, found)
     except WordError as error:
         gathered.damaged(line, str(error), block)
         if not any(word.word_index in _READINGS for word in found):
-            _lose(state, line)
+            lose(state, line)
 
 
-def _numbered(state: _State, first: Word) -> None:
-    """Follow the running number; behind a block beyond reading it tells whether one is missing."""
-    number = int(first.info) if first.info.isdigit() else None
-    follows = (
-        number is not None and state.number is not None and number == (state.number + 1) % 10000
-    )
-    if state.doubtful and not follows:
-        _lose(state, state.doubtful)
-    elif number is not None and state.number is not None and not follows:
-        state.gaps += not (state.number == 9999 and number in (0, 1))
-    state.doubtful = 0
-    state.number = number if number is not None else state.number
-
-
-def _lose(state: _State, line: int) -> None:
-    """A station block that cannot be read: what follows has no station."""
-    state.lost = f"the station block of line {line} cannot be read"
-    state.station = None
-
-
-def _meaning(state: _State, line: int, found: list[Word]) -> None:
+def _meaning(state: State, line: int, found: list[Word]) -> None:
     by_index = {word.word_index: word for word in reversed(found)}
     if not by_index.keys() <= _USED:
         for index in by_index.keys() - _USED:
             state.gathered.ignore(f"word {index}")
     if found[0].word_index == "41":
-        _code(state, by_index)
+        _code(state, line, by_index)
     elif _is_read(by_index):
         _pointing(state, line, by_index)
     elif _STATION & by_index.keys():
         _station(state, line, by_index)
     elif {"81", "82", "83"} & by_index.keys():
         state.gathered.point(_coordinates(state, line, by_index, "81"))
+    elif len(found) == 1:
+        raise WordError("the block holds a name and nothing else")
     else:
         state.gathered.ignore("block without a reading")
 
@@ -195,7 +160,7 @@ def _is_read(by_index: dict[str, Word]) -> bool:
     return any(index in by_index and not by_index[index].empty for index in _READINGS)
 
 
-def _length(state: _State, word: Word | None) -> float | None:
+def _length(state: State, word: Word | None) -> float | None:
     if word is None or word.empty:
         return None
     value, feet = word.length(state.gathered.foot.metres)
@@ -203,35 +168,28 @@ def _length(state: _State, word: Word | None) -> float | None:
     return value
 
 
-def _coordinates(state: _State, line: int, found: dict[str, Word], first: str) -> KnownPoint:
+def _coordinates(state: State, line: int, found: dict[str, Word], first: str) -> KnownPoint:
     e, n, h = (_length(state, found.get(str(int(first) + i))) for i in range(3))
     if (e is None) != (n is None):
         e = n = None
     return KnownPoint(found["11"].name, e, n, h, line)
 
 
-def _occupy(state: _State, name: str, hi: float | None) -> None:
-    same_height = (hi is None or state.hi is None or abs(hi - state.hi) < _TWO_TENTHS_M) and (
-        hi is None
-    ) == (state.hi is None)
-    if state.lost or name != state.station or not same_height:
-        state.setup += 1
-    state.station, state.hi, state.lost = name, hi, ""
-
-
-def _station(state: _State, line: int, found: dict[str, Word]) -> None:
+def _station(state: State, line: int, found: dict[str, Word]) -> None:
     name, hi = found["11"].name, _length(state, found.get("88"))
     point = _coordinates(state, line, found, "84")
-    _occupy(state, name, hi)
+    occupy(state, name, hi)
     state.conventions.add("station blocks")
     if not (point.e == point.n == 0.0 and not point.h):  # as delivered: nobody entered them
         state.gathered.point(point)
 
 
-def _code(state: _State, found: dict[str, Word]) -> None:
+def _code(state: State, line: int, found: dict[str, Word]) -> None:
     code = found["41"].name
+    if _torn_code(found["41"].data.strip(), state.gathered.options.station_code):
+        raise WordError(f"word 41 is no code: {found['41'].data.strip()}")
     if code != state.gathered.options.station_code:
-        if code in state.codes or len(state.codes) < _MOST_LAYOUTS:
+        if code in state.codes or len(state.codes) < MOST_LAYOUTS:
             state.codes[code] += 1
         state.gathered.ignore(f"code {code}")
         return
@@ -240,14 +198,30 @@ def _code(state: _State, found: dict[str, Word]) -> None:
     hi = None
     if "43" in found and not found["43"].empty:
         hi = _code_height(found["43"])
-    _occupy(state, found["42"].name, hi)
+    occupy(state, found["42"].name, hi)
+    if "43" in found:
+        state.heights += 1
+    elif len(state.bare) < MOST_LAYOUTS:
+        state.bare.append((line, str(state.setup)))
     state.conventions.add(f"code {code}")
+
+
+def _torn_code(data: str, wanted: str | None) -> bool:
+    """Whether a code is that of a station but for one character that no code has there."""
+    if wanted is None or len(wanted) > len(data):
+        return False
+    whole = wanted.rjust(len(data), "0")
+    strange = [(a, b) for a, b in zip(data, whole, strict=True) if a != b]
+    padding = len(data) - len(wanted)
+    return len(strange) == 1 and (
+        not strange[0][0].isalnum() or data[: max(padding - 1, 0)] != "0" * max(padding - 1, 0)
+    )
 
 
 def _code_height(word: Word) -> float:
     """Instrument height of word 43 [m]; without a decimal point it is in mm."""
-    text = word.data.strip()
-    if "." in text:
+    text = word.data.lstrip()
+    if "." in text and not text.endswith(" "):
         try:
             value = float(text)
         except ValueError:
@@ -265,7 +239,7 @@ def _reading(word: Word | None) -> float | None:
     return 0.0 if value >= _TWO_PI else value
 
 
-def _distance(state: _State, word: Word | None) -> float | None:
+def _distance(state: State, word: Word | None) -> float | None:
     value = _length(state, word)
     if value is not None and value < 0.0:
         raise WordError(f"a distance is negative: {value:g} m")
@@ -300,16 +274,18 @@ def _time(word: Word | None) -> str:
     return f"{digits[:2]}-{digits[2:4]}T{digits[4:6]}:{digits[6:]}"
 
 
-def _pointing(state: _State, line: int, found: dict[str, Word]) -> None:
+def _pointing(state: State, line: int, found: dict[str, Word]) -> None:
     hz, v = _reading(found.get("21")), _reading(found.get("22"))
     v = v or None
+    if any(found[index].sixty for index in ("21", "22") if index in found):
+        state.gathered.carry(line)
     sd = _distance(state, found.get("31"))
-    hd = _distance(state, found.get("32")) if sd is None else None
+    hd = None if "31" in found else _distance(state, found.get("32"))
     hi = _length(state, found.get("88"))
     ht = _length(state, found.get("87"))
     ppm, prism = _corrections(found)
     if "16" in found and not found["16"].empty and found["16"].name != state.station:
-        _occupy(state, found["16"].name, None)
+        occupy(state, found["16"].name, None)
         state.conventions.add("word 16")
     if state.station is None:
         if state.lost:
@@ -339,30 +315,3 @@ def _pointing(state: _State, line: int, found: dict[str, Word]) -> None:
         note=_note(found),
     )
     state.gathered.add(pointing)
-
-
-def _check_stations(state: _State) -> None:
-    """Refuse a file that names no station; codes that could be the station's are listed."""
-    gathered, code = state.gathered, state.gathered.options.station_code
-    codes = ", ".join(f"{name} ({count} times)" for name, count in state.codes.most_common())
-    if code is not None and f"code {code}" not in state.conventions and not state.lost:
-        raise SurveyError(
-            Problem(
-                "the file has no code block of this code",
-                "--station-code",
-                code,
-                f"one of the codes of the file: {codes or 'there is none'}",
-            )
-        )
-    if not state.conventions and state.homeless:
-        raise SurveyError(
-            Problem(
-                "no station is named in the file",
-                gathered.name,
-                f"code blocks: {codes}" if codes else "neither station nor code blocks",
-                "blocks 11 with 84 85 86 or 88, or code blocks 41 with --station-code N",
-                "Which code of your office opens a station?" if codes else "",
-            )
-        )
-    for line in state.homeless:
-        gathered.damaged(line, "a reading stands before any station", f"line {line}", "a station")

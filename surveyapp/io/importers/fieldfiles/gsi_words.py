@@ -16,6 +16,8 @@ from surveyapp.io.importers.fieldfiles.units import DEGREE, GON, MIL
 
 RARE: Final = 9
 """A layout that stands in less than a tenth of the blocks is rare."""
+ONCE: Final = 4
+"""One that stands but once is rare beside so many."""
 HEAD: Final = 7
 """Index, information and sign."""
 WIDTHS: Final = (8, 16)
@@ -24,6 +26,8 @@ _HEAD = re.compile(r"\d\d[\d.?]{4}[+-]")
 _PLACES: Final = {"0": 1e-3, "6": 1e-4, "8": 1e-5}
 _FEET: Final = {"1": 1e-3, "7": 1e-4}
 _CIRCLE: Final = {"2": (GON, 1e-5), "3": (DEGREE, 1e-5), "5": (MIL, 1e-4)}
+_TORN_NAME = re.compile(r"0+ |[^0-9A-Za-z ]000")
+"""Blanks behind the zeros that pad a name, or something strange in front of them."""
 _NOTHING = re.compile(r"0*-+")
 
 
@@ -59,7 +63,17 @@ class Word(NamedTuple):
     def name(self) -> str:
         """The data as a name: without the zeros that pad it; of zeros only, ``0``."""
         text = self.data.strip()
-        return text.lstrip("0").strip() or ("0" if text else "")
+        name = text.lstrip("0")
+        if not name and text and self.data[-1] != " ":
+            return "0"
+        if not name[:1].isalnum() and _TORN_NAME.match(self.data) is not None:
+            raise WordError(f"word {self.word_index} holds a torn name: {self.data.rstrip()}")
+        return name
+
+    @property
+    def sixty(self) -> bool:
+        """Whether an angle has 60 seconds."""
+        return self.info[-1] == "4" and self.data.endswith("600")
 
     def integer(self) -> int:
         """The digits with their sign."""
@@ -182,41 +196,62 @@ def _words_one_by_one(block: str, text: str, width: int) -> list[Word]:
             raise WordError(f"word {index} is too long: {text[place - HEAD - width :][:30]}")
         while place < len(text) and text[place] == " ":
             place += 1
+    if not found:
+        raise WordError("the block holds no word")
     return found
 
 
-Layout = tuple[str, str]
-"""First and second digits of the indices of a block's words, in a row each."""
+Layout = tuple[str, str, bool]
+"""First and second digits of the indices of a block's words, and whether a blank ends it."""
 
 
 def layout(block: str) -> Layout:
     """Indices of a block's words by their places; nothing is checked."""
     text = block.removeprefix("*").rstrip()
     stride = HEAD + block_width(block) + 1
-    return text[::stride], text[1::stride]
+    return text[::stride], text[1::stride], block[-1:] == " "
 
 
-def cut_layouts(counts: Mapping[Layout, int]) -> frozenset[Layout]:
+def cut_layouts(counts: Mapping[Layout, int], last: Layout | None = None) -> frozenset[Layout]:
     """Layouts that are the beginning of another that the file holds far more often.
 
     An instrument writes every block of a kind with the same words, and a distance that was not
-    measured as 0: a rare block with fewer words was cut between two of them.
+    measured as 0: a rare block with fewer words was cut between two of them. So was one that ends
+    otherwise than those that are whole, and the last one of a file that is torn. Code blocks are
+    as the office made them.
+
+    Parameters
+    ----------
+    counts : mapping
+        How often each layout stands in the file.
+    last : tuple or None
+        Layout of the last block.
     """
     return frozenset(
         short
         for short, count in counts.items()
-        if any(
+        if (short[0][:1], short[1][:1]) != ("4", "1")
+        and any(
             whole[0].startswith(short[0])
             and whole[1].startswith(short[1])
             and len(whole[0]) > len(short[0])
-            and number > count * (1 if _names_station(short) else RARE)
+            and number > count * _rarity(short, count, other_end=short[2] != whole[2], last=last)
             for whole, number in counts.items()
         )
     )
 
 
+def _rarity(short: Layout, count: int, *, other_end: bool, last: Layout | None) -> int:
+    """How many whole blocks to each short one prove that it was cut."""
+    if other_end or _names_station(short):
+        return 1
+    if count == 1:
+        return 1 if short == last else ONCE
+    return RARE
+
+
 def _names_station(indices: Layout) -> bool:
-    return "84" in {a + b for a, b in zip(*indices, strict=False)}
+    return "84" in {a + b for a, b in zip(indices[0], indices[1], strict=False)}
 
 
 def _blank_tail(piece: str, block: str, place: int, width: int) -> bool:

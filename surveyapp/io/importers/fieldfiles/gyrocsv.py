@@ -19,9 +19,9 @@ from surveyapp.io.importers.fieldfiles.columns import (
     Columns,
     Quantities,
     cells_of,
-    cut_short,
+    check_style,
     find_columns,
-    usual_decimals,
+    style_of,
 )
 from surveyapp.io.importers.fieldfiles.gathering import (
     Gathering,
@@ -87,7 +87,7 @@ def read_gyro_csv(path: Path, options: ReadOptions) -> GyroFile:
     table = look_through(path)
     columns = find_columns(table, QUANTITIES, (options.columns, options.units))
     readings: list[GyroReading] = []
-    usual = usual_decimals(table, columns)
+    style = style_of(table, columns)
     for number, line in gathered.lines(table):
         if (
             number <= columns.header_line
@@ -97,8 +97,7 @@ def read_gyro_csv(path: Path, options: ReadOptions) -> GyroFile:
             continue
         try:
             cells = cells_of(line, columns)
-            if cut_short(cells, usual, columns):
-                raise CellError("the line is cut short: decimals of its last cell are missing")
+            check_style(cells, style, columns)
             reading = _reading(columns, number, cells)
             if options.wants(number) and gathered.parts.takes(number, ""):
                 readings.append(reading)

@@ -196,7 +196,10 @@ def read_records(
             )
         ) from None
     except SAXParseException as failure:
-        line = records.unfinished() or failure.getLineNumber() or 0
+        line = failure.getLineNumber() or 0
+        if "invalid token" in failure.getMessage() and failure.getColumnNumber() == 0 and line > 1:
+            line -= 1  # what was cut off is the end of the line before
+        line = records.unfinished() or line
         records.torn = (line, failure.getMessage())
     except (LookupError, UnicodeError, ValueError) as failure:
         raise SurveyError(Problem("the file cannot be decoded", where, str(failure)[:60])) from None

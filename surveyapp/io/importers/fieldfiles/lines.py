@@ -80,6 +80,8 @@ class FieldText:
                         raise SurveyError(_too_long(self.name, number))
                     yield number, line[:place]
                     done += place
+                    if progress is not None:
+                        progress(min(1.0, done / self.size))
                     line = line[place:] + read(LONGEST_LINE)
                 done += len(line)
                 if progress is not None and number % _TOLD_EVERY == 0:

@@ -9,7 +9,6 @@ Sources: Nikon and Spectra Precision manuals, SDR record formats; MicroSurvey, S
 from __future__ import annotations
 
 import math
-from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
@@ -21,7 +20,15 @@ from surveyapp.io.importers.fieldfiles.gathering import (
     ReadOptions,
     gathering,
 )
-from surveyapp.io.importers.fieldfiles.lines import FieldText, look_through
+from surveyapp.io.importers.fieldfiles.lines import look_through
+from surveyapp.io.importers.fieldfiles.sdr_layout import (
+    KINDS,
+    RecordError,
+    Shape,
+    header_digits,
+    may_have_been,
+    shape_of,
+)
 from surveyapp.io.importers.fieldfiles.units import DEGREE, GON, MIL
 
 _ANGLES: Final = {"1": DEGREE, "2": GON, "4": MIL}
@@ -30,14 +37,10 @@ _ORDERS: Final = {"1": "NEZ", "2": "ENZ"}
 _FACES: Final[dict[str, Face]] = {"F1": "L", "F2": "R"}
 _FRAME: Final = "\x02\x03\x1a\x00"
 _MARK: Final = "\xef\xbb\xbf"
-_LAYOUT: Final = {"02": 5, "08": 4, "03": 1, "09": 3}
-"""Values behind the names of a record, its text not counted."""
 _TWO_PI: Final = 2.0 * math.pi
 _SHOWN: Final = 6
-
-
-class RecordError(ValueError):
-    """A record that cannot be read: what is wrong with it."""
+_NEGATIVE: Final = 3
+"""So many negative zenith angles are no damage but a convention that record 01 does not tell."""
 
 
 @dataclass(slots=True)
@@ -45,8 +48,7 @@ class _State:
     """Units of the header and what holds until it is changed."""
 
     gathered: Gathering
-    widths: tuple[int, int] = (0, 0)
-    version: str = ""
+    shape: Shape
     angle: float = DEGREE
     length: float | None = 1.0
     order: str = "NEZ"
@@ -59,9 +61,13 @@ class _State:
     ht_lost: str = ""
     prism: float | None = None
     applied: bool | None = None
+    said: set[bool | None] = field(default_factory=set)
+    begun: bool = False
+    doubt: int = 0
+    circle_lost: str = ""
+    differs: list[str] = field(default_factory=list)
+    negative: list[int] = field(default_factory=list)
     time: str = ""
-    padded: frozenset[str] = frozenset()
-    decimals: dict[str, int] = field(default_factory=dict)
     opened: str = ""
     faces: set[str] = field(default_factory=set)
     means: list[Pointing] = field(default_factory=list)
@@ -81,8 +87,8 @@ def read_sdr(path: Path, options: ReadOptions) -> FieldFile:
         Every damaged line; a file without a header 00, or with units that are not known.
     """
     text = look_through(path, single_byte=True)
-    state = _State(gathering(path, options))
-    _begin(state, text)
+    shape = shape_of((_bare(line) for _, line in text.lines()), path.name)
+    state = _State(gathering(path, options), shape)
     for number, line in state.gathered.lines(text):
         record = _bare(line)
         if record.strip():
@@ -90,18 +96,50 @@ def read_sdr(path: Path, options: ReadOptions) -> FieldFile:
     if text.encoding != "ascii":
         state.gathered.warn("code_page", "names that are no ASCII were read as Latin-1")
     _keep_means(state)
-    _tell_means(state)
-    if state.applied is None:
-        told = (
-            "no note says whether the prism constant is in the distances: enter it in [[traverse]]"
-        )
-        state.gathered.warn("constant_unknown", told)
+    _tell_places(state)
+    if len(state.negative) >= _NEGATIVE:
+        raise SurveyError(_from_horizon(state))
+    applied = _constant(state)
     state.gathered.warn(
         "atmosphere_unknown",
         "SDR files do not say whether distances hold the atmospheric correction: enter "
         "atmosphere_applied in [[traverse]]",
     )
-    return state.gathered.finish(form=("sdr", state.version), applied=(None, state.applied))
+    if applied is False:
+        state.gathered.warn(
+            "raw_distances", "distances are stored raw: the prism constant was added"
+        )
+    return state.gathered.finish(
+        form=("sdr", shape.version),
+        applied=(None, None if applied is None else True),
+        corrected=applied is False,
+    )
+
+
+def _constant(state: _State) -> bool | None:
+    """Whether the prism constant is in the distances; None where the file does not say."""
+    if len(state.said) == 1 and None not in state.said:
+        return state.said.pop()
+    if len(state.said) > 1:
+        code, why = "constant_mixed", "the prism constant is in some of the distances"
+    else:
+        code, why = (
+            "constant_unknown",
+            "no note says whether the prism constant is in the distances",
+        )
+    state.gathered.warn(code, f"{why}: enter it in [[traverse]]")
+    return None
+
+
+def _from_horizon(state: _State) -> Problem:
+    lines = ", ".join(str(line) for line in state.negative[:_SHOWN])
+    return Problem(
+        "vertical readings are negative, and zenith angles never are",
+        f"{state.gathered.name}, lines {lines}",
+        "no record 01 that says so",
+        "a 2 in column 51 of record 01 for angles from the horizon",
+        "Is the record 01 damaged?",
+    )
 
 
 def _bare(line: str) -> str:
@@ -109,101 +147,45 @@ def _bare(line: str) -> str:
     return line.removeprefix(_MARK).strip(_FRAME)
 
 
-def _begin(state: _State, text: FieldText) -> None:
-    """Version from the header; how complete lines look, so that a cut one is found."""
-    header = next((line for _, raw in text.lines() if (line := _bare(raw))[:2] == "00"), "")
-    version = header[4:20].upper()
-    if version.startswith("SDR33"):
-        state.widths, state.version = (16, 16), "SDR33"
-    elif version.startswith("SDR2"):
-        state.widths, state.version = (4, 10), "SDR20"
-    else:
-        raise SurveyError(
-            Problem(
-                "the file has no header of SDR33 or SDR20",
-                state.gathered.name,
-                header.strip()[:40] or "no record 00",
-                "a record 00 with the version SDR33 or SDR20",
-            )
-        )
-    full: set[str] = set()
-    places: dict[str, Counter[int]] = {}
-    for _, raw in text.lines():
-        line = _bare(raw)
-        kind = line[:2]
-        if kind not in _LAYOUT:
-            continue
-        if len(line) >= _full_length(state, kind):
-            full.add(kind)
-        tail = line.rstrip().rpartition(".")
-        if tail[1] and tail[2].isdigit():
-            places.setdefault(kind, Counter())[len(tail[2])] += 1
-    state.padded = frozenset(full)
-    state.decimals = {kind: count.most_common(1)[0][0] for kind, count in places.items()}
-
-
-def _full_length(state: _State, kind: str) -> int:
-    """Bytes of a record up to the end of its last value."""
-    name, value = state.widths
-    names = {"02": 1, "08": 1, "03": 0, "09": 2}[kind]
-    values = {"02": 4, "08": 3, "03": 1, "09": 3}[kind]
-    return 4 + names * name + values * value
-
-
 def _record(state: _State, number: int, line: str) -> None:
-    kind, origin = line[:2], line[2:4]
+    kind = line[:2]
     actions = {"00": _header, "01": _instrument, "02": _station, "03": _target_height}
     actions |= {"08": _point, "09": _observation, "12": _set, "13": _note}
     if not (kind.isdigit() and len(line) >= 4):
         state.gathered.damaged(number, "this is no record", line, "two digits, two letters, fields")
+        kinds = may_have_been(line)
+        _lose(state, number, kinds or frozenset(("01", "03")))
+        state.doubt = 0 if kinds else number
         return
-    action = actions.get(kind)
-    if action is None:
-        if kind not in ("06", "10", "07"):
-            state.gathered.ignore(f"record {kind}{origin.strip()}")
-        return
+    action = actions.get(kind, _other)
     try:
-        if kind in _LAYOUT:
-            _check_whole(state, kind, line)
+        if kind in KINDS:
+            state.shape.check(kind, line)
+        elif line[:4] != "13NM":
+            state.shape.alone(kind, line)
         action(state, number, line)
     except RecordError as error:
         state.gathered.damaged(number, str(error), line)
-        if kind == "02":
-            state.station, state.hi = None, None
-            state.lost = f"the station record of line {number} cannot be read"
-        elif kind == "03":
-            state.ht, state.ht_lost = None, f"the target height of line {number} cannot be read"
+        _lose(state, number, may_have_been(line) | {kind})
 
 
-def _check_whole(state: _State, kind: str, line: str) -> None:
-    """A line that others of its kind are longer than, or with fewer decimals, was cut."""
-    if len(line) >= _full_length(state, kind):
-        return
-    if kind in state.padded:
-        raise RecordError(f"the record {kind} is cut short")
-    tail = line.rstrip().rpartition(".")[2]
-    if tail.isdigit() and kind in state.decimals and len(tail) < state.decimals[kind]:
-        raise RecordError(f"the last value of record {kind} is cut short")
+def _other(state: _State, number: int, line: str) -> None:
+    if line[:2] not in ("06", "10", "07"):
+        state.gathered.ignore(f"record {line[:4].strip()}")
 
 
-def _names(state: _State, line: str, count: int) -> list[str]:
-    width = state.widths[0]
-    return [line[4 + i * width : 4 + (i + 1) * width].strip() for i in range(count)]
-
-
-def _value(state: _State, line: str, names: int, place: int, what: str) -> float | None:
-    name, width = state.widths
-    start = 4 + names * name + place * width
-    text = line[start : start + width].strip()
-    if not text:
-        return None
-    try:
-        value = float(text)
-    except ValueError:
-        raise RecordError(f"{what} is no number: {text}") from None
-    if not math.isfinite(value):
-        raise RecordError(f"{what} is no number: {text}")
-    return value
+def _lose(state: _State, number: int, kinds: frozenset[str]) -> None:
+    """What a torn record may have said holds no more until it is said again."""
+    if "01" in kinds and not state.begun:
+        state.circle_lost = f"line {number} cannot be read and may tell how zenith angles count"
+    if "02" in kinds:
+        state.station, state.hi = None, None
+        state.lost = f"line {number} cannot be read and may hold the station"
+    if "03" in kinds:
+        state.ht, state.ht_lost = (
+            None,
+            f"line {number} cannot be read and may hold the target height",
+        )
 
 
 def _metres(state: _State, value: float | None) -> float | None:
@@ -211,7 +193,7 @@ def _metres(state: _State, value: float | None) -> float | None:
 
 
 def _header(state: _State, number: int, line: str) -> None:
-    digits = line[40:45].ljust(5)
+    digits = header_digits(line).ljust(5)
     tables = (("angles", digits[0], _ANGLES), ("lengths", digits[1], _LENGTHS))
     for what, digit, known in tables:
         if digit not in known:
@@ -241,11 +223,11 @@ def _instrument(state: _State, number: int, line: str) -> None:
 
 
 def _known_point(state: _State, number: int, line: str) -> KnownPoint:
-    name = _names(state, line, 1)[0]
+    name = state.shape.names(line, 1)[0]
     if not name:
         raise RecordError("a point has no name")
     first, second, height = (
-        _metres(state, _value(state, line, 1, i, what))
+        _metres(state, state.shape.number(line, line[:2], i, what))
         for i, what in enumerate(("a coordinate", "a coordinate", "a height"))
     )
     n, e = (first, second) if state.order == "NEZ" else (second, first)
@@ -254,15 +236,15 @@ def _known_point(state: _State, number: int, line: str) -> KnownPoint:
 
 def _station(state: _State, number: int, line: str) -> None:
     point = _known_point(state, number, line)
-    hi = _metres(state, _value(state, line, 1, 3, "the instrument height"))
+    hi = _metres(state, state.shape.number(line, "02", 3, "the instrument height"))
     state.setup += 1
-    state.station, state.hi, state.lost = point.name, hi, ""
+    state.station, state.hi, state.lost, state.doubt = point.name, hi, "", 0
     if not (point.e == point.n == 0.0 and not point.h):
         state.gathered.point(point)
 
 
 def _target_height(state: _State, number: int, line: str) -> None:
-    value = _value(state, line, 0, 0, "the target height")
+    value = state.shape.number(line, "03", 0, "the target height")
     if value is None:
         raise RecordError("the target height is missing")
     state.ht, state.ht_lost = _metres(state, value), ""
@@ -282,12 +264,12 @@ def _set(state: _State, number: int, line: str) -> None:
 def _note(state: _State, number: int, line: str) -> None:
     origin, text = line[2:4], line[4:].strip()
     if origin == "PC":
-        state.applied = "applied" in text.lower()
-        tail = text.rpartition(":")[2].strip()
+        state.applied = "applied" in text.lower() and "not applied" not in text.lower()
+        _, sign, tail = text.rpartition(":")
         try:
-            state.prism = float(tail) * 1e-3
+            state.prism = float(tail) * 1e-3 if sign else None
         except ValueError:
-            state.prism = None
+            raise RecordError(f"the prism constant is no number: {tail.strip()}") from None
     elif origin == "TS":
         state.time = text
     else:
@@ -303,44 +285,44 @@ def _circle(state: _State, value: float | None, what: str) -> float | None:
     return 0.0 if reading >= _TWO_PI else max(reading, 0.0)
 
 
-def _zenith(state: _State, value: float | None) -> float | None:
+def _zenith(state: _State, number: int, value: float | None) -> float | None:
     if value is None:
         return None
     if state.horizon:
         return math.fmod(0.5 * math.pi - value * state.angle + 2.0 * _TWO_PI, _TWO_PI)
+    if value < 0.0:
+        state.negative.append(number)
     return _circle(state, value, "the vertical reading") or None
 
 
 def _observation(state: _State, number: int, line: str) -> None:
     origin = line[2:4]
     if origin not in ("F1", "F2", "MC"):
+        if origin[0] == "F" or origin[1] in "12" or not origin.strip():
+            raise RecordError(f"the record 09 has no face: {origin!r}")
         state.gathered.ignore(f"record 09{origin.strip()}")
         return
-    at, to = _names(state, line, 2)
+    at, to = state.shape.names(line, 2)
     if not at or not to or at == to:
         raise RecordError(f"a sight needs a station and another point: {at!r} to {to!r}")
     sd, v, hz = (
-        _value(state, line, 2, i, what)
+        state.shape.number(line, "09", i, what)
         for i, what in enumerate(("the distance", "the vertical reading", "the circle reading"))
     )
     if hz is None and v is None:
         raise RecordError("the sight has neither a circle nor a vertical reading")
     if sd is not None and sd < 0.0:
         raise RecordError(f"a distance is negative: {sd:g}")
-    horizontal, zenith = _circle(state, hz, "the circle reading"), _zenith(state, v)
-    if state.station is None and state.lost:
-        state.gathered.dependent(number, state.lost)
+    horizontal, zenith = _circle(state, hz, "the circle reading"), _zenith(state, number, v)
+    state.begun = True
+    lost = (state.lost if state.station is None else "") or state.ht_lost or state.circle_lost
+    if lost:
+        state.gathered.dependent(number, lost)
         return
-    if state.ht_lost:
-        state.gathered.dependent(number, state.ht_lost)
+    if at != state.station and not _stands(state, number, at):
         return
-    if at != state.station:
-        if state.station is not None:
-            text = f"line {number} names station {at}, the record before it {state.station}"
-            state.gathered.warn("station_differs", text)
-        state.setup += 1
-        state.station, state.hi = at, None
-    name, width = state.widths
+    if sd:
+        state.said.add(state.applied)
     pointing = Pointing(
         line=number,
         at=at,
@@ -355,12 +337,32 @@ def _observation(state: _State, number: int, line: str) -> None:
         ht=state.ht,
         prism_m=state.prism,
         time=state.time,
-        code=line[4 + 2 * name + 3 * width :].strip(),
+        code=line[state.shape.full("09") :].strip(),
     )
+    _keep(state, pointing, mean=origin == "MC")
+
+
+def _stands(state: _State, number: int, at: str) -> bool:
+    """Take a station that a sight names and no record before it; whether that can be done."""
+    if state.doubt:
+        _lose(state, state.doubt, frozenset(("02",)))
+        state.gathered.dependent(number, state.lost)
+        return False
+    if state.station is not None:
+        if state.shape.stations[at] == 1:
+            raise RecordError(f"station {at} has no record: {state.station} is occupied")
+        state.differs.append(f"line {number} names {at}, the record before it {state.station}")
+        del state.differs[_SHOWN:]
+    state.setup += 1
+    state.station, state.hi = at, None
+    return True
+
+
+def _keep(state: _State, pointing: Pointing, *, mean: bool) -> None:
     if pointing.setup != state.opened:
         _keep_means(state)
         state.opened = pointing.setup
-    if origin == "MC":
+    if mean:
         state.means.append(pointing)
     else:
         state.faces.add(pointing.to)
@@ -381,7 +383,9 @@ def _keep_means(state: _State) -> None:
     state.faces.clear()
 
 
-def _tell_means(state: _State) -> None:
+def _tell_places(state: _State) -> None:
+    if state.differs:
+        state.gathered.warn("station_differs", "; ".join(state.differs))
     if state.mean_only:
         text = (
             f"only the mean of a sight is stored, its faces are gone: {', '.join(state.mean_only)}"

@@ -15,10 +15,11 @@ from surveyapp.io.importers.fieldfiles.columns import (
     CellError,
     Columns,
     Quantities,
+    Style,
     cells_of,
-    cut_short,
+    check_style,
     find_columns,
-    usual_decimals,
+    style_of,
 )
 from surveyapp.io.importers.fieldfiles.gathering import (
     Gathering,
@@ -66,7 +67,7 @@ def read_csv(path: Path, options: ReadOptions) -> FieldFile:
         units = {name: "usft" if unit == "ft" else unit for name, unit in units.items()}
     columns = find_columns(table, QUANTITIES, (options.columns, units))
     gathered.feet = not {"ft", "usft"}.isdisjoint(columns.units.values())
-    rows = _Rows(gathered, columns, usual_decimals(table, columns))
+    rows = _Rows(gathered, columns, style_of(table, columns))
     for number, line in gathered.lines(table):
         if (
             number <= columns.header_line
@@ -89,8 +90,8 @@ def read_csv(path: Path, options: ReadOptions) -> FieldFile:
 class _Rows:
     """Rows to pointings; follows the set-ups."""
 
-    def __init__(self, gathered: Gathering, columns: Columns, usual: int | None) -> None:
-        self.gathered, self.columns, self.usual = gathered, columns, usual
+    def __init__(self, gathered: Gathering, columns: Columns, style: Style) -> None:
+        self.gathered, self.columns, self.style = gathered, columns, style
         self.setups: dict[tuple[str, str], str] = {}
         self.current = ""
         self.stated_sets = "set" in columns.places
@@ -98,8 +99,7 @@ class _Rows:
     def take(self, number: int, line: str) -> None:
         try:
             cells = cells_of(line, self.columns)
-            if cut_short(cells, self.usual, self.columns):
-                raise CellError("the line is cut short: decimals of its last cell are missing")
+            check_style(cells, self.style, self.columns)
             self.gathered.add(self._pointing(number, cells))
         except CellError as error:
             self.gathered.damaged(number, str(error), line)
@@ -120,6 +120,8 @@ class _Rows:
         if not at or not to or at == to:
             raise CellError(f"a sight needs a station and another point: {at!r} to {to!r}")
         hz, v = self._circle(cells, "hz"), self._circle(cells, "v")
+        if columns.carries(cells, "hz") or columns.carries(cells, "v"):
+            self.gathered.carry(number)
         sd, hd = self._distance(cells, "sd"), self._distance(cells, "hd")
         if hz is None and v is None and sd is None and hd is None:
             raise CellError("there is no reading in this row")

@@ -1,0 +1,95 @@
+"""Sections of the record on sensor logs: what each is for decides what is printed of it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from surveyapp.errors import SurveyError
+
+if TYPE_CHECKING:
+    from surveyapp.domain.sensor_entry import SensorLogEntry
+    from surveyapp.report.blocks import Block
+    from surveyapp.report.record import Extra
+    from surveyapp.workflows.computing import Computed
+
+
+def sensor_sections(found: Computed) -> tuple[Extra, ...]:
+    """A section for every sensor log of the folder; one that cannot be used says why."""
+    from surveyapp.report.blocks import Heading, Paragraph
+    from surveyapp.report.record import Extra
+    from surveyapp.report.sections.sensors import title_of
+
+    extras = []
+    for entry in found.project.sensor_logs:
+        try:
+            body = _body(found.project.path, entry)
+        except SurveyError as error:
+            body = tuple(Paragraph(str(problem), "warning") for problem in error.problems)
+        blocks = (Heading(title_of(entry.id)), *_note(entry), *body)
+        extras.append(Extra(f"sensor log {entry.id}", blocks))
+    return tuple(extras)
+
+
+def _note(entry: SensorLogEntry) -> tuple[Block, ...]:
+    """By which procedure the log was made, where the project says so."""
+    from surveyapp.report.blocks import Paragraph
+
+    note = entry.options.get("note")
+    return (Paragraph(note),) if isinstance(note, str) and note else ()
+
+
+def _body(folder: str, entry: SensorLogEntry) -> tuple[Block, ...]:
+    if entry.options.get("method"):
+        return _north(folder, entry)
+    if entry.kind is None or (entry.kind == "rate" and entry.programme is None):
+        return _noise(folder, entry)
+    return (*_calibration(folder, entry), *_diagnosis(folder, entry))
+
+
+def _noise(folder: str, entry: SensorLogEntry) -> tuple[Block, ...]:
+    """Nothing to calibrate is stated: its noise is told."""
+    from surveyapp.api.sensors import allan
+    from surveyapp.report.sections.sensors import allan_blocks
+
+    return allan_blocks(entry.id, allan(folder, sensor=entry.id))[1:]
+
+
+def _north(folder: str, entry: SensorLogEntry) -> tuple[Block, ...]:
+    from surveyapp.api.rate import north
+    from surveyapp.report.sections.sensor_results import north_blocks
+
+    return north_blocks(north(folder, sensor=entry.id))
+
+
+def _calibration(folder: str, entry: SensorLogEntry) -> tuple[Block, ...]:
+    from surveyapp.api.sensor_files import sensor_pictures
+    from surveyapp.api.sensors import calibrate
+    from surveyapp.report.sections.pictures import picture_blocks
+    from surveyapp.report.sections.sensor_checks import HEADING_LIMIT_DEG, check_blocks
+    from surveyapp.report.sections.sensors import calibration_blocks
+
+    result = calibrate(entry.kind or "", folder, sensor=entry.id)
+    stated = entry.options.get("heading_limit_deg")
+    limit = float(stated) if isinstance(stated, int | float) else HEADING_LIMIT_DEG
+    pictures = sensor_pictures(result, folder, sensor=entry.id).pictures
+    return (
+        *calibration_blocks(entry.id, result)[1:],
+        *check_blocks(result, heading_limit_deg=limit),
+        *picture_blocks(pictures),
+    )
+
+
+def _diagnosis(folder: str, entry: SensorLogEntry) -> tuple[Block, ...]:
+    """What the calibration lacks; a log that has no diagnosis has none here."""
+    from surveyapp.api.judgement import diagnose_sensor
+    from surveyapp.api.sensors import diagnose_log
+    from surveyapp.report.sections.sensor_results import diagnosis_blocks
+
+    try:
+        if entry.kind in ("rate", "fog-station"):
+            made = diagnose_sensor(folder, entry.id, log=False)
+            return diagnosis_blocks(made.to_dict(), made.words)
+        found = diagnose_log(folder, sensor=entry.id)
+    except SurveyError:
+        return ()
+    return diagnosis_blocks(found.to_dict(), found.words)

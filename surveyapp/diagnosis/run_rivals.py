@@ -1,0 +1,243 @@
+"""What a run may hide, carried on to what is observed next: members of the average of its actions.
+
+What the instrument does recurs with the same coefficient, what happened once does not; north stays
+where a step left it until the instrument is set up anew; what an observer does is his own.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surveyapp.diagnosis.candidates import Candidate, swing_columns
+from surveyapp.diagnosis.case import Case
+from surveyapp.diagnosis.fits import Fit
+from surveyapp.diagnosis.run_average import BASE_PRIOR, GROSS_SIZES, OTHER_SHARE, SHARES, SIZES
+from surveyapp_models.arrays import Floats
+from surveyapp_models.effects.effect import Columns, Effect
+
+MOST_FOR_PAIRS = 16
+"""Points up to which two slips and two shifts are members: their number grows with the square."""
+GAP_HALF_SWINGS = 6.0
+"""Between two runs that follow each other: clamping, sights, a new start."""
+OF_OBSERVER = frozenset({"dry_friction"})
+"""Laws of the amplitude that the following of an observer makes too."""
+SLIPS = frozenset({"gross_error", "two gross errors"})
+Moves = tuple[str, Floats, Floats]
+"""Unit, columns (m, n + k, r), and what north itself does in each row (same shape)."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunAction:
+    """Something that can be observed next.
+
+    Parameters
+    ----------
+    id, text : str
+    anew : bool
+        A new run; else two more points of this one.
+    reversed : bool
+        It starts on the other side.
+    later : bool
+        The instrument was set up anew and has rested: what depends on time begins again.
+    other_observer : bool
+    """
+
+    id: str
+    text: str
+    anew: bool = True
+    reversed: bool = False
+    later: bool = False
+    other_observer: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Design:
+    """Rows of the run and of an action: flat columns (n + k, p), columns of the effects."""
+
+    flat: Floats
+    laws: Columns
+    others: Columns
+    first: int
+
+
+@dataclass(frozen=True, slots=True)
+class Rival:
+    """Members of one unit and size.
+
+    Parameters
+    ----------
+    unit : str
+    log_prior : float
+        Of each member.
+    columns : ndarray, shape (m, n + k, r)
+        What it does to the readings, in its prior standard deviations.
+    run, both : ndarray, shape (m, r)
+        What it does to north, the mean over the run and over run and action.
+    """
+
+    unit: str
+    log_prior: float
+    columns: Floats
+    run: Floats
+    both: Floats
+
+    def some(self, chosen: NDArray[np.bool_]) -> Rival:
+        """Only the chosen members."""
+        parts = (part[chosen] for part in (self.columns, self.run, self.both))
+        return Rival(self.unit, self.log_prior, *parts)
+
+
+def design_of(case: Case, base: Fit, action: RunAction) -> Design:
+    """Rows of a run and of an action; a new run has an amplitude and a damping of its own."""
+    assert case.half_swing is not None
+    assert case.side is not None
+    assert base.theta is not None
+    n, time, side = case.size, case.half_swing, case.side
+    own = swing_columns(case, base.theta)
+    if action.anew:
+        again, clock = time, time if action.later else time + time[-1] + GAP_HALF_SWINGS
+        sides = -side if action.reversed else side
+        source = np.arange(n) if action.later else np.full(n, n - 1)
+    else:
+        again = clock = time[-1] + np.array([1.0, 2.0])
+        sides, source = np.array([-side[-1], side[-1]]), np.full(2, n - 1)
+    decay = float(base.theta[1])
+    shared = {name: np.concatenate([v, v[source]]) for name, v in own.items()}
+    shared["side"] = np.concatenate([side, sides])
+    shared["relative_amplitude"] = np.exp(-decay * np.concatenate([time, again]))
+    laws = {**shared, "half_swing": np.concatenate([time, again])}
+    others = {**shared, "half_swing": np.concatenate([time, clock])}
+    swing = shared["side"] * shared["relative_amplitude"]
+    tangent = np.column_stack([swing, laws["half_swing"] * swing])
+    flat = [np.ones((swing.size, 1)), tangent]
+    if action.anew:
+        first = (np.arange(swing.size) < n)[:, None]
+        flat = [np.ones((swing.size, 1)), tangent * first, tangent * ~first]
+    return Design(np.hstack(flat), laws, others, n)
+
+
+def rivals_of(
+    case: Case, candidates: Sequence[Candidate], design: Design, action: RunAction
+) -> list[Rival]:
+    """Every member of the average over a run and an action."""
+    size, n = design.flat.shape[0], case.size
+    found: list[Moves] = []
+    for candidate in candidates:
+        if not candidate.points:
+            continue
+        if candidate.is_slip:
+            found += _slips(n, size)
+            continue
+        found.append(_of_effect(candidate, design, action))
+    found += _shifts(case, size, action)
+    found.append(_wandering(case, size, action))
+    total = sum(SHARES.get(unit, OTHER_SHARE) for unit, _, _ in found)
+    nothing = np.zeros((1, 0))
+    rivals = [Rival("base", math.log(BASE_PRIOR), np.zeros((1, size, 0)), nothing, nothing)]
+    for unit, columns, north in found:
+        sizes = GROSS_SIZES if unit in SLIPS else SIZES
+        share = (1.0 - BASE_PRIOR) * SHARES.get(unit, OTHER_SHARE) / total
+        prior = math.log(share / len(sizes) / len(columns))
+        run, both = north[:, :n].mean(axis=1), north.mean(axis=1)
+        rivals += [Rival(unit, prior, s * columns, s * run, s * both) for s in sizes]
+    return rivals
+
+
+def _of_effect(candidate: Candidate, design: Design, action: RunAction) -> Moves:
+    """Columns of an effect of the catalogue at each of its grid points, 1 at its largest."""
+    effect = candidate.effect
+    assert effect is not None
+    n = design.first
+    columns, north = [], []
+    for point in candidate.points:
+        x, mid = _both(effect, design, action, dict(point))
+        scale = max(float(np.max(np.abs(x[:n]))), 1e-300)
+        if action.other_observer and candidate.id in OF_OBSERVER:
+            x = _apart(x, n)
+            mid = _apart(mid, n)
+        columns.append(x / scale)
+        north.append(mid / scale)
+    return candidate.id, np.stack(columns), np.stack(north)
+
+
+def _both(
+    effect: Effect, design: Design, action: RunAction, point: dict[str, float]
+) -> tuple[Floats, Floats]:
+    """Columns of a run and an action together, and what north itself does in them."""
+    n = design.first
+    table = design.laws if effect.law is not None else design.others
+    begins_again = action.anew and (action.later or effect.law is not None)
+    parts = (
+        [table] if not begins_again else [_rows(table, slice(0, n)), _rows(table, slice(n, None))]
+    )
+    x = np.concatenate([effect.basis(part, **point) for part in parts])
+    if effect.law is not None or effect.acts_on != "midpoint":
+        mid = np.zeros_like(x)
+    elif effect.midpoint is None:
+        mid = x
+    else:
+        moved = effect.midpoint
+        mid = np.concatenate([moved(part, **point) for part in parts])
+    if effect.event and begins_again:
+        x, mid = x.copy(), mid.copy()
+        x[n:], mid[n:] = 0.0, 0.0
+    return np.asarray(x), np.asarray(mid)
+
+
+def _rows(columns: Columns, rows: slice) -> dict[str, Floats]:
+    return {name: values[rows] for name, values in columns.items()}
+
+
+def _apart(x: Floats, n: int) -> Floats:
+    """The same columns with a coefficient of its own after row n."""
+    first = (np.arange(len(x)) < n)[:, None]
+    return np.hstack([x * first, x * ~first])
+
+
+def _slips(n: int, size: int) -> list[Moves]:
+    """Slips among the points that are there: none of them recurs."""
+    one = np.zeros((n, size, 1))
+    one[np.arange(n), np.arange(n), 0] = 1.0
+    found: list[Moves] = [("gross_error", one, np.zeros_like(one))]
+    if n <= MOST_FOR_PAIRS:
+        i, j = np.triu_indices(n, 1)
+        two = np.zeros((i.size, size, 2))
+        two[np.arange(i.size), i, 0] = two[np.arange(i.size), j, 1] = 1.0
+        found.append(("two gross errors", two, np.zeros_like(two)))
+    return found
+
+
+def _shifts(case: Case, size: int, action: RunAction) -> list[Moves]:
+    """Two shifts of north; it stays where they left it until the instrument is set up anew."""
+    n = case.size
+    if n > MOST_FOR_PAIRS:
+        return []
+    steps = (np.arange(n)[None, :] >= np.arange(1, n)[:, None]).astype(np.float64)
+    after = np.zeros if action.anew and action.later else np.ones
+    steps = np.hstack([steps, after((n - 1, size - n))])
+    i, j = np.triu_indices(n - 1, 1)
+    columns = np.stack([steps[i], steps[j]], axis=2)
+    return [("two shifts", columns, columns)]
+
+
+def _wandering(case: Case, size: int, action: RunAction) -> Moves:
+    """A walk of north, 1 at the end of the run; it goes on unless the instrument is set up anew."""
+    n = case.size
+    own = np.arange(n, dtype=np.float64) / (n - 1)
+    if action.anew and action.later:
+        one = np.minimum(own[:, None], own[None, :])
+        walk = np.zeros((size, size))
+        walk[:n, :n] = walk[n:, n:] = one
+    else:
+        gap = GAP_HALF_SWINGS if action.anew else 0.0
+        u = np.concatenate([own, 1.0 + (gap + np.arange(1.0, size - n + 1.0)) / (n - 1)])
+        walk = np.minimum(u[:, None], u[None, :])
+    values, vectors = np.linalg.eigh(walk)
+    root = vectors * np.sqrt(np.maximum(values, 0.0))
+    root = root[:, values > 1e-9 * values[-1]]
+    return "wandering", root[None], root[None]
