@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import AngleResult, CombinedResult, LineResult, OrientationResult
-from surveyapp.languages import joined, said, said_each, term
+from surveyapp.languages import counted, joined, said, said_each, term
 from surveyapp.report.blocks import Block, Heading, Paragraph, Table
 from surveyapp.report.numbers import (
     NOTHING,
@@ -130,7 +130,12 @@ def _steps(
     result(
         said("gyro azimuth"),
         line.gyro_azimuth,
-        said("{rounds} rounds: {sessions}", rounds=line.rounds, sessions=sessions),
+        counted(
+            "{count} round: {sessions}",
+            "{count} rounds: {sessions}",
+            count=line.rounds,
+            sessions=sessions,
+        ),
     )
     choice = line.constant_choice or ""
     origin = said("no constant of this instrument is known")

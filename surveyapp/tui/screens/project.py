@@ -36,7 +36,7 @@ from surveyapp.tui.widgets.problems import Problems
 from surveyapp.tui.widgets.records import Records
 from surveyapp.tui.widgets.titlebar import TitleBar
 
-SIDES = 4
+SIDES = 6
 """Columns beside the details: padding and scroll bar."""
 PAGES = {
     "sessions": texts.TAB_SESSIONS,
