@@ -14,7 +14,7 @@ from surveyapp.api.closing import close, reopen
 from surveyapp.api.demonstrating import demo_sensors
 from surveyapp.api.importing import export_survey, import_file
 from surveyapp.api.instruments import follow_turn, read_instrument
-from surveyapp.api.judgement import check, diagnose, diagnose_sensor, subjects
+from surveyapp.api.judgement import check, diagnose, subjects
 from surveyapp.api.network import (
     adjust,
     adjust_network,
@@ -68,13 +68,13 @@ from surveyapp.api.project import (
     simulate,
 )
 from surveyapp.api.rate import motion, north, plan_fog_station, plan_north_stops, spectrum
+from surveyapp.api.sensor_diagnosis import diagnose_log, diagnose_sensor
 from surveyapp.api.sensor_files import add_sensor_log, preview_sensor_log, sensor_pictures
 from surveyapp.api.sensors import (
     LogOptions,
     allan,
     calibrate,
     compensate,
-    diagnose_log,
     filter_log,
     open_sensor_log,
 )

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from surveyapp.api.judgement import diagnose_sensor
 from surveyapp.api.project import open_project
-from surveyapp.api.sensors import allan, calibrate, diagnose_log
+from surveyapp.api.sensor_diagnosis import diagnose_log, diagnose_sensor
+from surveyapp.api.sensors import allan, calibrate
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.demonstrated import BeforeAfter, DemonstratedSensor
 from surveyapp.domain.records import Listing

@@ -12,12 +12,10 @@ from surveyapp.domain.advance import Advance, silent
 from surveyapp.domain.project import Project
 from surveyapp.domain.records import Listing
 from surveyapp.domain.results import Check, Verdicts
-from surveyapp.errors import Problem, SurveyError
 
 if TYPE_CHECKING:
     from surveyapp.workflows.choosing import Diagnosable
     from surveyapp.workflows.diagnosing import Diagnosed
-    from surveyapp.workflows.diagnosing_sensor import SensorDiagnosed
 
 
 def check(
@@ -152,51 +150,3 @@ def subjects(source: Source) -> Listing[Diagnosable]:
 
     kept = without_unfinished(opened(source))
     return Listing("surveyapp.subjects/1", "subjects", subjects_of(kept))
-
-
-def diagnose_sensor(
-    folder: Folder,
-    sensor: str,
-    *,
-    effects: Folder | None = None,
-    allow_outside: bool = False,
-    log: bool = True,
-) -> SensorDiagnosed:
-    """Find which effect the model of a sensor lacks, and prove it on left-out stops.
-
-    Parameters
-    ----------
-    folder : path
-        Of a project.
-    sensor : str
-        Id of a ``[[sensor_log]]``.
-    effects : path or None
-        A Python file with a tuple ``EFFECTS`` of the user's own effects.
-    allow_outside : bool
-        Whether the log may lie outside the project folder.
-    log : bool
-        Append the diagnosis to the project's ledger where it can be written.
-
-    Raises
-    ------
-    SurveyError
-        For an unknown sensor, a kind without a diagnosis, or too few stops.
-    """
-    from surveyapp.api.project import open_project
-    from surveyapp.api.sensors import open_sensor_log
-    from surveyapp.io.user_effects.loading import load_effects
-    from surveyapp.workflows.diagnosing_sensor import diagnose_sensor as diagnose_log
-
-    own = () if effects is None else load_effects(Path(effects))
-    opened = open_sensor_log(folder, sensor=sensor, allow_outside=allow_outside)
-    if opened.entry is None:
-        raise SurveyError(
-            Problem("a sensor is a log of a project", "sensor", str(folder), "a project folder")
-        )
-    return diagnose_log(
-        opened.file,
-        opened.entry,
-        project=open_project(folder) if log else None,
-        software=SOFTWARE,
-        own=own,
-    )

@@ -81,8 +81,7 @@ def _calibration(folder: str, entry: SensorLogEntry) -> tuple[Block, ...]:
 
 def _diagnosis(folder: str, entry: SensorLogEntry) -> tuple[Block, ...]:
     """What the calibration lacks; a log that has no diagnosis has none here."""
-    from surveyapp.api.judgement import diagnose_sensor
-    from surveyapp.api.sensors import diagnose_log
+    from surveyapp.api.sensor_diagnosis import diagnose_log, diagnose_sensor
     from surveyapp.report.sections.sensor_results import diagnosis_blocks
 
     try:

@@ -17,7 +17,6 @@ from surveyapp.domain.noise import AllanResult, FilterResult
 from surveyapp.errors import Problem, SurveyError
 
 if TYPE_CHECKING:
-    from surveyapp.diagnosis.sensors.diagnosis import SensorDiagnosis
     from surveyapp.domain.sensor_entry import SensorLogEntry
     from surveyapp.io.sensor_logs.blocks import Progress
     from surveyapp.io.sensor_logs.reading import LogFile
@@ -361,40 +360,3 @@ def compensate(
     return write_compensated(
         found, record, used, kind=kind, card_path=os.fspath(card), out=Path(out)
     )
-
-
-def diagnose_log(
-    source: Folder,
-    *,
-    sensor: str | None = None,
-    log: LogOptions | None = None,
-    allow_outside: bool = False,
-    progress: Progress | None = None,
-) -> SensorDiagnosis:
-    """Find which effect a sensor log holds beyond the base model, and prove it.
-
-    Parameters
-    ----------
-    source : path
-        A project folder together with ``sensor``, or a CSV file of a compass or tilt sensor.
-    sensor : str, optional
-        Id of a ``[[sensor_log]]``; may be left out where the project has one only.
-    log, allow_outside, progress
-        As of ``calibrate``.
-
-    Returns
-    -------
-    SensorDiagnosis
-
-    Raises
-    ------
-    SurveyError
-        For input that cannot be used.
-    """
-    from surveyapp.workflows.diagnosing_log import diagnose_log as run
-
-    opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
-    entry = opened.entry
-    kind = None if entry is None else entry.kind
-    identity = opened.file.request.id if entry is None else entry.id
-    return run(kind, identity, opened.file, progress=progress)

@@ -41,8 +41,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--confirm",
         metavar="ID",
-        help="a second session or traverse that chose nothing; for a campaign, from which session "
-        "on determinations only confirm",
+        help="a second session, traverse or sensor log that chose nothing; for a campaign, from "
+        "which session on determinations only confirm",
     )
     parser.add_argument("--effects", metavar="FILE.py", help="your own effects")
     parser.add_argument("--adopt", action="store_true", help="write named effects to the project")
@@ -113,34 +113,39 @@ def _instrument(options: argparse.Namespace) -> int:
 
 
 def _sensor(options: argparse.Namespace) -> int:
-    """Diagnose a sensor log; what it names is calibrated, not adopted."""
+    """Diagnose a sensor log."""
     from surveyapp import api
     from surveyapp.errors import Problem, SurveyError
 
-    kinds = {log.id: log.kind for log in api.open_project(options.folder).sensor_logs}
-    rate = kinds.get(options.sensor) == "rate"
-    others = [options.session, options.campaign, options.traverse, options.confirm]
-    others += [] if rate else [options.effects]
-    if any(other is not None for other in others) or options.adopt:
+    others = [options.session, options.campaign, options.traverse]
+    if any(other is not None for other in others):
         raise SurveyError(
             Problem(
-                "a sensor log is diagnosed by itself, and its effects are calibrated, not adopted",
+                "one subject at a time",
                 "diagnose --sensor",
-                "further options",
+                "a session, campaign or traverse beside a sensor",
                 "--sensor ID alone",
-                "calibrate KIND DIR --sensor ID --card OUT.toml writes what is determined",
             )
         )
-    if rate:
+    kinds = {log.id: log.kind for log in api.open_project(options.folder).sensor_logs}
+    if kinds.get(options.sensor) in ("rate", "fog-station"):
         return _rate_sensor(options)
     found = api.diagnose_log(
-        options.folder, sensor=options.sensor, allow_outside=options.allow_outside
+        options.folder,
+        sensor=options.sensor,
+        allow_outside=options.allow_outside,
+        effects=options.effects,
+        confirm=options.confirm,
+        adopt=options.adopt,
+        keep=True,
     )
     if options.json:
         print_json(found.to_dict())
         return 0
     for sentence in found.words:
         print(textwrap.fill(sentence, 80, subsequent_indent="  "))
+    for place in found.written:
+        print(f"written: {place}")
     return 0
 
 
@@ -154,6 +159,8 @@ def _rate_sensor(options: argparse.Namespace) -> int:
         options.folder,
         options.sensor,
         effects=options.effects,
+        confirm=options.confirm,
+        adopt=options.adopt,
         allow_outside=options.allow_outside,
     )
     if options.json:
@@ -163,6 +170,8 @@ def _rate_sensor(options: argparse.Namespace) -> int:
         unit = project.angle_unit
         made = section.blocks(found_sensor.diagnosis, found_sensor.words, {}, unit=unit)
         print(blocks_text(made, WIDTH))
+        for place in found_sensor.written:
+            print(f"written: {place}")
     return 0
 
 
@@ -212,5 +221,8 @@ def subjects_text(found: Diagnosed) -> str:
     """What could be diagnosed."""
     if not found.subjects:
         return "\n".join(textwrap.fill(text, 79) for text in found.words)
-    rows = [[f"--{s.keyword}", s.id, str(s.observations)] for s in found.subjects]
+    rows = [
+        [f"--{s.keyword}", s.id, "" if s.observations is None else str(s.observations)]
+        for s in found.subjects
+    ]
     return "Choose one:\n" + table(["option", "", "rows"], rows)

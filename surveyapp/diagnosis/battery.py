@@ -96,7 +96,8 @@ def run_battery(problem: Case, fit: Fit, seed: int) -> tuple[BatteryTest, ...]:
     """Apply every statistic to every channel of the residuals of a fit."""
     generator = np.random.default_rng(seed)
     q = orthonormal_design(fit)
-    noise = Noise(DRAWS, rounding_of(problem, fit), problem.root_weights)
+    rounding = rounding_of(problem, fit)
+    noise = Noise(DRAWS, rounding, problem.root_weights, own_scales=problem.own_scales)
     order = np.argsort(problem.position, kind="stable")
     if problem.series is not None:
         order = np.lexsort((problem.position, problem.series))

@@ -156,7 +156,7 @@ def missing_columns(effect: Effect, columns: Mapping[str, Floats]) -> str:
 
 
 CONSTANT_COLUMNS = frozenset(
-    {"first_amplitude", "decay", "side", "relative_amplitude", "own_sigma"}
+    {"first_amplitude", "decay", "side", "relative_amplitude", "own_sigma", "axis"}
 )
 """Columns that may be constant."""
 

@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from surveyapp.diagnosis.action import Action
 from surveyapp.domain.project import ResultWarning
@@ -29,6 +30,30 @@ def _read_only(values: Floats) -> Floats:
     view = np.asarray(values).view()
     view.flags.writeable = False
     return view
+
+
+@dataclass(frozen=True, slots=True)
+class OwnScale:
+    """Rows whose sigma was found from their own residuals: a test has to count with its error.
+
+    Parameters
+    ----------
+    rows : ndarray of int
+    basis : ndarray, shape (m, p)
+        Orthonormal columns of the model about which it was found.
+    """
+
+    rows: NDArray[np.intp]
+    basis: Floats
+
+    def scaled(self, sample: Floats) -> Floats:
+        """Draws (d, n) of noise of variance 1 as the rows would show them."""
+        part = sample[:, self.rows]
+        left = part - (part @ self.basis) @ self.basis.T
+        dof = max(self.rows.size - self.basis.shape[1], 1)
+        result = sample.copy()
+        result[:, self.rows] = part / np.sqrt((left**2).sum(axis=1) / dof)[:, None]
+        return result
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +125,8 @@ class Case:
     reported : ndarray or None, shape (n,)
         1 where an observation counts in the errors that are printed, else 0; None = all. Others
         take part in everything else.
+    own_scales : tuple of OwnScale
+        Where the stated sigmas were found from the observations themselves.
     base_of : callable or None
         The base design of other rows; None = the mean of the record's own rows.
     """
@@ -137,6 +164,7 @@ class Case:
     groups: Floats | None = None
     series: Floats | None = None
     reported: Floats | None = None
+    own_scales: tuple[OwnScale, ...] = ()
 
     def __post_init__(self) -> None:
         """Hand out what effects may read so that they cannot write into it."""

@@ -114,7 +114,14 @@ def open_gate(problem: Case, fit: Fit, pool: Iterable[Candidate], draws: int) ->
     if not family:
         return Gate(fit.effects, (), 1.0)
     known = unit_variance(problem)
-    noise = Noise(draws, rounding_of(problem, fit), problem.root_weights, known is not None)
+    rounding = rounding_of(problem, fit)
+    noise = Noise(
+        draws,
+        rounding,
+        problem.root_weights,
+        known is not None,
+        own_scales=problem.own_scales,
+    )
     null = null_of(family, q, noise)
     observed = [statistic(problem, fit, item, q) for item in family]
     p = null.p_values(np.array(observed))

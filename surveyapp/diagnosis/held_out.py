@@ -168,6 +168,7 @@ def _subset(problem: Case, rows: NDArray[np.intp]) -> Case:
         sigma=cut(problem.sigma),
         series=cut(problem.series),
         reported=cut(problem.reported),
+        own_scales=(),
     )
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from surveyapp.diagnosis.case import OwnScale
 from surveyapp.diagnosis.projection import Projected
 from surveyapp_models.arrays import Floats
 
@@ -75,6 +76,8 @@ class Noise:
         what is left.
     colour : ndarray, shape (n, n), or None
         Square root of the covariance of correlated noise.
+    own_scales : tuple of OwnScale
+        Rows that were divided by a scatter of their own.
     """
 
     draws: int
@@ -82,6 +85,7 @@ class Noise:
     root: Floats
     known: bool = False
     colour: Floats | None = None
+    own_scales: tuple[OwnScale, ...] = ()
 
 
 def null_of(projected: tuple[Projected, ...], q: Floats, noise: Noise) -> Null:
@@ -114,6 +118,9 @@ def _key(projected: tuple[Projected, ...], q: Floats, noise: Noise) -> bytes:
         digest.update(np.ascontiguousarray(np.round(part, 9)).tobytes())
     if noise.colour is not None:
         digest.update(np.ascontiguousarray(np.round(noise.colour, 9)).tobytes())
+    for own in noise.own_scales:
+        digest.update(own.rows.tobytes())
+        digest.update(np.ascontiguousarray(np.round(own.basis @ own.basis.T, 9)).tobytes())
     for item in projected:
         digest.update(item.candidate.id.encode())
         digest.update(np.ascontiguousarray(np.round(item.columns, 9)).tobytes())
@@ -127,6 +134,8 @@ def residual_draws(q: Floats, noise: Noise, generator: np.random.Generator) -> F
         sample = sample @ noise.colour.T
     if noise.rounding > 0.0:
         sample += noise.root * noise.rounding * generator.uniform(-0.5, 0.5, sample.shape)
+    for own in noise.own_scales:
+        sample = own.scaled(sample)
     return np.asarray(sample - (sample @ q) @ q.T)
 
 

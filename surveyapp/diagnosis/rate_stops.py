@@ -13,15 +13,13 @@ from surveyapp.core.sensors.rate.hand_held import (
     fit_rates,
     turn_rows,
 )
+from surveyapp.core.sensors.rate.held_turns import ACCELEROMETERS, rest_rates, turns_between
 from surveyapp.core.sensors.rate.multi_position_log import (
-    ACCELEROMETERS,
     LEAST_STOPS,
     LEAST_TURNS,
     MultiPositionOptions,
     force_model,
     held_stops,
-    rest_rates,
-    turns_between,
 )
 from surveyapp.core.sensors.rate.position_log import (
     GYROS,
@@ -92,6 +90,7 @@ def _held_stops(log: SensorLog, latitude: float | None) -> tuple[list[RateStop],
             temperature_c=_mean(log, "temperature_c", stop.start, stop.stop),
             field=_field(log, stop.start, stop.stop),
             label=f"stop {k + 1}",
+            rows=(stop.start, stop.stop),
         )
         for k, stop in enumerate(stops)
     ]
@@ -102,14 +101,15 @@ def _turned(
     log: SensorLog, stops: Sequence[HeldStop], model: ForceModel, latitude: float | None
 ) -> list[RateTurn]:
     """The turns between the stops, where there are enough for the gyros' own elements."""
-    turns = turns_between(log, stops, model, MultiPositionOptions(latitude))
+    turns = turns_between(log, stops, model, latitude)
     if len(turns) < LEAST_TURNS:
         return []
     inverse = fit_rates(turns).matrix
     force = np.column_stack([log.columns[c] for c in ACCELEROMETERS])
     rests = model.corrected(np.array([s.force for s in stops]))
     found = []
-    for k, turn in enumerate(turns):
+    for turn in turns:
+        k = turn.leaves
         first, last = stops[k].stop, stops[k + 1].start
         rows = turn_rows(
             turn,
@@ -158,6 +158,7 @@ def _table_stops(log: SensorLog, latitude: float | None) -> list[RateStop]:
                     temperature_c=_mean(log, "temperature_c", first, last),
                     field=_field(log, first, last),
                     label=f"{place.position} {'clockwise' if item.rate > 0 else 'back'}",
+                    rows=(first, last),
                 )
             )
     return sorted(found, key=lambda stop: stop.elapsed_s)

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from datetime import date
 from typing import Final, Literal
 
+from surveyapp.domain.instrument import AdoptedEffect
+
 SensorKind = Literal["compass", "tilt", "rate", "fog-station", "edm"]
 SENSOR_KINDS: Final[tuple[SensorKind, ...]] = ("compass", "tilt", "rate", "fog-station", "edm")
 
@@ -43,6 +45,8 @@ class SensorLogEntry:
         Day of the record.
     options : mapping
         Further keys that the subject knows, as they stand in the file.
+    effects : tuple of AdoptedEffect
+        What a diagnosis named in it and a person adopted.
     """
 
     id: str
@@ -60,3 +64,4 @@ class SensorLogEntry:
     latitude_deg: float | None = None
     calibrated_on: date | None = None
     options: Mapping[str, object] = field(default_factory=dict)
+    effects: tuple[AdoptedEffect, ...] = ()

@@ -27,7 +27,7 @@ SubjectKind = Literal[
 """``line``: a line as one instrument oriented it; ``side``: two stations, whoever sighted them."""
 
 
-SubjectKeyword = Literal["session", "campaign", "traverse"]
+SubjectKeyword = Literal["session", "campaign", "traverse", "sensor"]
 """Under which ``diagnose`` takes the id of what is to be diagnosed."""
 
 

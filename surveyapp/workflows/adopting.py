@@ -16,6 +16,7 @@ from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.result import Adoption, Diagnosis
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.domain.project import Project, ResultWarning
+from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.filing.journal import write_together
 from surveyapp.io.filing.ledger import append_entries
@@ -123,11 +124,24 @@ def record(
     is adopting where a session that the effect would change is closed, or where the project is no
     longer the one that was diagnosed.
     """
-    folder = Path(project.path)
     parent = ("orientation", diagnosis.identity)
     if diagnosis.subject != "reversal_run":
         parent = ("instrument", diagnosis.instrument)
-    entries: list[tuple[str, Mapping[str, Any]]] = [("diagnosis", dict(diagnosis.ledger))]
+    return record_under(project, parent, diagnosis.ledger, tables, moment=moment, software=software)
+
+
+def record_under(
+    project: Project,
+    parent: tuple[str, str],
+    ledger: Mapping[str, Any],
+    tables: Sequence[Mapping[str, object]],
+    *,
+    moment: str,
+    software: str,
+) -> tuple[tuple[str, ...], list[ResultWarning]]:
+    """``record`` for a table of project.toml: its kind and its id, such as a sensor log."""
+    folder = Path(project.path)
+    entries: list[tuple[str, Mapping[str, Any]]] = [("diagnosis", dict(ledger))]
     entries += [("adoption", {"parent": list(parent), "effect": table}) for table in tables]
     with ProjectLock(folder) as lock:
         if tables:
@@ -182,6 +196,47 @@ def effect_table(item: Adoption, problem: Case, project: Project) -> dict[str, o
     errors = {"before": record.before, "after": record.after, "confirm": record.confirm}
     table.update({name: number for name, number in errors.items() if number is not None})
     table["unit"] = record.unit
+    return table
+
+
+def sensor_tables(
+    adopted: Sequence[AdoptedEffect], entry: SensorLogEntry
+) -> tuple[list[dict[str, object]], tuple[NotWritten, ...]]:
+    """Tables of what was named in a sensor's log, and why others are not written."""
+    known = {effect.id for effect in of_subject("compass")}
+    known |= {effect.id for subject in ("tilt", "rate") for effect in of_subject(subject)}
+    already = {effect.id for effect in entry.effects}
+    tables: list[dict[str, object]] = []
+    refused = []
+    if not adopted:
+        refused.append(NotWritten("", "no effect is named: nothing was written"))
+    for item in adopted:
+        if item.id in already:
+            reason = f"already adopted by sensor log {entry.id}: nothing was written"
+            refused.append(NotWritten(item.id, reason))
+        elif item.id not in known:
+            refused.append(NotWritten(item.id, "an effect of your own is in no catalogue"))
+        else:
+            tables.append(_plain_table(item))
+    return tables, tuple(refused)
+
+
+def _plain_table(item: AdoptedEffect) -> dict[str, object]:
+    table: dict[str, object] = {
+        "id": item.id,
+        "coefficients": {
+            name: {"value": value, "sigma": sigma, "unit": unit}
+            for name, value, sigma, unit in item.coefficients
+        },
+    }
+    if item.grid:
+        table["grid"] = dict(item.grid)
+    if item.valid:
+        table["valid"] = {name: [low, high] for name, low, high in item.valid}
+    table["sha256"] = item.data_sha256
+    errors = {"before": item.before, "after": item.after, "confirm": item.confirm}
+    table.update({name: number for name, number in errors.items() if number is not None})
+    table["unit"] = item.unit
     return table
 
 

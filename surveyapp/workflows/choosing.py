@@ -37,14 +37,15 @@ class Diagnosable:
     Parameters
     ----------
     keyword : str
-        ``session``, ``campaign`` or ``traverse``: under which ``diagnose`` takes its id.
+        ``session``, ``campaign``, ``traverse``, ``sensor``: under which ``diagnose`` takes its id.
     id : str
-    observations : int
+    observations : int or None
+        None of a sensor's log, which is not read for a list.
     """
 
     keyword: SubjectKeyword
     id: str
-    observations: int
+    observations: int | None
 
     def __iter__(self) -> Iterator[str]:
         """Keyword and id, for ``for keyword, name in subjects(...)``."""
@@ -68,6 +69,11 @@ def subjects_of(project: Project) -> tuple[Diagnosable, ...]:
             found.append(Diagnosable("campaign", instrument.id, count))
     found += [Diagnosable("traverse", item.name, len(item.rows)) for item in project.traverses]
     return tuple(found)
+
+
+def sensors_of(project: Project) -> tuple[Diagnosable, ...]:
+    """The sensor logs of a project, which ``diagnose`` takes by ``--sensor``."""
+    return tuple(Diagnosable("sensor", entry.id, None) for entry in project.sensor_logs)
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +118,7 @@ def choose(orientation: Orientation, request: Request, networks: Networks | None
     if not request.subjects:
         subjects = subjects_of(project)
         if len(subjects) != 1:
-            return Chosen(None, subjects=subjects)
+            return Chosen(None, subjects=(*subjects, *sensors_of(project)))
         only = subjects[0]
         request = replace(
             request,

@@ -144,7 +144,7 @@ def diagnose_project(
 
 NO_SUBJECTS = (
     "Nothing in this project can be diagnosed by itself: that needs a session with turning points "
-    "(reversal rows), an instrument with three sessions or more, or a traverse."
+    "(reversal rows), an instrument with three sessions or more, a traverse, or a sensor log."
 )
 
 

@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from datetime import datetime
+
 from surveyapp.diagnosis.sensors.diagnosis import SensorDiagnosis, diagnose_sensor
-from surveyapp.diagnosis.sensors.records import compass_record, tilt_record
-from surveyapp.domain.sensor_log import QUATERNION
+from surveyapp.diagnosis.sensors.records import SensorRecord, compass_record, tilt_record
+from surveyapp.domain.project import Project
+from surveyapp.domain.sensor_entry import SensorLogEntry
+from surveyapp.domain.sensor_log import QUATERNION, SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
+from surveyapp.workflows.adopting import NotWritten, sensor_tables
+from surveyapp.workflows.diagnosing_sensor import already_adopted, write_under
+from surveyapp_models.effects.effect import Effect
 
 MAG = ("mag_x_uT", "mag_y_uT", "mag_z_uT")
 PLACE = ("ref_px_m", "ref_py_m", "ref_pz_m")
@@ -16,8 +25,22 @@ FEWEST = 40
 """Rows below which no effect is told from noise."""
 
 
+@dataclass(frozen=True, slots=True)
+class SecondLog:
+    """A second log of the same sensor: its name and its file."""
+
+    identity: str
+    file: LogFile
+
+
 def diagnose_log(
-    kind: str | None, identity: str, file: LogFile, *, progress: Progress | None = None
+    kind: str | None,
+    identity: str,
+    file: LogFile,
+    *,
+    own: Sequence[Effect] = (),
+    confirm: SecondLog | None = None,
+    progress: Progress | None = None,
 ) -> SensorDiagnosis:
     """Diagnose a compass or a tilt log.
 
@@ -27,6 +50,9 @@ def diagnose_log(
         compass or tilt; None = by its columns.
     identity : str
     file : LogFile
+    own : sequence of Effect
+        The user's.
+    confirm : SecondLog, optional
     progress : callable, optional
 
     Raises
@@ -36,15 +62,83 @@ def diagnose_log(
     """
     if kind is None:
         kind = "compass" if file.has(*MAG) else "tilt"
+    record, log = _record(kind, identity, file, own, progress)
+    second = None
+    if confirm is not None:
+        second, other = _record(kind, confirm.identity, confirm.file, own, None)
+        if other.sha256 == log.sha256:
+            raise SurveyError(
+                Problem(
+                    "the second set is no second set: it would confirm whatever it chose",
+                    f"confirm, {confirm.identity}",
+                    f"the rows of {identity}",
+                    "another log of the same sensor, taken independently",
+                )
+            )
+        if second.mode != record.mode:
+            raise SurveyError(
+                Problem(
+                    "the second log shows another thing",
+                    f"confirm, {confirm.identity}",
+                    f"the {second.mode} of the field",
+                    f"the {record.mode}, as in {identity}",
+                    "both need a reference attitude, or neither",
+                )
+            )
+    return diagnose_sensor(
+        record,
+        identity=identity,
+        n_log=log.size,
+        warnings=log.warnings,
+        second=second,
+        data_sha256=log.sha256 or "",
+    )
+
+
+def adopt_log(
+    found: SensorDiagnosis,
+    project: Project,
+    entry: SensorLogEntry,
+    *,
+    adopt: bool,
+    software: str,
+    now: datetime | None = None,
+) -> SensorDiagnosis:
+    """Append a diagnosis to the ledger and, where asked, write what it named under the log."""
+    tables: list[dict[str, object]] = []
+    refused: tuple[NotWritten, ...] = ()
+    if adopt:
+        tables, refused = sensor_tables(found.records, entry)
+    written, more = write_under(project, entry, found.ledger, tables, software=software, now=now)
+    notes = [*already_adopted(entry), *more]
+    words = [n.text for n in notes] + list(found.words) + [f"Not written: {i}." for i in refused]
+    warnings = [*found.document["warnings"], *(note.to_dict() for note in notes)]
+    return replace(
+        found,
+        document={**found.document, "warnings": warnings},
+        words=tuple(words),
+        written=written,
+        not_written=tuple(item.to_dict() for item in refused),
+    )
+
+
+def _record(
+    kind: str, identity: str, file: LogFile, own: Sequence[Effect], progress: Progress | None
+) -> tuple[SensorRecord, SensorLog]:
+    """A log as the loop takes it."""
+    needed = tuple(need.name for effect in own for need in effect.needs if file.has(need.name))
     if kind == "compass":
         attitude = QUATERNION if file.has(*QUATERNION) else ()
         place = PLACE if file.has(*PLACE) else ()
+        optional = ("temperature_c", *needed)
         log = file.read(
-            Need(columns=(*MAG, *attitude, *place), varying=MAG, optional=("temperature_c",)),
+            Need(columns=(*MAG, *attitude, *place), varying=MAG, optional=optional),
             progress=progress,
         )
     elif kind == "tilt":
-        need = Need(columns=TILT, varying=TILT, optional=("temperature_c",), timed="optional")
+        need = Need(
+            columns=TILT, varying=TILT, optional=("temperature_c", *needed), timed="optional"
+        )
         log = file.read(need, progress=progress)
     else:
         what, expected = "logs of this kind are not diagnosed by themselves", "compass | tilt"
@@ -52,5 +146,6 @@ def diagnose_log(
     if log.size < FEWEST:
         found, expected = f"{log.size} rows", f"{FEWEST} rows or more"
         raise SurveyError(Problem("the log is too short to diagnose", log.path, found, expected))
-    record = compass_record(log) if kind == "compass" else tilt_record(log)
-    return diagnose_sensor(record, identity=identity, n_log=log.size, warnings=log.warnings)
+    mine = tuple(effect for effect in own if effect.subject == kind)
+    made = compass_record(log, mine) if kind == "compass" else tilt_record(log, mine)
+    return made, log

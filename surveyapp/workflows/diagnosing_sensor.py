@@ -6,7 +6,7 @@ One line of ``CASES`` a kind of sensor; the module behind it makes the case of a
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from typing import Any, Final
@@ -19,12 +19,13 @@ from surveyapp.domain.project import Project, ResultWarning
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.reading import LogFile
-from surveyapp.workflows.adopting import record
+from surveyapp.workflows.adopting import NotWritten, record_under, sensor_tables
 from surveyapp.workflows.diagnosing import Diagnosed
 from surveyapp_models.effects.effect import Effect
 
 CASES: Final = {
     "rate": "rate_case",
+    "fog-station": "fog_case",
 }
 """Kind of a sensor log to the module of ``workflows`` that makes its case."""
 
@@ -33,13 +34,14 @@ CASES: Final = {
 class SensorCase:
     """A case, what a reader must know of it, and further keys of the JSON.
 
-    ``told`` makes keys of what was found.
+    ``finished`` adds what the case alone cannot show, ``told`` makes keys of what was found.
     """
 
     case: Case
     warnings: tuple[ResultWarning, ...] = ()
     extra: dict[str, Any] = field(default_factory=dict)
     told: Callable[[Diagnosis], dict[str, Any]] | None = None
+    finished: Callable[[Diagnosis], Diagnosis] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,12 +63,20 @@ class SensorDiagnosed:
 
     @property
     def written(self) -> tuple[str, ...]:
-        """Nothing: an effect of a sensor goes to its card."""
+        """Where adopted effects were written."""
         return self.found.written
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON, schema ``surveyapp.diagnose/1``."""
         return {**self.found.to_dict(), **self.extra}
+
+
+@dataclass(frozen=True, slots=True)
+class Second:
+    """A second log of the same sensor, which chose nothing."""
+
+    file: LogFile
+    entry: SensorLogEntry
 
 
 def diagnose_sensor(
@@ -76,9 +86,11 @@ def diagnose_sensor(
     project: Project | None,
     software: str,
     own: Sequence[Effect] = (),
+    confirm: Second | None = None,
+    adopt: bool = False,
     now: datetime | None = None,
 ) -> SensorDiagnosed:
-    """Diagnose the log of a sensor and append it to the ledger.
+    """Diagnose the log of a sensor, append it to the ledger, and adopt where asked.
 
     Parameters
     ----------
@@ -89,14 +101,73 @@ def diagnose_sensor(
     software : str
     own : sequence of Effect
         The user's own.
+    confirm : Second, optional
+    adopt : bool
+        Whether named effects are written under the log in project.toml.
     now : datetime, optional
 
     Raises
     ------
     SurveyError
     """
+    made = _case_of(file, entry, own)
+    second = None
+    if confirm is not None:
+        second = _case_of(confirm.file, confirm.entry, own).case
+    diagnosis = run_engine(made.case, confirm=second)
+    if made.finished is not None:
+        diagnosis = made.finished(diagnosis)
+    notes = [*made.warnings, *already_adopted(entry)]
+    written: tuple[str, ...] = ()
+    refused: tuple[NotWritten, ...] = ()
+    if project is not None:
+        tables: list[dict[str, object]] = []
+        if adopt:
+            tables, refused = sensor_tables([a.record for a in diagnosis.adopted], entry)
+        written, more = write_under(
+            project, entry, diagnosis.ledger, tables, software=software, now=now
+        )
+        notes += more
+    words = [note.text for note in notes] + list(words_of(diagnosis, made.case))
+    words += [f"Not written: {item}." for item in refused]
+    told = replace(diagnosis, warnings=(*diagnosis.warnings, *notes))
+    extra = made.extra | ({} if made.told is None else made.told(diagnosis))
+    found = Diagnosed(told, written=written, not_written=refused, words=tuple(words))
+    return SensorDiagnosed(found, {"identity": entry.id, **extra})
+
+
+def already_adopted(entry: SensorLogEntry) -> list[ResultWarning]:
+    """That effects of a log are adopted already."""
+    if not entry.effects:
+        return []
+    names = ", ".join(dict.fromkeys(effect.id for effect in entry.effects))
+    text = (
+        f"Sensor log {entry.id} has adopted {names} already; this diagnosis is about the log "
+        "without it, so that it is found again."
+    )
+    return [ResultWarning("already_adopted", text)]
+
+
+def write_under(
+    project: Project,
+    entry: SensorLogEntry,
+    ledger: Mapping[str, Any],
+    tables: Sequence[Mapping[str, object]],
+    *,
+    software: str,
+    now: datetime | None = None,
+) -> tuple[tuple[str, ...], list[ResultWarning]]:
+    """Append a diagnosis to the ledger and write what is adopted under the log."""
+    moment = (now or datetime.now(UTC)).isoformat(timespec="seconds")
+    stamped = [{**t, "adopted_at": moment, "software": software} for t in tables]
+    return record_under(
+        project, ("sensor_log", entry.id), ledger, stamped, moment=moment, software=software
+    )
+
+
+def _case_of(file: LogFile, entry: SensorLogEntry, own: Sequence[Effect]) -> SensorCase:
     if entry.kind not in CASES:
-        known = " or ".join(CASES)
+        known = " or ".join(("compass", "tilt", *CASES))
         raise SurveyError(
             Problem(
                 "there is no diagnosis of this kind of log",
@@ -107,13 +178,4 @@ def diagnose_sensor(
         )
     module = importlib.import_module(f"surveyapp.workflows.{CASES[entry.kind]}")
     made: SensorCase = module.case(file, entry, tuple(own))
-    diagnosis = run_engine(made.case)
-    notes = list(made.warnings)
-    if project is not None:
-        moment = (now or datetime.now(UTC)).isoformat(timespec="seconds")
-        _, more = record(project, diagnosis, [], moment=moment, software=software)
-        notes += more
-    words = [note.text for note in notes] + list(words_of(diagnosis, made.case))
-    told = replace(diagnosis, warnings=(*diagnosis.warnings, *notes))
-    extra = made.extra | ({} if made.told is None else made.told(diagnosis))
-    return SensorDiagnosed(Diagnosed(told, words=tuple(words)), extra)
+    return made

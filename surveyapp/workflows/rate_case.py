@@ -9,6 +9,12 @@ from typing import Any
 import numpy as np
 
 from surveyapp.core.sensors.rate.position_log import ACCELEROMETERS, GYROS
+from surveyapp.diagnosis.rate_lines import (
+    Stretch,
+    interference_dict,
+    judge_lines,
+    with_lines_of,
+)
 from surveyapp.diagnosis.rate_stops import stops_of
 from surveyapp.diagnosis.result import Diagnosis
 from surveyapp.diagnosis.subjects.rate import RateTurn, rate_case
@@ -40,11 +46,20 @@ def case(file: LogFile, entry: SensorLogEntry, own: tuple[Effect, ...]) -> Senso
     warnings = list(log.warnings)
     if told:
         warnings.append(ResultWarning("latitude_unknown", told))
+    stretches = [
+        Stretch(*stop.rows, 0.0 if stop.known is None else float(np.abs(stop.known).max()))
+        for stop in stops
+        if stop.rows is not None
+    ]
+    lines = judge_lines(
+        log.columns["time_s"], [log.columns[c] for c in GYROS], stretches, ("x", "y", "z")
+    )
     return SensorCase(
         rate_case(stops, turns, identity=entry.id, extra=own),
         tuple(warnings),
-        {"stops": len(stops), "turns": len(turns)},
+        {"stops": len(stops), "turns": len(turns), **interference_dict(lines)},
         partial(_directions, turns=turns) if turns else None,
+        partial(with_lines_of, judged=lines),
     )
 
 

@@ -19,6 +19,7 @@ from surveyapp.errors import SurveyError
 from surveyapp.io.importers.gkf import read_gkf
 from tests.cli.command import run
 from tests.formats.importing import project
+from tests.formats.landxml_schema import faults
 
 MORE = """
 crs = "EPSG:4546"
@@ -106,6 +107,25 @@ def test_dxf_is_read_by_ezdxf(survey: Path) -> None:
     assert (survey.parent / "out.dxf").read_bytes().isascii()
 
 
+def test_dxf_opens_in_the_drawing_add_on_of_ezdxf(survey: Path) -> None:
+    """The add-on draws every name and every mark: a picture of more than its frame."""
+    from ezdxf.addons.drawing import config, layout
+    from ezdxf.addons.drawing.frontend import Frontend
+    from ezdxf.addons.drawing.properties import RenderContext
+    from ezdxf.addons.drawing.svg import SVGBackend
+
+    exported(survey, "dxf")
+    document = ezdxf.readfile(survey.parent / "out.dxf")  # type: ignore[attr-defined]
+    backend = SVGBackend()
+    shown = config.Configuration(background_policy=config.BackgroundPolicy.WHITE)
+    Frontend(RenderContext(document), backend, config=shown).draw_layout(document.modelspace())
+    page = layout.Page(0, 0, layout.Units.mm, max_width=200, max_height=200)
+    picture = backend.get_string(page)
+    assert picture.startswith("<?xml") or "<svg" in picture
+    assert picture.count("<path") > 2 * len(coordinates(survey))
+    assert document.header["$PDMODE"] == 34
+
+
 def test_landxml_has_what_the_schema_demands(survey: Path) -> None:
     text = exported(survey, "landxml")
     root = ET.fromstring(text)
@@ -121,6 +141,7 @@ def test_landxml_has_what_the_schema_demands(survey: Path) -> None:
     demanded = ("areaUnit", "linearUnit", "volumeUnit", "temperatureUnit", "pressureUnit")
     assert all(name in metric.attrib for name in demanded)
     assert metric.attrib["linearUnit"] == "meter"
+    assert faults(root) == []
     places = coordinates(survey)
     found = {
         point.attrib["name"]: [float(x) for x in (point.text or "").split()]
@@ -128,6 +149,23 @@ def test_landxml_has_what_the_schema_demands(survey: Path) -> None:
     }
     for name, (e, n, h) in places.items():
         assert found[name] == pytest.approx([n, e, h], abs=5.1e-5)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('linearUnit="meter"', 'linearUnit="metre"'),
+        (' pressureUnit="HPA"', ""),
+        ("<CgPoints>", '<CgPoints colour="red">'),
+        (' date="', ' day="'),
+        ("</CgPoint>", " 1.0 2.0</CgPoint>"),
+        ("<Project ", "<Projekt "),
+    ],
+)
+def test_the_check_of_the_schema_finds_what_is_wrong(survey: Path, old: str, new: str) -> None:
+    text = exported(survey, "landxml")
+    assert old in text
+    assert faults(ET.fromstring(text.replace(old, new)))
 
 
 def test_gsi_by_the_layout_of_the_words(survey: Path) -> None:

@@ -11,6 +11,10 @@ import numpy as np
 import pytest
 
 from surveyapp.core.sensors.rate.hand_held import Turn, turn_rows
+from surveyapp.core.sensors.rate.multi_position_log import (
+    MultiPositionOptions,
+    calibrate_multi_position,
+)
 from surveyapp.core.simulate.rate.log import SimulatedLog
 from surveyapp.core.simulate.rate.recipes import hand_run
 from surveyapp.core.simulate.rate.vehicle import hand_held_log
@@ -105,6 +109,21 @@ def test_the_rows_of_a_turn_are_derivatives_of_what_the_gyros_carry() -> None:
             assert found.force[:, i, j] == pytest.approx(pulled, rel=1e-3, abs=1e-4)
 
 
+def test_a_turn_with_a_gap_or_a_saturated_gyro_takes_no_part() -> None:
+    """The gyro's scale stays within three sigma where 3 s of a turn are missing."""
+    rng = np.random.default_rng(3)
+    run = replace(hand_run({}, rng), interval_s=0.02)
+    log = hand_held_log(run, rng)
+    rows = np.abs(log.columns["time_s"] - 41.0) > 1.5
+    cut = as_read(SimulatedLog({k: v[rows] for k, v in log.columns.items()}, {}, log.truth))
+    found = calibrate_multi_position(cut, MultiPositionOptions(run.latitude))
+    assert "turns_left_out" in {w.code for w in found.warnings}
+    for item in found.parameters:
+        if item.name.startswith("scale_factor") and item.value is not None:
+            off = abs(item.value - float(str(log.truth[item.name])))
+            assert off < 3.0 * (item.sigma or 0.0), item.name
+
+
 def test_noise_of_one_gyro_knows_nothing_of_another() -> None:
     case = rate_case(table_stops(np.random.default_rng(1)), identity="table")
     axis = case.columns["axis"]
@@ -173,6 +192,7 @@ def test_every_effect_of_a_rate_sensor_is_zero_where_its_coefficient_is_and_fini
     columns = {
         **case.columns,
         **{f"half_size_{a}": np.full(case.size, 0.1) for a in "xyz"},
+        "sample_s": 0.1 * np.arange(case.size),
         "temperature_c": np.linspace(20.0, 25.0, case.size),
         **{f"field_{a}": np.full(case.size, 5e-5) for a in "xyz"},
     }

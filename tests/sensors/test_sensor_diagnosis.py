@@ -118,7 +118,7 @@ def test_the_command_and_what_it_refuses(
         assert key in document
     assert main(["diagnose", folder, "--sensor", "tilt"]) == 0
     assert "cross axis" in capsys.readouterr().out
-    assert main(["diagnose", folder, "--sensor", "tilt", "--adopt"]) == 2
+    assert main(["diagnose", folder, "--sensor", "tilt", "--session", "A"]) == 2
     assert main(["diagnose", folder, "--sensor", "other"]) == 2
     assert "other" in capsys.readouterr().err
 

@@ -6,7 +6,7 @@ or handed over by the user does not exist.
 
 from __future__ import annotations
 
-from surveyapp_models.effects import campaign, rate, reversal_run, traverse
+from surveyapp_models.effects import campaign, compass, rate, reversal_run, tilt, traverse
 from surveyapp_models.effects.campaign import after_transport as _c_after_transport
 from surveyapp_models.effects.campaign import circle_eccentricity as _c_circle_eccentricity
 from surveyapp_models.effects.campaign import gyro_block as _c_gyro_block
@@ -20,11 +20,19 @@ from surveyapp_models.effects.campaign import temperature as _c_temperature
 from surveyapp_models.effects.campaign import time_drift as _c_time_drift
 from surveyapp_models.effects.campaign import transport_step as _c_transport_step
 from surveyapp_models.effects.campaign import warm_up as _c_warm_up
+from surveyapp_models.effects.compass import field_gradient as _m_field_gradient
+from surveyapp_models.effects.compass import gross_error as _m_gross_error
+from surveyapp_models.effects.compass import hard_iron as _m_hard_iron
+from surveyapp_models.effects.compass import interference_step as _m_interference_step
+from surveyapp_models.effects.compass import misalignment as _m_misalignment
+from surveyapp_models.effects.compass import soft_iron as _m_soft_iron
+from surveyapp_models.effects.compass import temperature as _m_temperature
 from surveyapp_models.effects.effect import Effect, SubjectId
 from surveyapp_models.effects.rate import bias_ramp as _s_bias_ramp
 from surveyapp_models.effects.rate import flip_error as _s_flip_error
 from surveyapp_models.effects.rate import g_sensitivity as _s_g_sensitivity
 from surveyapp_models.effects.rate import gross_error as _s_gross_error
+from surveyapp_models.effects.rate import interference_line as _s_interference_line
 from surveyapp_models.effects.rate import magnetic_sensitivity as _s_magnetic_sensitivity
 from surveyapp_models.effects.rate import scale_asymmetry as _s_scale_asymmetry
 from surveyapp_models.effects.rate import temperature as _s_temperature
@@ -38,6 +46,11 @@ from surveyapp_models.effects.reversal_run import quadratic_drag as _r_quadratic
 from surveyapp_models.effects.reversal_run import secondary_oscillation as _r_secondary_oscillation
 from surveyapp_models.effects.reversal_run import temperature as _r_temperature
 from surveyapp_models.effects.reversal_run import warm_up as _r_warm_up
+from surveyapp_models.effects.tilt import cross_axis as _l_cross_axis
+from surveyapp_models.effects.tilt import gross_error as _l_gross_error
+from surveyapp_models.effects.tilt import scale_nonlinearity as _l_scale_nonlinearity
+from surveyapp_models.effects.tilt import temperature as _l_temperature
+from surveyapp_models.effects.tilt import warm_up as _l_warm_up
 from surveyapp_models.effects.traverse import angle_bias as _t_angle_bias
 from surveyapp_models.effects.traverse import distance_constant as _t_distance_constant
 from surveyapp_models.effects.traverse import distance_cyclic as _t_distance_cyclic
@@ -91,7 +104,20 @@ CATALOGUE: tuple[Effect, ...] = (
     _s_scale_asymmetry.EFFECT,
     _s_flip_error.EFFECT,
     _s_magnetic_sensitivity.EFFECT,
+    _s_interference_line.EFFECT,
     _s_gross_error.EFFECT,
+    _m_hard_iron.EFFECT,
+    _m_soft_iron.EFFECT,
+    _m_misalignment.EFFECT,
+    _m_temperature.EFFECT,
+    _m_field_gradient.EFFECT,
+    _m_interference_step.EFFECT,
+    _m_gross_error.EFFECT,
+    _l_cross_axis.EFFECT,
+    _l_scale_nonlinearity.EFFECT,
+    _l_temperature.EFFECT,
+    _l_warm_up.EFFECT,
+    _l_gross_error.EFFECT,
 )
 
 
@@ -105,8 +131,10 @@ __all__ = [
     "Effect",
     "SubjectId",
     "campaign",
+    "compass",
     "of_subject",
     "rate",
     "reversal_run",
+    "tilt",
     "traverse",
 ]

@@ -13,12 +13,13 @@ from typing import Any, Final
 import numpy as np
 
 from surveyapp.core.sensors.linear import alternate_blocks
+from surveyapp.diagnosis.sensors.confirming import confirmed
 from surveyapp.diagnosis.sensors.document import (
-    REMEDIES,
     adopted_of,
     ambiguous_of,
     candidates_of,
     gross_of,
+    remedies_of,
     words_of,
 )
 from surveyapp.diagnosis.sensors.loop import (
@@ -30,7 +31,9 @@ from surveyapp.diagnosis.sensors.loop import (
     fit_model,
     run_loop,
 )
-from surveyapp.diagnosis.sensors.records import SensorRecord, block_means, switched
+from surveyapp.diagnosis.sensors.records import SensorRecord
+from surveyapp.diagnosis.sensors.windows import block_means, switched
+from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.domain.project import ResultWarning
 from surveyapp_models.arrays import Floats
 
@@ -55,14 +58,37 @@ class SensorDiagnosis:
     document : dict
         Ready for JSON.
     words : tuple of str
+    records : tuple of AdoptedEffect
+        What is written of the named effects where they are adopted.
+    written : tuple of str
+        Where.
+    not_written : tuple of dict
+        Named effects that were not, and why.
     """
 
     document: dict[str, Any]
     words: tuple[str, ...]
+    records: tuple[AdoptedEffect, ...] = ()
+    written: tuple[str, ...] = ()
+    not_written: tuple[dict[str, str], ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""
-        return {**self.document, "words": list(self.words)}
+        return {
+            **self.document,
+            "written": list(self.written),
+            "not_written": list(self.not_written),
+            "words": list(self.words),
+        }
+
+    @property
+    def ledger(self) -> dict[str, Any]:
+        """What the ledger of a project keeps of it."""
+        keys = ("subject", "identity", "verdict", "adopted", "ambiguous", "candidates")
+        return {
+            "schema": "surveyapp.ledger.diagnosis/1",
+            **{key: self.document[key] for key in keys},
+        }
 
 
 def diagnose_sensor(
@@ -71,6 +97,8 @@ def diagnose_sensor(
     identity: str,
     n_log: int,
     warnings: Sequence[ResultWarning] = (),
+    second: SensorRecord | None = None,
+    data_sha256: str = "",
 ) -> SensorDiagnosis:
     """Run the loop on a record and tell what it found.
 
@@ -82,17 +110,31 @@ def diagnose_sensor(
     n_log : int
         Rows of the log.
     warnings : sequence of ResultWarning
+    second : SensorRecord, optional
+        Of another log of the same sensor, which chose nothing.
+    data_sha256 : str
+        Of the log.
     """
     found = run_loop(record.observed, record.base, record.candidates)
     found = _doubted(record, found)
     after = _refined(record, found.after)
+    proof = None if second is None else confirmed(record, after, second)
+    notes = list(warnings)
+    if proof is not None:
+        after = proof.fit
+        notes += [ResultWarning("not_adopted", f"{n}: {why}") for n, why in proof.refused]
     best = _refined(record, found.best) if found.ambiguous else after
     fits = {"before": found.before, "after": after, "after_best": best}
     verdict = _verdict(record, found)
+    if proof is not None and proof.refused and not found.ambiguous:
+        verdict = "unattributed"
     adopted = [adopted_of(record, found, after, c) for c in after.chosen]
     if record.gross:
         adopted.append(gross_of(record, n_log))
     models = {name: _model(record, fit) for name, fit in fits.items()}
+    if proof is not None:
+        models["before"]["confirm_rms"] = proof.before
+        models["after"]["confirm_rms"] = proof.after
     held = {
         "scheme": "contiguous blocks, two halves fitted alternately",
         "before": _held_out(record, found.before),
@@ -113,14 +155,36 @@ def diagnose_sensor(
         "held_out": held,
         "noise": {"before": found.before.noise, "after": after.noise},
         "lines": [],
-        "remedy": [REMEDIES[item["effect"]] for item in adopted],
-        "warnings": [item.to_dict() for item in warnings],
-        "written": [],
-        "not_written": [],
+        "remedy": remedies_of(record, adopted),
+        "warnings": [item.to_dict() for item in notes],
         "mode": record.mode,
         **_compass_figures(record, found.before, after),
     }
-    return SensorDiagnosis(document, tuple(words_of(document)))
+    told = [n.text for n in notes if n.code == "not_adopted"]
+    return SensorDiagnosis(
+        document,
+        (*words_of(document), *told),
+        tuple(_record_of(item, document, data_sha256) for item in adopted),
+    )
+
+
+def _record_of(item: dict[str, Any], document: dict[str, Any], sha256: str) -> AdoptedEffect:
+    """A named effect as it is written under the log in project.toml."""
+    grid = {g["name"] for g in item["grid"]}
+    return AdoptedEffect(
+        id=item["effect"],
+        coefficients=tuple(
+            (c["name"], c["value"], c["sigma"] or 0.0, c["unit"])
+            for c in item["coefficients"]
+            if c["name"] not in grid
+        ),
+        grid=tuple((g["name"], g["value"]) for g in item["grid"] if g["value"] is not None),
+        data_sha256=sha256,
+        before=document["before"]["rms"],
+        after=document["after"]["rms"],
+        confirm=document["after"]["confirm_rms"],
+        unit=document["unit"],
+    )
 
 
 def _doubted(record: SensorRecord, found: LoopResult) -> LoopResult:

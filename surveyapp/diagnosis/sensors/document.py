@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 
 from surveyapp.diagnosis.sensors.loop import Chosen, LoopFit, LoopResult, Trial
 from surveyapp.diagnosis.sensors.records import SensorRecord
+from surveyapp_models.effects import of_subject
+from surveyapp_models.effects.effect import Effect
 
-REMEDIES: Final = {
-    "hard_iron": "Calibrate the compass by an ellipsoid with this mounting, or take the iron away.",
-    "soft_iron": "Calibrate the compass by a full ellipsoid with this mounting.",
-    "misalignment": "Mount the sensor along the body's axes, or calibrate it with an attitude.",
-    "interference_step": "Find what was switched on and off at these times; leave that part out.",
-    "field_gradient": "Calibrate at one place, away from iron; stay there while turning.",
-    "temperature": "Let the sensor reach its temperature, or use a card with its coefficient.",
-    "cross_axis": "Use a card with the cross terms, or mount the sensor along its axes.",
-    "scale_nonlinearity": "Keep to the middle of the range, or calibrate over a smaller one.",
-    "warm_up": "Power the sensor ten minutes before the test.",
-    "gross_error": "Look at these rows of the log; leave them out.",
-}
+
+def effect_of(record: SensorRecord, identity: str) -> Effect | None:
+    """The effect of a name, of the catalogue or the user's own."""
+    every = (*of_subject(record.subject), *record.own)
+    return next((effect for effect in every if effect.id == identity), None)
+
+
+def remedies_of(record: SensorRecord, adopted: list[dict[str, Any]]) -> list[str]:
+    """What is to be done about each named effect."""
+    found = [effect_of(record, item["effect"]) for item in adopted]
+    return [effect.remedy for effect in found if effect is not None]
 
 
 def _p(trial: Trial, family: int) -> float:
@@ -59,8 +60,10 @@ def adopted_of(
         coefficients += [{**g, "sigma": None} for g in grid]
     trial = next((t for t in found.steps if t.id == candidate.id), None)
     family = len(record.candidates) * (400 if candidate.id == "interference_step" else 1)
+    effect = effect_of(record, candidate.id)
     return {
         "effect": candidate.id,
+        "title": candidate.id if effect is None else effect.title,
         "coefficients": coefficients,
         "grid": grid,
         "p_family": None if trial is None else _p(trial, family),
@@ -70,8 +73,10 @@ def adopted_of(
 
 def gross_of(record: SensorRecord, n_log: int) -> dict[str, Any]:
     """The gross errors as one effect."""
+    effect = effect_of(record, "gross_error")
     return {
         "effect": "gross_error",
+        "title": "" if effect is None else effect.title,
         "coefficients": [
             {"name": f"row {row + 1}", "value": size, "sigma": None, "unit": record.unit}
             for row, size in record.gross
@@ -107,7 +112,7 @@ def candidates_of(found: LoopResult, record: SensorRecord) -> list[dict[str, Any
     rows = []
     for candidate in record.candidates:
         trial = last.get(candidate.id)
-        verdict = "rejected"
+        verdict = "not_significant"
         if candidate.id in found.after.ids:
             verdict = "adopted"
         elif candidate.id in ambiguous:
@@ -126,10 +131,22 @@ def candidates_of(found: LoopResult, record: SensorRecord) -> list[dict[str, Any
                 "reason": "",
             }
         )
+    for identity, reason in record.missing:
+        rows.append(
+            {
+                "effect": identity,
+                "verdict": "not_applicable",
+                "p": None,
+                "p_family": None,
+                "delta_bic": None,
+                "kind": "named",
+                "reason": reason,
+            }
+        )
     rows.append(
         {
             "effect": "gross_error",
-            "verdict": "adopted" if record.gross else "rejected",
+            "verdict": "adopted" if record.gross else "not_significant",
             "p": None,
             "p_family": None,
             "delta_bic": None,

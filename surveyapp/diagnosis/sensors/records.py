@@ -7,44 +7,31 @@ exactly linear in hard and soft iron. Tilt: both axes against their reference.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from surveyapp.diagnosis.candidates import missing_columns
 from surveyapp.diagnosis.sensors.loop import Candidate
+from surveyapp.diagnosis.sensors.windows import Blocks, block_means, blocks_of, switch
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp_models.arrays import Floats
+from surveyapp_models.effects import of_subject
+from surveyapp_models.effects.effect import Effect
 
-Blocks = NDArray[np.int64]
+Mask = NDArray[np.bool_]
 
-MOST_BLOCKS: Final = 160
-COARSE: Final = 24
-"""Windows of a switch begin and end at so many places in the first scan."""
-
-SWITCH_SEARCHED: Final = 3
-"""Two times among some ten thousand windows: more than two parameters of a BIC pay for."""
+SPECIAL: Final = frozenset({"interference_step"})
+"""Effects whose grid is refined to the row and not scanned as it stands."""
 
 MOST_GROSS: Final = 0.01
 """Share of the rows above which they are no gross errors but how the record is."""
 
 GROSS: Final = 8.0
 """Single readings that leave their neighbours by so many robust sigma are gross errors."""
-
-SYMMETRIC: Final = ("xx", "yy", "xy", "xz", "yz")
-_SHAPES: Final = np.array(
-    [
-        [[1, 0, 0], [0, 0, 0], [0, 0, -1]],
-        [[0, 0, 0], [0, 1, 0], [0, 0, -1]],
-        [[0, 1, 0], [1, 0, 0], [0, 0, 0]],
-        [[0, 0, 1], [0, 0, 0], [1, 0, 0]],
-        [[0, 0, 0], [0, 0, 1], [0, 1, 0]],
-    ],
-    dtype=np.float64,
-)
-"""Symmetric matrices of trace zero."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +65,10 @@ class SensorRecord:
     mag : ndarray, shape (m, 3), or None
     scale : float
         F of ``|m|^2 / 2F``, else 1.
+    missing : tuple of (str, str)
+        Effects of the catalogue that the record cannot show, and what it lacks.
+    own : tuple of Effect
+        The user's.
     """
 
     subject: str
@@ -95,19 +86,8 @@ class SensorRecord:
     matrices: Floats | None = None
     mag: Floats | None = None
     scale: float = 1.0
-
-
-def block_means(values: Floats, block: Blocks) -> Floats:
-    """Means of the rows of each block, shape (n, ...)."""
-    count = np.bincount(block)
-    flat = values.reshape(len(values), -1)
-    sums = np.stack([np.bincount(block, weights=column) for column in flat.T], axis=1)
-    return np.asarray((sums / count[:, None]).reshape(count.size, *values.shape[1:]))
-
-
-def blocks_of(rows: int, most: int = MOST_BLOCKS) -> Blocks:
-    """Numbers of contiguous blocks of equal size."""
-    return np.arange(rows) * min(most, rows) // rows
+    missing: tuple[tuple[str, str], ...] = ()
+    own: tuple[Effect, ...] = ()
 
 
 def rotation_matrices(q: Floats) -> Floats:
@@ -142,17 +122,99 @@ def gross_rows(residual: Floats) -> list[tuple[int, float]]:
     return [(int(i) + 1, float(np.linalg.norm(second[i]))) for i in places]
 
 
-def compass_record(log: SensorLog) -> SensorRecord:
-    """Record of a compass log; the vector where a reference attitude stands beside it."""
+def compass_record(log: SensorLog, own: tuple[Effect, ...] = ()) -> SensorRecord:
+    """Record of a compass log; the vector where a reference attitude stands beside it.
+
+    Parameters
+    ----------
+    log : SensorLog
+    own : tuple of Effect
+        The user's, for the subject ``compass``.
+    """
     q = log.quaternion()
-    return _vector_record(log, rotation_matrices(q)) if q is not None else _size_record(log)
+    effects = (*of_subject("compass"), *own)
+    if q is not None:
+        return replace(_vector_record(log, rotation_matrices(q), effects), own=own)
+    return replace(_size_record(log, effects), own=own)
 
 
 def _mag(log: SensorLog) -> Floats:
     return np.column_stack([log.columns[f"mag_{axis}_uT"] for axis in "xyz"])
 
 
-def _vector_record(log: SensorLog, matrices: Floats) -> SensorRecord:
+def _axis_columns(log: SensorLog, kept: Mask, field: Floats) -> dict[str, Floats]:
+    """Columns of the catalogue, three rows a time; ``field`` (n, 3) is the undisturbed one."""
+    count = field.shape[0]
+    columns: dict[str, Floats] = {
+        "axis": np.tile(np.arange(3.0), count),
+        "time_s": np.repeat(log.columns["time_s"][kept], 3),
+        **{f"field_{a}": np.repeat(field[:, i], 3) for i, a in enumerate("xyz")},
+    }
+    theta = log.columns.get("temperature_c")
+    if theta is not None:
+        columns["temperature_c"] = np.repeat(theta[kept], 3)
+    place = log.vector("ref_p")
+    if place is not None:
+        at = (place - place.mean(axis=0))[kept]
+        columns |= {f"place_{a}": np.repeat(at[:, i], 3) for i, a in enumerate("xyz")}
+    for name, values in log.columns.items():
+        columns.setdefault(name, np.repeat(values[kept], 3))
+    return columns
+
+
+def _catalogued(
+    effects: Sequence[Effect], columns: Mapping[str, Floats], block: Blocks, along: Floats | None
+) -> tuple[list[Candidate], list[tuple[str, str]]]:
+    """Candidates of the catalogue, and what others lack.
+
+    Parameters
+    ----------
+    effects : sequence of Effect
+    columns : mapping
+        d rows a time.
+    block : ndarray of int, shape (n,)
+    along : ndarray, shape (n, d), or None
+        Direction on which the rows of a time are projected; None = each row by itself.
+    """
+    found, missing = [], []
+    for effect in effects:
+        if effect.acts_on == "observation" or effect.id in SPECIAL:
+            continue
+        lacking = missing_columns(effect, columns)
+        if lacking:
+            missing.append((effect.id, lacking))
+            continue
+        found.append(_candidate(effect, columns, block, along))
+    return found, missing
+
+
+def _candidate(
+    effect: Effect, columns: Mapping[str, Floats], block: Blocks, along: Floats | None
+) -> Candidate:
+    made: list[tuple[dict[str, float], Floats]] = []
+
+    def designs(residual: Floats) -> Sequence[tuple[dict[str, float], Floats]]:
+        del residual
+        if not made:
+            for point in effect.grid_points(columns):
+                basis = effect.basis(columns, **point)
+                rows = basis.reshape(block.size, -1, basis.shape[1])
+                if along is not None:
+                    rows = np.einsum("nd,ndk->nk", along, rows)[:, None, :]
+                made.append((point, block_means(rows, block)))
+        return made
+
+    return Candidate(
+        effect.id,
+        designs,
+        tuple(c.name for c in effect.coefficients),
+        effect.coefficients[0].unit,
+        len(effect.grid),
+        1.0 / effect.coefficients[0].scale,
+    )
+
+
+def _vector_record(log: SensorLog, matrices: Floats, effects: tuple[Effect, ...]) -> SensorRecord:
     mag = _mag(log)
     base_rows = np.swapaxes(matrices, 1, 2)  # body = R' level
     n = len(mag)
@@ -162,39 +224,26 @@ def _vector_record(log: SensorLog, matrices: Floats) -> SensorRecord:
     gross = gross_rows(mag - base_rows @ level)
     kept = np.ones(n, dtype=bool)
     kept[[row for row, _ in gross]] = False
-    body = (base_rows @ level)[kept]
     block = blocks_of(int(kept.sum()))
-    eye = np.tile(np.eye(3), (len(body), 1, 1))
-    shapes = np.stack([body @ shape for shape in _SHAPES], axis=2)
-    turns = np.stack([np.cross(np.eye(3)[k], body) for k in range(3)], axis=2)
-    rows = {"hard_iron": eye, "soft_iron": shapes, "misalignment": turns}
-    theta = log.columns.get("temperature_c")
-    if theta is not None and np.all(np.isfinite(theta)) and np.ptp(theta[kept]) > 0.0:
-        part = theta[kept] - theta[kept].mean()
-        rows["temperature"] = part[:, None, None] * eye
-    place = log.vector("ref_p")
-    if place is not None and np.all(np.isfinite(place)):
-        at = (place - place.mean(axis=0))[kept]
-        gradient = np.stack([at @ shape for shape in _SHAPES], axis=2)
-        rows["field_gradient"] = base_rows[kept] @ gradient
-    names = {
-        "hard_iron": (("hard_iron_x", "hard_iron_y", "hard_iron_z"), "uT", 1.0),
-        "soft_iron": (tuple(f"soft_iron_{s}" for s in SYMMETRIC), "1", 1.0),
-        "misalignment": (tuple(f"misalignment_{a}" for a in "xyz"), "deg", math.degrees(1.0)),
-        "temperature": (tuple(f"temperature_{a}" for a in "xyz"), "uT/K", 1.0),
-        "field_gradient": (tuple(f"gradient_{s}" for s in SYMMETRIC), "uT/m", 1.0),
-    }
-    candidates = [_plain(i, block_means(r, block), names[i]) for i, r in rows.items()]
+    columns = _axis_columns(log, kept, (base_rows @ level)[kept])
+    columns |= {f"level_{a}": base_rows[kept][:, :, j].ravel() for j, a in enumerate("xyz")}
+    candidates, missing = _catalogued(effects, columns, block, None)
     used = log.columns["time_s"][kept]
-    candidates.append(_switch(used, block, eye, ("step_x", "step_y", "step_z"), base_rows[kept]))
+    eye = np.tile(np.eye(3), (used.size, 1, 1))
+    candidates.append(switch(used, block, eye, ("step_x", "step_y", "step_z"), base_rows[kept]))
     return SensorRecord(
         "compass", "uT", used, block, mag[kept], base_rows[kept],
         block_means(mag[kept], block), block_means(base_rows[kept], block), tuple(candidates),
-        eye, tuple(gross), "vector", matrices[kept], mag[kept],
+        eye, tuple(gross), "vector", matrices[kept], mag[kept], missing=tuple(missing),
     )  # fmt: skip
 
 
-def _size_record(log: SensorLog) -> SensorRecord:
+def _size_record(log: SensorLog, effects: tuple[Effect, ...]) -> SensorRecord:
+    """Half the square of the field's size over its mean: linear in what is added along the field.
+
+    What a switch and a temperature add is seen with its own square, the gradient of a place as any
+    quadratic function of the place.
+    """
     mag = _mag(log)
     gross = gross_rows(np.linalg.norm(mag, axis=1)[:, None])
     kept = np.ones(len(mag), dtype=bool)
@@ -205,82 +254,82 @@ def _size_record(log: SensorLog) -> SensorRecord:
     block = blocks_of(len(used))
     one = np.ones((len(used), 1, 1))
     m = (used / scale)[:, None, :]
-    quadratic = np.stack(
-        [-np.einsum("ni,ij,nj->n", used, shape, used) / scale for shape in _SHAPES], axis=1
-    )[:, None, :]
-    rows = {"hard_iron": m, "soft_iron": quadratic}
-    theta = log.columns.get("temperature_c")
-    if theta is not None and np.all(np.isfinite(theta)) and np.ptp(theta[kept]) > 0.0:
-        warmer = (theta[kept] - theta[kept].mean())[:, None, None]
-        rows["temperature"] = np.concatenate([warmer * m, warmer**2], axis=2)
-    place = log.vector("ref_p")
-    if place is not None and np.all(np.isfinite(place)):
-        at = (place - place.mean(axis=0))[kept] / 1.0
-        squares = np.column_stack([at, at**2, at[:, [0]] * at[:, [1]], at[:, [0]] * at[:, [2]],
-                                   at[:, [1]] * at[:, [2]]])  # fmt: skip
-        rows["field_gradient"] = squares[:, None, :]
-    names = {
-        "hard_iron": (("hard_iron_x", "hard_iron_y", "hard_iron_z"), "uT", 1.0),
-        "soft_iron": (tuple(f"soft_iron_{s}" for s in SYMMETRIC), "1", 1.0),
-        "temperature": ((*(f"temperature_{a}" for a in "xyz"), "temperature_square"), "uT/K", 1.0),
-        "field_gradient": (
-            tuple(f"gradient_{s}" for s in ("x", "y", "z", "xx", "yy", "zz", "xy", "xz", "yz")),
-            "uT/m", 1.0,
-        ),
-    }  # fmt: skip
-    candidates = [_plain(i, block_means(r, block), names[i]) for i, r in rows.items()]
+    columns = _axis_columns(log, kept, used)
+    # the attitude is not known: no turn against it, and the gradient has a form of its own
+    unseen = [e for e in effects if e.id not in ("misalignment", "field_gradient", "temperature")]
+    candidates, missing = _catalogued(unseen, columns, block, used / scale)
+    missing.append(("misalignment", "no reference attitude (ref_q)"))
+    candidates += _size_candidates(columns, missing, m, block)
     time = log.columns["time_s"][kept]
     step = np.concatenate([m, one], axis=2)
     step_names = ("step_x", "step_y", "step_z", "step_size")
-    candidates.append(_switch(time, block, step, step_names, one))
+    candidates.append(switch(time, block, step, step_names, one))
     return SensorRecord(
         "compass", "uT", time, block, y, one, block_means(y, block), block_means(one, block),
-        tuple(candidates), step, tuple(gross), "size", None, used, scale,
+        tuple(candidates), step, tuple(gross), "size", None, used, scale, tuple(missing),
     )  # fmt: skip
 
 
-def tilt_record(log: SensorLog) -> SensorRecord:
-    """Record of a two-axis tilt log: zero and scale of each axis are the base."""
+def _size_candidates(
+    columns: Mapping[str, Floats], missing: list[tuple[str, str]], m: Floats, block: Blocks
+) -> list[Candidate]:
+    """Temperature and gradient as the size of the field shows them."""
+    found = []
+    theta, place = columns.get("temperature_c"), columns.get("place_x")
+    if theta is not None and np.all(np.isfinite(theta)) and np.ptp(theta) > 0.0:
+        warmer = (theta[::3] - theta.mean())[:, None, None]
+        design = np.concatenate([warmer * m, warmer**2], axis=2)
+        names = (*(f"temperature_{a}" for a in "xyz"), "temperature_square")
+        found.append(_plain("temperature", block_means(design, block), (names, "uT/K", 1.0)))
+    else:
+        missing.append(("temperature", "no temperature_c [degree Celsius] that varies"))
+    if place is not None and np.all(np.isfinite(place)):
+        at = np.column_stack([columns[f"place_{a}"][::3] for a in "xyz"])
+        squares = np.column_stack([at, at**2, at[:, [0]] * at[:, [1]], at[:, [0]] * at[:, [2]],
+                                   at[:, [1]] * at[:, [2]]])  # fmt: skip
+        names = tuple(f"gradient_{s}" for s in ("x", "y", "z", "xx", "yy", "zz", "xy", "xz", "yz"))
+        design = block_means(squares[:, None, :], block)
+        found.append(_plain("field_gradient", design, (names, "uT/m", 1.0)))
+    else:
+        missing.append(("field_gradient", "no place (ref_px_m, ref_py_m, ref_pz_m)"))
+    return found
+
+
+def tilt_record(log: SensorLog, own: tuple[Effect, ...] = ()) -> SensorRecord:
+    """Record of a two-axis tilt log: zero and scale of each axis are the base.
+
+    Parameters
+    ----------
+    log : SensorLog
+    own : tuple of Effect
+        The user's, for the subject ``tilt``.
+    """
     axes = ("along", "across")
     reading = np.column_stack([log.columns[f"tilt_{a}_arcsec"] for a in axes])
-    own = np.column_stack([log.columns[f"ref_{a}_arcsec"] for a in axes])
+    true = np.column_stack([log.columns[f"ref_{a}_arcsec"] for a in axes])
     n = log.size
     base = np.zeros((n, 2, 4))
     for i in range(2):
-        base[:, i, i], base[:, i, 2 + i] = 1.0, own[:, i]
+        base[:, i, i], base[:, i, 2 + i] = 1.0, true[:, i]
     fit = np.linalg.lstsq(base.reshape(2 * n, 4), reading.ravel(), rcond=1e-12)[0]
     gross = _outliers(reading - base @ fit)
     kept = np.ones(n, dtype=bool)
     kept[[row for row, _ in gross]] = False
     time = log.columns["time_s"] if log.has("time_s") else np.arange(n, dtype=np.float64)
-
-    def both(values: Floats) -> Floats:
-        design = np.zeros((n, 2, 2))
-        design[:, 0, 0], design[:, 1, 1] = values[:, 0], values[:, 1]
-        return design[kept]
-
-    span = np.max(np.abs(own), axis=0)
-    rows = {
-        "cross_axis": (both(own[:, ::-1]), ("cross_along", "cross_across"), "1"),
-        "scale_nonlinearity": (
-            both((own / np.where(span > 0.0, span, 1.0)) ** 3),
-            ("cubic_along", "cubic_across"),
-            "arcsec",
-        ),
+    columns: dict[str, Floats] = {
+        "axis": np.tile(np.arange(2.0), int(kept.sum())),
+        "time_s": np.repeat(time[kept], 2),
+        "reference": true[kept].ravel(),
+        "other_reference": true[kept][:, ::-1].ravel(),
     }
-    theta = log.columns.get("temperature_c")
-    if theta is not None and np.all(np.isfinite(theta)) and float(np.ptp(theta)) > 0.0:
-        part = np.repeat((theta - theta.mean())[:, None], 2, axis=1)
-        rows["temperature"] = (both(part), ("temperature_along", "temperature_across"), "arcsec/K")
+    for name, values in log.columns.items():
+        columns.setdefault(name, np.repeat(values[kept], 2))
     block = blocks_of(int(kept.sum()), 400)
-    candidates = [
-        _plain(i, block_means(d, block), (names, unit, 1.0)) for i, (d, names, unit) in rows.items()
-    ]
-    candidates.append(_warm_up(time[kept], block))
+    candidates, missing = _catalogued((*of_subject("tilt"), *own), columns, block, None)
     return SensorRecord(
         "tilt", "arcsec", time[kept], block, reading[kept], base[kept],
         block_means(reading[kept], block), block_means(base[kept], block), tuple(candidates),
-        None, tuple(gross), "axes",
+        None, tuple(gross), "axes", missing=tuple(missing), own=own,
     )  # fmt: skip
 
 
@@ -308,83 +357,3 @@ def _plain(identity: str, design: Floats, named: tuple[tuple[str, ...], str, flo
         return [({}, design)]
 
     return Candidate(identity, designs, names, unit, 0, scale)
-
-
-def _warm_up(time: Floats, block: Blocks) -> Candidate:
-    span = float(time[-1] - time[0]) or 1.0
-
-    def designs(residual: Floats) -> Sequence[tuple[dict[str, float], Floats]]:
-        del residual
-        found = []
-        for share in (0.03, 0.06, 0.12, 0.2, 0.3):
-            decay = np.exp(-(time - time[0]) / (share * span))
-            design = np.zeros((time.size, 2, 2))
-            design[:, 0, 0] = design[:, 1, 1] = decay
-            found.append(({"tau_s": share * span}, block_means(design, block)))
-        return found
-
-    names = ("warm_up_along", "warm_up_across")
-    return Candidate("warm_up", designs, names, "arcsec", 1)
-
-
-def switched(time: Floats, on: float, off: float) -> Floats:
-    """1 while on, from ``on`` up to ``off`` [s], else 0."""
-    return ((time >= on) & (time < off)).astype(np.float64)
-
-
-def _switch(
-    time: Floats, block: Blocks, step: Floats, names: tuple[str, ...], base_rows: Floats
-) -> Candidate:
-    """Something that is switched on and off: every window of a coarse scan, then finer ones.
-
-    It is switched on inside the record: on from the start and off later is a constant iron and
-    the opposite switch.
-    """
-    base = block_means(base_rows, block)
-    n, d = base.shape[:2]
-    # a constant iron is projected out of the scan, so that it cannot hide a switched one
-    both = np.concatenate([base, block_means(step, block)], axis=2).reshape(n * d, -1)
-    u, singular, _ = np.linalg.svd(both, full_matrices=False)
-    q = u[:, singular > 1e-9 * singular[0]]
-    edges = np.concatenate([time[np.searchsorted(block, np.arange(n))], [np.inf]])
-
-    def window(on: float, off: float) -> Floats:
-        return block_means(step * switched(time, on, off)[:, None, None], block)
-
-    def gain(residual: Floats, i: int, j: int) -> float:
-        z = window(float(edges[i]), float(edges[j])).reshape(n * d, -1)
-        z = z - q @ (q.T @ z)
-        y = residual.ravel()
-        solution, rest, rank, _ = np.linalg.lstsq(z, y, rcond=1e-9)
-        del solution
-        return float(y @ y - rest[0]) if rest.size and rank == z.shape[1] else 0.0
-
-    def designs(residual: Floats) -> Sequence[tuple[dict[str, float], Floats]]:
-        places = np.unique(np.linspace(0, n, COARSE + 1).astype(int))
-        scored = [
-            (gain(residual, int(i), int(j)), int(i), int(j))
-            for a, i in enumerate(places[:-1])
-            for j in places[a + 1 :]
-            if i > 0 and j - i >= 3
-        ]
-        best = max(scored, default=(0.0, n // 4, n // 2))
-        width = max(n // COARSE // 2, 1)
-        while True:
-            _, i, j = best
-            around = [
-                (gain(residual, a, b), a, b)
-                for a in {max(i - width, 1), i, i + width}
-                for b in {j - width, j, min(j + width, n)}
-                if b - a >= 3
-            ]
-            better = max(around, default=best)
-            if better[0] <= best[0]:
-                if width == 1:
-                    break
-                width = max(width // 2, 1)
-            else:
-                best = better
-        on, off = float(edges[best[1]]), float(edges[best[2]])
-        return [({"on_s": on, "off_s": off}, window(on, off))]
-
-    return Candidate("interference_step", designs, names, "uT", SWITCH_SEARCHED)

@@ -15,7 +15,7 @@ import numpy as np
 
 from surveyapp.core.sensors.rate.hand_held import TurnRows
 from surveyapp.diagnosis.action import Action, last_rows
-from surveyapp.diagnosis.case import Case
+from surveyapp.diagnosis.case import Case, OwnScale
 from surveyapp.diagnosis.subject import Record, Subject, case_of
 from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.arrays import Floats
@@ -59,6 +59,8 @@ class RateStop:
     field : ndarray, shape (3,), or None
         [T]
     label : str
+    rows : tuple of int, or None
+        First and last row of the log, last exclusive.
     """
 
     output: Floats
@@ -69,6 +71,7 @@ class RateStop:
     temperature_c: float | None = None
     field: Floats | None = None
     label: str = ""
+    rows: tuple[int, int] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,13 +185,14 @@ def rate_case(
     observed = np.concatenate([s.output for s in stops])
     labels = [f"{s.label or f'stop {k + 1}'}, gyro {a}" for k, s in enumerate(stops) for a in "xyz"]
     series, rests = columns["axis"], observed.size
-    sigma = None
+    sigma: Floats | None = None
+    scales: tuple[OwnScale, ...] = ()
     if turns:
         columns = _with_turns(columns, turns, start=stops[0].elapsed_s)
         observed = np.concatenate([observed, *(t.rows.error for t in turns)])
         labels += [f"{t.label}, {which} angle" for t in turns for which in ("first", "second")]
         series = np.append(series, np.full(2 * len(turns), np.nan))
-        sigma = _sigmas(columns, observed, rests)
+        sigma, scales = _sigmas(columns, observed, rests)
     record = Record(
         observed,
         columns,
@@ -203,7 +207,7 @@ def rate_case(
     case = case_of(rate_subject(turned=turned), record)
     told = np.arange(observed.size) < rests
     weights = np.where(told, 1.0 / rests, 0.0)
-    return replace(case, value_weights=weights, reported=told.astype(np.float64))
+    return replace(case, value_weights=weights, reported=told.astype(np.float64), own_scales=scales)
 
 
 def _stop_columns(stops: Sequence[RateStop]) -> dict[str, Floats]:
@@ -284,19 +288,20 @@ LEAST_DOF = 6
 """Degrees of freedom from which a standard deviation is good to a third."""
 
 
-def _sigma_about(values: Floats, designs: Sequence[Floats]) -> float:
-    """Standard deviation about the first of several models that leaves enough freedom."""
+def _sigma_about(values: Floats, designs: Sequence[Floats]) -> tuple[float, Floats]:
+    """Standard deviation about the first of several models that leaves enough, and that model."""
     for design in designs:
-        left = values.size - int(np.linalg.matrix_rank(design))
-        if left >= LEAST_DOF:
-            solution = np.linalg.lstsq(design, values, rcond=None)[0]
-            found = float(np.sqrt(np.sum((values - design @ solution) ** 2) / left))
-            if found > 0.0:
-                return found
-    return float(np.sqrt(np.mean(values**2))) or 1.0
+        u, s, _ = np.linalg.svd(design, full_matrices=False)
+        basis = u[:, s > 1e-9 * s[0]]
+        left = values.size - basis.shape[1]
+        rest = values - basis @ (basis.T @ values)
+        found = float(np.sqrt(rest @ rest / max(left, 1)))
+        if left >= LEAST_DOF and found > 0.0:
+            return found, np.asarray(basis)
+    return float(np.sqrt(np.mean(values**2))) or 1.0, np.zeros((values.size, 0))
 
 
-def _sigmas(columns: Columns, observed: Floats, rests: int) -> Floats:
+def _sigmas(columns: Columns, observed: Floats, rests: int) -> tuple[Floats, tuple[OwnScale, ...]]:
     """How well rests and turns are known against each other: each about its widest own model.
 
     Only their ratio matters; a model that lacks an effect would take its traces for noise.
@@ -309,8 +314,12 @@ def _sigmas(columns: Columns, observed: Floats, rests: int) -> Floats:
     rate = np.column_stack([turn[need.name] for need in GYRO_RATES])
     size = np.column_stack([turn[need.name] for need in GYRO_SIZES])
     pull = np.column_stack([turn[need.name] for need in GYRO_FORCES])
-    of_rests = _sigma_about(observed[:rests], [np.hstack([plain, force, ramp]), plain])
-    of_turns = _sigma_about(
+    of_rests, about_rests = _sigma_about(
+        observed[:rests], [np.hstack([plain, force, ramp]), np.hstack([plain, force]), plain]
+    )
+    of_turns, about_turns = _sigma_about(
         observed[rests:], [np.hstack([rate, size, pull]), np.hstack([rate, size]), rate]
     )
-    return np.where(np.arange(observed.size) < rests, of_rests, of_turns)
+    rows = np.arange(observed.size)
+    scales = (OwnScale(rows[:rests], about_rests), OwnScale(rows[rests:], about_turns))
+    return np.where(rows < rests, of_rests, of_turns), scales

@@ -14,6 +14,7 @@ from surveyapp.domain.project import ResultWarning
 
 LAYERS = (("STATIONS", 7), ("NAMES", 7), ("SIDES", 8), ("ELLIPSES", 1), ("GYRO", 5))
 """Layers with their colour numbers."""
+_CROSS_IN_CIRCLE = "34"
 _CORNERS = 48
 _SCALES = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000, 20_000, 50_000)
 
@@ -73,10 +74,12 @@ def _scale(survey: ExportedSurvey, size: float) -> int:
     return max((s for s in _SCALES if s * largest <= size / 20.0), default=1)
 
 
-def _head(extent: tuple[float, float, float, float]) -> list[Pair]:
+def _head(extent: tuple[float, float, float, float], mark: float) -> list[Pair]:
+    """Header and tables; points are drawn as crosses in circles of a size [m] of the drawing."""
     west, south, east, north = extent
     pairs: list[Pair] = [(0, "SECTION"), (2, "HEADER"), (9, "$ACADVER"), (1, "AC1009")]
     pairs += [(9, "$EXTMIN"), *_place(west, south, 0.0), (9, "$EXTMAX"), *_place(east, north, 0.0)]
+    pairs += [(9, "$PDMODE"), (70, _CROSS_IN_CIRCLE), (9, "$PDSIZE"), (40, f"{mark:.3f}")]
     pairs += [(0, "ENDSEC"), (0, "SECTION"), (2, "TABLES")]
     pairs += [(0, "TABLE"), (2, "LTYPE"), (70, "1"), (0, "LTYPE"), (2, "CONTINUOUS"), (70, "0")]
     pairs += [(3, "Solid line"), (72, "65"), (73, "0"), (40, "0.0"), (0, "ENDTAB")]
@@ -95,7 +98,7 @@ def dxf_text(survey: ExportedSurvey) -> Written:
     size = max(east - west, north - south, 1.0)
     height, scale = size / 100.0, _scale(survey, size)
     places = survey.place()
-    pairs = _head(extent)
+    pairs = _head(extent, 0.6 * height)
     for point in survey.points:
         pairs += _entity("POINT", "STATIONS", _place(point.e, point.n, point.h))
         at = (point.e + 0.6 * height, point.n + 0.6 * height)

@@ -10,6 +10,7 @@ from typing import Final, cast
 from surveyapp.domain.sensor_entry import SENSOR_KINDS, SensorKind, SensorLogEntry
 from surveyapp.domain.sensor_log import NUMBER_COLUMNS, TEXT_COLUMNS
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.io.adopted_effects import read_effect
 from surveyapp.io.files import shown
 from surveyapp.io.sensor_logs.reading import LogRequest
 from surveyapp.io.sensor_logs.units import UNITS
@@ -93,8 +94,8 @@ def _entry(table: Table) -> SensorLogEntry:
         latitude_deg=table.number("latitude_deg", low=-90.0, high=90.0),
         calibrated_on=table.date("calibrated_on"),
         options={key: table.get(key) for key in OPTIONS if key in table},
+        effects=tuple(read_effect(one) for one in table.tables("effect")),
     )
-    table.get("effect")
     table.warn_unknown()
     return entry
 

@@ -70,11 +70,38 @@ def _rate_columns(generator: np.random.Generator) -> dict[str, Floats]:
     }
 
 
+def _compass_columns(generator: np.random.Generator) -> dict[str, Floats]:
+    """Three rows a time, one for each axis of the magnetometer."""
+    return {
+        "axis": np.asarray(np.arange(SIZE) % 3, dtype=np.float64),
+        "time_s": np.asarray(np.arange(SIZE) // 3, dtype=np.float64),
+        "row": np.asarray(np.arange(SIZE) // 3 + 1, dtype=np.float64),
+        "temperature_c": generator.uniform(10.0, 30.0, SIZE),
+        **{f"field_{a}": generator.uniform(-50.0, 50.0, SIZE) for a in "xyz"},
+        **{f"level_{a}": generator.uniform(-1.0, 1.0, SIZE) for a in "xyz"},
+        **{f"place_{a}": generator.uniform(-1.0, 1.0, SIZE) for a in "xyz"},
+    }
+
+
+def _tilt_columns(generator: np.random.Generator) -> dict[str, Floats]:
+    """Two rows a time, one for each axis of the tilt sensor."""
+    return {
+        "axis": np.asarray(np.arange(SIZE) % 2, dtype=np.float64),
+        "time_s": np.asarray(20.0 * (np.arange(SIZE) // 2), dtype=np.float64),
+        "row": np.asarray(np.arange(SIZE) // 2 + 1, dtype=np.float64),
+        "temperature_c": generator.uniform(10.0, 30.0, SIZE),
+        "reference": generator.uniform(-600.0, 600.0, SIZE),
+        "other_reference": generator.uniform(-600.0, 600.0, SIZE),
+    }
+
+
 _MAKERS: dict[str, Callable[[np.random.Generator], dict[str, Floats]]] = {
     "reversal_run": _run_columns,
     "campaign": _campaign_columns,
     "traverse": _traverse_columns,
     "rate": _rate_columns,
+    "compass": _compass_columns,
+    "tilt": _tilt_columns,
 }
 COLUMNS = {subject: tuple(make(np.random.default_rng(0))) for subject, make in _MAKERS.items()}
 """Columns that a project has, by subject; subjects of sensors have those of their log."""

@@ -66,6 +66,29 @@ def calibrate_fog_station(
     ------
     SurveyError
     """
+    turns, warnings = turned_sets(log, problems)
+    sets = [_both_ways(log, turned, pass_id, set_id) for (pass_id, set_id), turned in turns.items()]
+    found = combine(sets, rule=rule, relative_rate_sigma=relative_rate_sigma or 0.0)
+    if found.scale is not None and abs(found.scale) > NO_SCALE_ERROR:
+        raise SurveyError(_against_rule(log, rule))
+    return _calibration(log, sets, found, rule, relative_rate_sigma, warnings)
+
+
+def turned_sets(
+    log: SensorLog, problems: list[Problem]
+) -> tuple[dict[tuple[int, int], list[Turned]], list[ResultWarning]]:
+    """Whole turns of each pass and set, and what is to be said of the table's sense.
+
+    Parameters
+    ----------
+    log : SensorLog
+    problems : list of Problem
+        Found before; raised together with those of the log.
+
+    Raises
+    ------
+    SurveyError
+    """
     motion = motion_of(log)
     if isinstance(motion, Problem):
         raise SurveyError([*problems, motion])
@@ -75,22 +98,18 @@ def calibrate_fog_station(
         groups.setdefault(key, []).append(stretch)
     if "set" not in log.columns:
         groups = _paired(groups)
-    sets = []
-    values = log.columns[GYRO]
+    found = {}
     if not groups:
         problems = [*problems, *usable([], where=log.path)[1]]
     for (pass_id, set_id), stretches in sorted(groups.items()):
         where = f"{log.path}, pass {pass_id}, set {set_id}"
         turned, wrong = usable(stretches, where=where)
-        problems = [*problems, *wrong, *_saturation(turned, values, where)]
+        problems = [*problems, *wrong, *_saturation(turned, log.columns[GYRO], where)]
         if turned:
-            sets.append(_both_ways(log, turned, pass_id, set_id))
+            found[(pass_id, set_id)] = turned
     if problems:
         raise SurveyError(_told_once(problems))
-    found = combine(sets, rule=rule, relative_rate_sigma=relative_rate_sigma or 0.0)
-    if found.scale is not None and abs(found.scale) > NO_SCALE_ERROR:
-        raise SurveyError(_against_rule(log, rule))
-    return _calibration(log, sets, found, rule, relative_rate_sigma, sense_warnings(motion))
+    return found, sense_warnings(motion)
 
 
 def _against_rule(log: SensorLog, rule: Rule) -> Problem:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -87,6 +87,18 @@ def _parts(level: str, vector: Floats) -> tuple[Floats, Floats]:
         out[1, 0] = vector[6] * vector[4]
         out[2, 0], out[2, 1] = vector[7] * vector[5], vector[8] * vector[5]
     return bias, out
+
+
+def shifted_forces(model: ForceModel) -> list[ForceModel]:
+    """The model with each parameter off by its standard deviation, in turn."""
+    found = []
+    for k, sigma in enumerate(np.sqrt(np.maximum(np.diag(model.covariance), 0.0))):
+        vector = model.vector.copy()
+        vector[k] += sigma
+        bias, out = _parts(model.level, vector)
+        inverse = np.asarray(np.linalg.inv(out), dtype=np.float64)
+        found.append(replace(model, bias=bias, matrix=inverse, vector=vector))
+    return found
 
 
 def fit_forces(
@@ -197,12 +209,15 @@ class Turn:
     before, after : ndarray, shape (3,)
         Directions of up in the body at the two stops.
     interval_s : float
+    leaves : int
+        Number of the stop before it, from 0.
     """
 
     rates: Floats
     before: Floats
     after: Floats
     interval_s: float
+    leaves: int = 0
 
     def carried(self, inverse: Floats) -> Floats:
         """Direction of up after the turn, by gyros whose true rate is ``inverse`` output."""
@@ -338,6 +353,36 @@ def fit_rates(turns: Sequence[Turn]) -> RateModel:
         _rms(rest),
         dof,
     )
+
+
+def with_frame(
+    gyro: RateModel, turns: Sequence[Turn], shifted: Sequence[Sequence[Turn]], covariance: Floats
+) -> RateModel:
+    """The gyros' model with the uncertainty of the accelerometers, whose triad is their frame.
+
+    Parameters
+    ----------
+    gyro : RateModel
+        From the turns.
+    turns : sequence of Turn
+    shifted : sequence of sequence of Turn, length p
+        The same turns with one parameter of the accelerometers off by its standard deviation.
+    covariance : ndarray, shape (p, p)
+        Of these parameters in units of their standard deviations.
+    """
+    rows = [turn_rows(turn, gyro.matrix) for turn in turns]
+    times = np.repeat([t.rates.shape[0] * t.interval_s for t in turns], 2)
+    jacobian = times[:, None] * np.concatenate([r.rate.reshape(2, 9) for r in rows])
+    base = np.concatenate([r.error for r in rows])
+    moved = np.column_stack(
+        [
+            times * (np.concatenate([turn_rows(t, gyro.matrix).error for t in one]) - base)
+            for one in shifted
+        ]
+    )
+    # change = - J+ error, d(output) = -output change
+    slope = np.kron(gyro.output, np.eye(3)) @ np.linalg.lstsq(jacobian, moved, rcond=1e-10)[0]
+    return replace(gyro, covariance=gyro.covariance + slope @ covariance @ slope.T)
 
 
 def _rms(errors: Floats) -> float:

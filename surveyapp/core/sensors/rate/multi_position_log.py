@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -20,6 +19,16 @@ from surveyapp.core.sensors.rate.hand_held import (
     fit_forces,
     fit_rates,
     left_out,
+    shifted_forces,
+    with_frame,
+)
+from surveyapp.core.sensors.rate.held_turns import (
+    ACCELEROMETERS,
+    GYROS,
+    rest_rates,
+    turns_between,
+    ups_of,
+    with_g_sensitivity,
 )
 from surveyapp.core.sensors.rate.parameters import DEG_H, PPM
 from surveyapp.core.sensors.rate.still import (
@@ -31,6 +40,7 @@ from surveyapp.core.sensors.rate.still import (
     runs_of,
     statistic,
 )
+from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp.domain.calibration import (
     Calibration,
     CalibrationModel,
@@ -44,10 +54,7 @@ from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2, SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
-from surveyapp_models.constants import EARTH_RATE
 
-GYROS = ("gyr_x_rad_s", "gyr_y_rad_s", "gyr_z_rad_s")
-ACCELEROMETERS = ("acc_x_m_s2", "acc_y_m_s2", "acc_z_m_s2")
 NEEDED = (*GYROS, *ACCELEROMETERS)
 LEAST_STOP_S = 1.0
 """A shorter stop does not average the noise of a hand."""
@@ -55,10 +62,6 @@ LEAST_STOPS = 5
 """Stops below which no model is determined: one more than bias and scale need."""
 LEAST_TURNS = 6
 """Turns below which the nine elements of the gyros are not determined."""
-LEAST_FOR_FORCES = 8
-"""Stops from which the sensitivity to gravity is carried through the turns: twice its elements."""
-WORST_CONDITION = 1e3
-"""Of the attitudes of the stops, for the same [forces in m/s2 beside 1]."""
 GUARD_S = 0.1
 FEW_DOF = 3
 
@@ -123,9 +126,9 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
     models = _force_models(forces, options.gravity)
     held = {m.level: left_out(forces, level=m.level, gravity=options.gravity) for m in models}
     chosen = _chosen(models, held)
-    turns = turns_between(log, stops, chosen, options)
+    turns = turns_between(log, stops, chosen, options.latitude)
     bias, sigma_bias = _bias(stops, chosen, options)
-    gyro = fit_rates(turns) if len(turns) >= LEAST_TURNS else None
+    gyro = _fitted(stops, chosen, turns) if len(turns) >= LEAST_TURNS else None
     parameters = (
         *_force_parameters(chosen),
         *_rate_parameters(gyro, bias, sigma_bias),
@@ -145,7 +148,11 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
         models=tuple(
             CalibrationModel(m.level, m.rms, held[m.level], m.level == chosen.level) for m in models
         ),
-        warnings=(*log.warnings, *_warnings(log, chosen, gyro, options)),
+        warnings=(
+            *log.warnings,
+            *_warnings(log, chosen, gyro, options),
+            *_left_out(len(stops) - 1 - len(turns)),
+        ),
         met=not missing,
         n=log.size,
         sha256=log.sha256,
@@ -159,6 +166,26 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
     )
 
 
+def _fitted(stops: Sequence[HeldStop], model: ForceModel, turns: Sequence[Turn]) -> RateModel:
+    """The gyros from their turns, with the accelerometers' own uncertainty."""
+    gyro = fit_rates(turns)
+    if model.dof < 1:
+        return gyro
+    forces = np.array([s.force for s in stops])
+    shifted = []
+    for other in shifted_forces(model):
+        ups = other.corrected(forces)
+        ups = ups / np.linalg.norm(ups, axis=1)[:, None]
+        shifted.append([replace(t, before=ups[t.leaves], after=ups[t.leaves + 1]) for t in turns])
+    spread = np.sqrt(np.maximum(np.diag(model.covariance), 1e-300))
+    return with_frame(gyro, turns, shifted, model.covariance / np.outer(spread, spread))
+
+
+def widened(dof: int) -> float:
+    """Factor on a sigma of few degrees of freedom that makes 1.96 sigma the 95 % interval."""
+    return student_quantile(0.975, max(dof, 1)) / student_quantile(0.975, 1e6)
+
+
 def _directions(gyro: RateModel, turns: Sequence[Turn], pulled: Sequence[Turn]) -> dict[str, Any]:
     """How far the carried direction of gravity misses the felt one, by the model of the gyros."""
     return {
@@ -168,28 +195,6 @@ def _directions(gyro: RateModel, turns: Sequence[Turn], pulled: Sequence[Turn]) 
         "of": "angle between carried and felt direction after a turn, rms",
         "turns": len(turns),
     }
-
-
-def with_g_sensitivity(
-    log: SensorLog, stops: Sequence[HeldStop], model: ForceModel, turns: Sequence[Turn]
-) -> list[Turn]:
-    """The turns with the sensitivity to gravity that the rests show carried through them.
-
-    Empty where the rests do not determine it: each gyro has a bias and three elements.
-    """
-    rests = model.corrected(np.array([s.force for s in stops]))
-    design = np.column_stack([np.ones(len(stops)), rests])
-    if len(stops) < LEAST_FOR_FORCES or float(np.linalg.cond(design)) > WORST_CONDITION:
-        return []
-    means = np.array([s.rate for s in stops])
-    pull = np.linalg.lstsq(design, means, rcond=None)[0][1:]
-    force = np.column_stack([log.columns[c] for c in ACCELEROMETERS])
-    found = []
-    for k, turn in enumerate(turns):
-        inside = model.corrected(force[stops[k].stop : stops[k + 1].start])
-        rest = 0.5 * (rests[k] + rests[k + 1])
-        found.append(replace(turn, rates=turn.rates - (inside - rest) @ pull))
-    return found
 
 
 def force_model(forces: Floats, options: MultiPositionOptions) -> ForceModel:
@@ -222,52 +227,17 @@ def _chosen(models: Sequence[ForceModel], held: dict[str, float | None]) -> Forc
     return min(known, key=lambda m: held[m.level] or 0.0)
 
 
-def turns_between(
-    log: SensorLog,
-    stops: Sequence[HeldStop],
-    model: ForceModel,
-    options: MultiPositionOptions,
-) -> list[Turn]:
-    """Turns between the stops, their rates less the mean of the two rests about them.
-
-    The vertical earth rate turns nothing that the accelerometers feel and stays in the turn.
-    """
-    rate = np.column_stack([log.columns[c] for c in GYROS])
-    ups = _ups(stops, model)
-    rests = rest_rates(stops, ups, options.latitude)
-    interval = 1.0 / (log.rate_hz or 100.0)
-    turns = []
-    for k, (one, other) in enumerate(pairwise(stops)):
-        inside = slice(one.stop, other.start)
-        local = 0.5 * (rests[k] + rests[k + 1])  # a slow bias as the two rests show it
-        turns.append(Turn(rate[inside] - local, ups[k], ups[k + 1], interval))
-    return turns
-
-
-def _ups(stops: Sequence[HeldStop], model: ForceModel) -> Floats:
-    """Direction of up in the body at each stop, shape (n, 3)."""
-    ups = np.array([model.corrected(s.force) for s in stops])
-    return np.asarray(ups / np.linalg.norm(ups, axis=1)[:, None])
-
-
 def _bias(
     stops: Sequence[HeldStop], model: ForceModel, options: MultiPositionOptions
 ) -> tuple[Floats, Floats]:
     """Bias of each gyro and its sigma from the scatter of the stops [rad/s]."""
-    means = rest_rates(stops, _ups(stops, model), options.latitude)
-    return means.mean(axis=0), means.std(axis=0, ddof=1) / math.sqrt(len(stops))
-
-
-def rest_rates(stops: Sequence[HeldStop], ups: Floats, latitude: float | None) -> Floats:
-    """Mean rates at the stops, the vertical earth rate taken out where the latitude is known."""
-    means = np.array([s.rate for s in stops])
-    if latitude is None:
-        return means
-    return np.asarray(means - EARTH_RATE * math.sin(latitude) * ups)
+    means = rest_rates(stops, ups_of(stops, model), options.latitude)
+    sigma = means.std(axis=0, ddof=1) / math.sqrt(len(stops))
+    return means.mean(axis=0), sigma * widened(len(stops) - 1)
 
 
 def _force_parameters(model: ForceModel) -> list[SensorParameter]:
-    spread = np.sqrt(np.maximum(np.diag(model.covariance), 0.0))
+    spread = np.sqrt(np.maximum(np.diag(model.covariance), 0.0)) * widened(model.dof)
     known = model.dof > 0
     vector = model.vector
     found = []
@@ -315,7 +285,7 @@ def _rate_parameters(
 
 
 def _spread(gyro: RateModel, index: int) -> float:
-    return math.sqrt(max(float(gyro.covariance[index, index]), 0.0))
+    return math.sqrt(max(float(gyro.covariance[index, index]), 0.0)) * widened(gyro.dof)
 
 
 def _stop_dict(log: SensorLog, stop: HeldStop, model: ForceModel) -> dict[str, Any]:
@@ -327,6 +297,13 @@ def _stop_dict(log: SensorLog, stop: HeldStop, model: ForceModel) -> dict[str, A
         "rate_deg_s": np.degrees(stop.rate).tolist(),
         "gravity_m_s2": size,
     }
+
+
+def _left_out(count: int) -> list[ResultWarning]:
+    if not count:
+        return []
+    text = f"{count} of the turns held a gap or a saturated gyro and took no part"
+    return [ResultWarning("turns_left_out", text)]
 
 
 def _warnings(

@@ -50,7 +50,7 @@ class Shape:
     last : dict
         Last column of each kind that nearly all its records fill.
     decimals : dict
-        Decimals of nearly all values of each kind.
+        Decimals of nearly all values of each column of each kind.
     right : bool
         Whether values stand at the right end of their columns.
     dotted : bool
@@ -64,7 +64,7 @@ class Shape:
     value: int
     lengths: dict[str, int] = field(default_factory=dict)
     last: dict[str, int] = field(default_factory=dict)
-    decimals: dict[str, int] = field(default_factory=dict)
+    decimals: dict[tuple[str, int], int] = field(default_factory=dict)
     right: bool = False
     dotted: bool = False
     stations: Counter[str] = field(default_factory=Counter)
@@ -118,7 +118,7 @@ class Shape:
             raise RecordError(f"{what} has lost the digit before its point: {text}")
         if cell[0] == " " and not self.right:
             raise RecordError(f"{what} does not begin in its column: {text}")
-        places, usual = _decimals(text), self.decimals.get(kind)
+        places, usual = _decimals(text), self.decimals.get((kind, place))
         fills = len(text) >= self.value
         if usual is not None and (places > usual if fills else places != usual):
             raise RecordError(f"{what} has {places} decimals instead of {usual}: {text}")
@@ -208,21 +208,20 @@ class _Seen:
 
     lengths: dict[str, Counter[int]] = field(default_factory=dict)
     last: dict[str, Counter[int]] = field(default_factory=dict)
-    decimals: dict[str, Counter[int]] = field(default_factory=dict)
+    decimals: dict[tuple[str, int], Counter[int]] = field(default_factory=dict)
     starts: Counter[bool] = field(default_factory=Counter)
     dotted: Counter[bool] = field(default_factory=Counter)
 
     def take(self, shape: Shape, kind: str, line: str) -> None:
         """Count a record."""
         self.lengths.setdefault(kind, Counter())[len(line)] += 1
-        places = self.decimals.setdefault(kind, Counter())
         last = -1
         for place, cell in enumerate(shape.fields(kind, line)):
             text = cell.strip()
             if text:
                 last = place
                 if len(text) < shape.value:
-                    places[_decimals(text)] += 1
+                    self.decimals.setdefault((kind, place), Counter())[_decimals(text)] += 1
                     self.starts[cell[0] == " "] += 1
                     bare = text.lstrip("+-")
                     if bare.startswith(("0.", ".")):
@@ -243,12 +242,12 @@ class _Seen:
                 shape.lengths[kind] = length
             if last is not None:
                 shape.last[kind] = last
-            own = self.decimals[kind]
+        for column, own in self.decimals.items():
             usual = _usual(own)
             if usual is None and every is not None and own.total() < _LEAST:
                 usual = every if 2 * own[every] > own.total() else None
             if usual is not None:
-                shape.decimals[kind] = usual
+                shape.decimals[column] = usual
         shape.dotted = self.dotted[True] > self.dotted[False]
         shape.right = self.starts[True] > self.starts[False]
 

@@ -1,0 +1,68 @@
+"""The loop on the other logs of rate sensors: a total station's gyro, and lines in the samples."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from surveyapp.diagnosis.rate_lines import Stretch, judge_lines
+from tests.cli.command import run as surveyapp
+
+
+def simulated(folder: Path, *arguments: str) -> Path:
+    assert surveyapp("simulate", *arguments[:1], folder, *arguments[1:]).code == 0
+    return folder
+
+
+def test_a_wrong_set_of_a_total_stations_gyro_is_a_gross_error(tmp_path: Path) -> None:
+    """3 deg/h in the clockwise turns of set 3, in both passes: two rows of 0.00083 deg/s."""
+    folder = simulated(tmp_path / "fog", "fog-station", "--effect", "gross_error=3", "--seed", "5")
+    found = surveyapp("diagnose", folder, "--sensor", "fog-station", "--json").json
+    assert [item["effect"] for item in found["adopted"]] == ["gross_error"]
+    sizes = [c["value"] for c in found["adopted"][0]["coefficients"]]
+    assert sizes == pytest.approx([3.0 / 3600.0] * 2, rel=0.1)
+    assert found["after"]["loo_rms"] < 0.5 * found["before"]["loo_rms"]
+    clean = simulated(tmp_path / "clean", "fog-station", "--seed", "3")
+    assert surveyapp("diagnose", clean, "--sensor", "fog-station", "--json").json["adopted"] == []
+
+
+def test_a_line_in_the_samples_is_named_and_helps_on_the_blocks_left_out(tmp_path: Path) -> None:
+    """1.5 deg/h at 2.48 Hz on gyro x: frequency within three of its sigmas."""
+    folder = simulated(
+        tmp_path / "line", "rate", "--effect", "interference_line=1.5", "--seed", "5"
+    )
+    found = surveyapp("diagnose", folder, "--sensor", "six-position", "--json").json
+    assert [item["effect"] for item in found["adopted"]] == ["interference_line"]
+    line = found["lines"][0]
+    assert abs(line["frequency"] - 2.48) < 4.0 * line["sigma_frequency"]
+    proof = found["interference"][0]
+    assert proof["gyro"] == "x"
+    assert proof["held_out"]["after"] < proof["held_out"]["before"]
+
+
+def test_lines_of_noise_are_false_alarms_at_the_stated_rate() -> None:
+    """60 records of two parts whose sampling begins anew: 8 and more at 5 % have p = .01.
+
+    The earth rate comes round once a turn and is no line.
+    """
+    rng = np.random.default_rng(2)
+    time = np.concatenate([np.arange(1500) * 0.1, 150.05 + np.arange(1500) * 0.1])
+    stretches = [Stretch(0, 1500, math.radians(20.0)), Stretch(1500, 3000, math.radians(20.0))]
+    earth = 5.0 * np.cos(math.radians(20.0) * time)
+    alarms = sum(
+        bool(judge_lines(time, [earth + rng.normal(size=3000)], stretches, ("x",)).lines)
+        for _ in range(60)
+    )
+    assert alarms <= 7
+
+
+def test_without_a_choice_the_sensor_logs_are_listed(tmp_path: Path) -> None:
+    folder = simulated(tmp_path / "unit", "rate", "--programme", "multi-position")
+    found = surveyapp("diagnose", folder, "--json").json
+    assert found["subjects"] == [
+        {"option": "--sensor", "id": "multi-position", "observations": None}
+    ]
+    assert "--sensor" in surveyapp("diagnose", folder).out
