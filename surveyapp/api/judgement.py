@@ -95,6 +95,7 @@ def diagnose(
     effects: Folder | None = None,
     adopt: bool = False,
     log: bool = True,
+    save_shape: Folder | None = None,
 ) -> Diagnosed:
     """Find which effect the model lacks, how sure that is, and prove it.
 
@@ -116,6 +117,8 @@ def diagnose(
         Write the effects that the engine names into the project; the next ``orient`` uses them.
     log : bool
         Append the diagnosis to the project's ledger where it can be written.
+    save_shape : path or None
+        Write a course of north that has no name into this file, as an effect for ``effects``.
 
     Raises
     ------
@@ -140,6 +143,7 @@ def diagnose(
         software=SOFTWARE,
         log=log,
         networks=found.network,
+        save_shape=None if save_shape is None else Path(save_shape),
     )
 
 

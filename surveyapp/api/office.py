@@ -247,12 +247,30 @@ def _write_document(
     return ReportResult(str(output), written.pages, sections, digest, written.missing)
 
 
-def export_zip(folder: Folder, output: Folder) -> ExportResult:
-    """Write a project as one zip file for hand-over: same project, same bytes."""
-    from surveyapp.io.exporters.archive import archive
+def export_zip(folder: Folder, output: Folder, *, allow_outside: bool = False) -> ExportResult:
+    """Write a project as one zip file for hand-over: same project, same bytes.
 
-    data, count = archive(Path(folder))
-    return _write_export("zip", data, Path(output), count)
+    Parameters
+    ----------
+    folder, output : path
+    allow_outside : bool
+        Whether sensor logs that lie outside of the folder, pinned by their sha256, are packed too.
+
+    Raises
+    ------
+    SurveyError
+        If the folder is no project folder, or a file cannot be read or is another than the pinned.
+    """
+    from surveyapp.domain.project import ResultWarning
+    from surveyapp.io.exporters.archive import archive, logs_outside
+
+    data, count = archive(Path(folder), allow_outside=allow_outside)
+    made = _write_export("zip", data, Path(output), count)
+    left = () if allow_outside else logs_outside(Path(folder))
+    if not left:
+        return made
+    text = f"{len(left)} sensor logs outside of the folder are not packed: --allow-outside does"
+    return replace(made, warnings=(ResultWarning("logs_outside", text),))
 
 
 def export_csv(source: Source, output: Folder, *, table: str = "lines") -> ExportResult:

@@ -45,6 +45,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "which session on determinations only confirm",
     )
     parser.add_argument("--effects", metavar="FILE.py", help="your own effects")
+    parser.add_argument(
+        "--save-shape",
+        metavar="FILE.py",
+        help="write a course of north that has no name as an effect for --effects",
+    )
     parser.add_argument("--adopt", action="store_true", help="write named effects to the project")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
@@ -69,6 +74,7 @@ def run(options: argparse.Namespace) -> int:
         confirm=options.confirm,
         effects=options.effects,
         adopt=options.adopt,
+        save_shape=options.save_shape,
     )
     if options.json:
         print_json(found.to_dict())
@@ -90,8 +96,8 @@ def _instrument(options: argparse.Namespace) -> int:
     from surveyapp import api
     from surveyapp.errors import Problem, SurveyError
 
-    others = ("session", "campaign", "traverse", "confirm", "effects")
-    named = [f"--{name}" for name in others if getattr(options, name) is not None]
+    others = ("session", "campaign", "traverse", "confirm", "effects", "save_shape")
+    named = [f"--{n.replace('_', '-')}" for n in others if getattr(options, n) is not None]
     named += ["--adopt"] if options.adopt else []
     if named:
         found = f"--instrument and {', '.join(named)}"

@@ -24,7 +24,7 @@ class Format:
 def _zip(options: argparse.Namespace) -> ExportResult:
     from surveyapp import api
 
-    return api.export_zip(options.folder, options.file)
+    return api.export_zip(options.folder, options.file, allow_outside=options.allow_outside)
 
 
 def _csv(options: argparse.Namespace) -> ExportResult:
@@ -74,6 +74,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folder", metavar="DIR", help="project folder")
     parser.add_argument("file", metavar="FILE", help="file to be written")
     parser.add_argument("--table", choices=TABLES, default="lines", help="csv: which table")
+    parser.add_argument(
+        "--allow-outside", action="store_true", help="zip: sensor logs outside the folder too"
+    )
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 

@@ -11,7 +11,7 @@ from surveyapp.diagnosis.ambiguity import ambiguities
 from surveyapp.diagnosis.battery import run_battery
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.checks import check_input
-from surveyapp.diagnosis.compare import Level
+from surveyapp.diagnosis.compare import MARGIN, Level, best_with, spans
 from surveyapp.diagnosis.datum import datum_with_rivals
 from surveyapp.diagnosis.events import event_notes
 from surveyapp.diagnosis.fits import Fit, unit_variance
@@ -270,6 +270,7 @@ def _candidates(problem: Case, found: Search) -> tuple[CandidateResult, ...]:
             verdict = "not_separable"
         elif family is not None and family <= 0.05:
             verdict = "candidate"
+            reason = _why_no_rival(found, level, identity, delta)
         else:
             verdict = "not_significant"
         result.append(CandidateResult(identity, verdict, p, family, delta, candidate.kind, reason))
@@ -283,6 +284,20 @@ def _candidates(problem: Case, found: Search) -> tuple[CandidateResult, ...]:
             kind = "not_significant"
         result.append(CandidateResult(identity, kind, None, None, delta, "noise"))
     return tuple(result)
+
+
+def _why_no_rival(found: Search, level: Level | None, identity: str, delta: float | None) -> str:
+    """Why a candidate close behind in BIC is none of the rivals beside what was named."""
+    if not found.adopted or level is None or delta is None or delta >= MARGIN:
+        return ""
+    fit = best_with(level, identity)
+    if fit is None:
+        return ""
+    if spans(fit, found.best) or set(found.adopted) <= fit.key:
+        return "contains what was named, and explains no more"
+    if fit.score - fit.bic > found.best.score - found.best.bic:
+        return "its search is paid for by how little of it explains the record"
+    return ""
 
 
 def _competing_level(found: Search, identity: str) -> Level | None:

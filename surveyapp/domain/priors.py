@@ -73,8 +73,9 @@ DEFAULT_SHARES: Mapping[str, float] = MappingProxyType(
     }
 )
 """Prior share of every unit; sum 1."""
-DEFAULT_SIZES = (0.33, 0.28, 0.36, 0.04)
-"""Shares of ``AMPLITUDES``."""
+_SIZES = (0.33, 0.28, 0.36, 0.04)
+DEFAULT_SIZES = tuple(share / sum(_SIZES) for share in _SIZES)
+"""Shares of ``AMPLITUDES`` as learned, rounded; sum 1."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,12 +92,17 @@ class Priors:
         Where they come from, for people.
     sessions : int
         Determinations that they were learned from; 0 = the defaults.
+    scatter : float or None
+        Standard deviation of the constant within the campaigns of the archive beside the stated
+        sigmas [rad], whatever its causes; None = nobody knows. It serves where there are too few
+        determinations to predict from.
     """
 
     shares: Mapping[str, float] = field(default_factory=lambda: DEFAULT_SHARES)
     sizes: tuple[float, ...] = DEFAULT_SIZES
     origin: str = "defaults of the program, learned from simulated campaigns"
     sessions: int = 0
+    scatter: float | None = None
 
     def __post_init__(self) -> None:
         unknown = set(self.shares) - set(UNITS)

@@ -19,16 +19,18 @@ from surveyapp.io.outputs import write_output
 from surveyapp.io.project_files import ProjectFiles
 from surveyapp.io.tables import Table
 from surveyapp.io.tomltext import toml_value
+from surveyapp_models.angles import ARCSEC
 
 FORMAT: Final = 1
 KIND: Final = "priors of the instrument constant"
+MOST_SCATTER: Final = 3600.0
 TOLERANCE: Final = 0.01
 """By which shares written by hand may miss a sum of 1."""
 
 
 def priors_text(priors: Priors, *, instrument: str, serial: str, software: str) -> str:
     """The file as text."""
-    head = {
+    head: dict[str, object] = {
         "format": FORMAT,
         "kind": KIND,
         "instrument": instrument,
@@ -37,6 +39,8 @@ def priors_text(priors: Priors, *, instrument: str, serial: str, software: str) 
         "sessions": priors.sessions,
         "software": software,
     }
+    if priors.scatter is not None:
+        head["scatter_arcsec"] = round(priors.scatter / ARCSEC, 3)
     lines = [f"{key} = {toml_value(value)}" for key, value in head.items()]
     lines += ["", "[shares]  # of campaigns that each cause explains; sum 1"]
     lines += [f"{unit} = {priors.share(unit):.5f}" for unit in UNITS]
@@ -80,6 +84,7 @@ def parse_priors(data: bytes, where: str) -> Priors:
     sizes = _shares(raw.get("sizes"), names, f"{where}, [sizes]", problems)
     if not problems and not shares[BASE] > 0.0:
         problems.append(Problem("the base model has no share", where, "0", "above 0"))
+    scatter = _scatter(raw.get("scatter_arcsec"), where, problems)
     if problems:
         raise SurveyError(problems)
     sessions = raw.get("sessions")
@@ -88,7 +93,22 @@ def parse_priors(data: bytes, where: str) -> Priors:
         tuple(sizes[name] for name in names),
         str(raw.get("origin", "")) or where,
         sessions if isinstance(sessions, int) else 0,
+        scatter,
     )
+
+
+def _scatter(raw: Any, where: str, problems: list[Problem]) -> float | None:
+    """Scatter of the constant [rad], None where the file does not tell it."""
+    if raw is None:
+        return None
+    number = isinstance(raw, int | float) and not isinstance(raw, bool)
+    if not number or not 0.0 <= float(raw) <= MOST_SCATTER:
+        expected = f"0 to {MOST_SCATTER:g} arc-seconds"
+        problems.append(
+            Problem("this is no scatter", f"{where}, scatter_arcsec", str(raw), expected)
+        )
+        return None
+    return float(raw) * ARCSEC
 
 
 def _shares(

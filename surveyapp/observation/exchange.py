@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import shlex
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
@@ -132,8 +133,23 @@ def told_options(text: str) -> Told:
     )
 
 
-def bring(entry: Entry, folder: str, options: str, *, preview: bool) -> ImportResult:
+def bring(
+    entry: Entry,
+    folder: str,
+    options: str,
+    *,
+    preview: bool,
+    progress: Callable[[float], None] | None = None,
+) -> ImportResult:
     """Preview a field file, or take it into the project.
+
+    Parameters
+    ----------
+    entry : Entry
+    folder, options : str
+    preview : bool
+    progress : callable or None
+        Told which part of the file has been read, 0 to 1.
 
     Raises
     ------
@@ -155,6 +171,7 @@ def bring(entry: Entry, folder: str, options: str, *, preview: bool) -> ImportRe
         skip_damaged=told.skip_damaged,
         lines=told.lines,
         preview=preview,
+        progress=progress,
     )
 
 
@@ -187,6 +204,7 @@ def hand_over(form: str, folder: str, path: str) -> ExportResult:
         raise SurveyError(
             Problem(said("a file of this name exists"), path, "", said("a name that is free"))
         )
+    others: dict[str, Callable[[str, str], ExportResult]]
     others = {"gkf": api.export_gkf, "csv": api.export_csv, "zip": api.export_zip}
     if form in others:
         return others[form](folder, path)

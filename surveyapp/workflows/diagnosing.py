@@ -21,6 +21,7 @@ from surveyapp.diagnosis.engine import diagnose as run_engine
 from surveyapp.diagnosis.plain_words import words_of
 from surveyapp.diagnosis.result import Diagnosis
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.outputs import write_output
 from surveyapp.workflows.adopting import (
     NotWritten,
     adopted_before,
@@ -29,6 +30,7 @@ from surveyapp.workflows.adopting import (
     tables_to_adopt,
 )
 from surveyapp.workflows.choosing import Diagnosable, Networks, Request, choose
+from surveyapp.workflows.saving_shape import shape_text
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +84,7 @@ def diagnose_project(
     log: bool = True,
     now: datetime | None = None,
     networks: Networks | None = None,
+    save_shape: Path | None = None,
 ) -> Diagnosed:
     """Diagnose, log, and adopt where asked.
 
@@ -101,6 +104,8 @@ def diagnose_project(
         Moment of the adoption; the wall clock if absent.
     networks : callable, optional
         Networks of the traverses by name; needed to diagnose one.
+    save_shape : Path, optional
+        Where an unnamed shape of a run is saved as an effect of the user's own.
 
     Raises
     ------
@@ -110,13 +115,15 @@ def diagnose_project(
     chosen = choose(orientation, request, networks)
     problem = chosen.problem
     if problem is None:
-        if adopt:
+        if adopt or save_shape is not None:
             raise SurveyError(_no_one_subject(chosen.subjects))
         nothing = () if chosen.subjects else (NO_SUBJECTS,)
         return Diagnosed(None, chosen.subjects, words=nothing)
     if adopt and problem.subject == "traverse":
         _refuse_adoption(problem.identity)
     diagnosis = run_engine(problem, confirm=chosen.confirm)
+    if save_shape is not None:
+        write_output(save_shape, shape_text(problem).encode("utf-8"))
     already = adopted_before(orientation.project, diagnosis)
     notes = adopted_notes(diagnosis, already)
     tables: list[dict[str, object]] = []
@@ -135,7 +142,7 @@ def diagnose_project(
     told += [f"Not written: {item}." for item in refused]
     return Diagnosed(
         replace(diagnosis, warnings=(*diagnosis.warnings, *notes)),
-        written=written,
+        written=written if save_shape is None else (*written, str(save_shape)),
         not_written=refused,
         words=tuple(told),
         channels=_channels(diagnosis, problem),

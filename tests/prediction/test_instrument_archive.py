@@ -13,8 +13,10 @@ from bench._records import Truth, problems
 from surveyapp import api
 from surveyapp.diagnosis import Case
 from surveyapp.diagnosis.pooling import pool
+from surveyapp.diagnosis.subjects.choice import determinations
 from surveyapp.domain.priors import DEFAULT_PRIORS
 from surveyapp.errors import SurveyError
+from surveyapp.io.priors import parse_priors, priors_text
 from surveyapp_models.angles import ARCSEC
 from tests.cli.command import run
 
@@ -70,6 +72,48 @@ def test_an_archive_teaches_priors_that_a_project_then_uses(archive: Path, tmp_p
     assert api.open_project(project).instruments[0].priors is not None
     assert after.lines[0].constant != before.lines[0].constant
     assert after.lines[0].constant_choice == "predicted"
+
+
+def test_the_archive_tells_by_how_much_the_constant_scatters(archive: Path) -> None:
+    """The constant followed the temperature by 1.5" per kelvin: that is what scatters."""
+    found = api.diagnose_instrument(archive / "c0", "G1", archive=[archive]).priors
+    assert found is not None
+    assert found.scatter is not None
+    again = parse_priors(
+        priors_text(found, instrument="G1", serial="", software="test").encode(), "priors.toml"
+    )
+    assert again.scatter == pytest.approx(found.scatter, abs=0.001 * ARCSEC)
+    deviations = []
+    for seed in range(3):
+        constants = determinations(api.compute(archive / f"c{seed}").orientation, "G1")
+        values = np.array([item.value for item in constants])
+        stated = float(np.mean([(item.sigma or 0.0) ** 2 for item in constants]))
+        deviations.append(max(float(values.var(ddof=1)) - stated, 0.0))
+    assert found.scatter == pytest.approx(float(np.sqrt(np.mean(deviations))), rel=0.15)
+
+
+def test_two_determinations_take_the_scatter_of_the_archive(tmp_path: Path) -> None:
+    project = tmp_path / "p"
+    api.simulate("reversal-run", project, seed=3)
+    before = api.orient(project).lines[0].constant_sigma_arcsec
+    priors = dataclasses.replace(DEFAULT_PRIORS, scatter=20.0 * ARCSEC, sessions=40)
+    text = priors_text(priors, instrument="G1", serial="", software="test")
+    (project / "priors.toml").write_text(text, encoding="utf-8")
+    toml = (project / "project.toml").read_text(encoding="utf-8")
+    toml = toml.replace("serial =", 'priors = "priors.toml"\nserial =', 1)
+    (project / "project.toml").write_text(toml, encoding="utf-8")
+    line = api.orient(project).lines[0]
+    assert before is not None
+    sigma = line.constant_sigma_arcsec
+    assert sigma is not None
+    assert sigma**2 == pytest.approx(before**2 + 20.0**2 * 1.5, rel=1e-6)
+    assert "constant: scatter in the archive" in {item.source for item in line.budget}
+    (project / "priors.toml").write_text(
+        text.replace("scatter_arcsec = 20.0", 'scatter_arcsec = "wide"'), encoding="utf-8"
+    )
+    answer = run("orient", str(project))
+    assert answer.code == 2
+    assert "no scatter" in answer.err
 
 
 @pytest.mark.parametrize(

@@ -81,10 +81,12 @@ def test_an_axis_without_a_number_has_words_and_a_path_one_scale() -> None:
     assert sigma.series[0].points[1][1] == pytest.approx(math.hypot(0.1, 0.1))
     frame = chart_figure(way)
     assert isinstance(frame, Figure)
-    for picture in drawn:
-        text = chart_text(picture, width=60, height=14).plain  # type: ignore[arg-type]
-        assert max(map(len, text.splitlines())) <= 60
-        assert len(text.splitlines()) <= 14
+    assert len([b for b in picture_blocks(drawn) if isinstance(b, Figure)]) == 3
+    for width, height in ((60, 14), (34, 9), (118, 34)):
+        for picture in drawn:
+            text = chart_text(picture, width=width, height=height).plain  # type: ignore[arg-type]
+            assert max(map(len, text.splitlines())) <= width
+            assert len(text.splitlines()) <= height
 
 
 def test_a_straight_line_goes_from_corner_to_corner() -> None:
@@ -99,6 +101,7 @@ def test_a_straight_line_goes_from_corner_to_corner() -> None:
 def test_an_unvisited_cell_is_blank() -> None:
     coverage = Coverage("sphere", ((0, 3), (200, 1)))
     text = coverage_text(coverage, width=40).plain
+    assert max(map(len, text.splitlines())) <= 40
     upper, lower = (line for line in text.splitlines() if "|" in line)
     assert set(upper.split("|")[1]) == {" "}
     assert set(upper.split("|")[2]) != {" "}

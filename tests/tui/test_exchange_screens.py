@@ -9,7 +9,8 @@ from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Static
 
 from surveyapp.tui.app import SurveyApp
-from surveyapp.tui.screens.exchange import ExportScreen, ImportScreen
+from surveyapp.tui.screens.exchange import ImportScreen
+from surveyapp.tui.screens.export import ExportScreen
 from surveyapp.tui.screens.project import ProjectScreen
 from surveyapp.tui.widgets.titlebar import TitleBar
 from tests.formats import field_writers as w

@@ -30,6 +30,9 @@ Phase = Literal["before", "between", "after"]
 POOLED = ConstantChoice("pooled")
 PREDICTED = ConstantChoice("predicted")
 
+LEAST_PREDICTED = 4
+"""Determinations from which the constant is predicted."""
+
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
@@ -256,6 +259,8 @@ def choose(
         return _interpolated(constant, moment, where, block=block)
     if choice.kind == "nearest":
         return _nearest(constant, distance_to, where)
+    if constant.instrument.constant_choice is None and len(constant.calibrations) < LEAST_PREDICTED:
+        return Chosen(with_archive(constant), "pooled")
     return Chosen(constant.pooled, "pooled")
 
 
@@ -272,7 +277,27 @@ def _not_predicted(constant: InstrumentConstant, where: str) -> Chosen:
         where=where,
         id=constant.instrument.id,
     )
-    return Chosen(constant.pooled, "pooled", (ResultWarning("prediction_impossible", text),))
+    warning = ResultWarning("prediction_impossible", text)
+    return Chosen(with_archive(constant), "pooled", (warning,))
+
+
+ARCHIVE_SOURCE = said("constant: scatter in the archive")
+
+
+def with_archive(constant: InstrumentConstant) -> Uncertain | None:
+    """The pooled constant with what it scattered by in the archive, where one was learned from.
+
+    Too few determinations tell nothing of their scatter; that the constant stands still between
+    them and the line is then known from other campaigns of the instrument only.
+    """
+    priors = constant.instrument.priors
+    if constant.pooled is None or priors is None or not priors.scatter:
+        return constant.pooled
+    n = len(constant.calibrations)
+    # of the mean of n and of the line itself
+    part = priors.scatter * math.sqrt(1.0 + 1.0 / n)
+    dof = float(max(priors.sessions - 1, 1))
+    return constant.pooled.with_part(Source(ARCHIVE_SOURCE, constant.instrument.id, dof), part)
 
 
 def _named_line(constant: InstrumentConstant, choice: ConstantChoice, where: str) -> Uncertain:

@@ -15,7 +15,11 @@ import numpy as np
 
 from surveyapp.core.orientation.campaign_columns import BY_NAME
 from surveyapp.core.orientation.circumstances import Circumstances, columns_of
-from surveyapp.core.orientation.instrument_constant import Calibration, InstrumentConstant
+from surveyapp.core.orientation.instrument_constant import (
+    LEAST_PREDICTED,
+    Calibration,
+    InstrumentConstant,
+)
 from surveyapp.core.orientation.prediction_notes import Wanted, one_block, told_of
 from surveyapp.core.prediction.average import Determinations, Predicted, predict
 from surveyapp.core.prediction.kernels import COLUMNS_READ, telling
@@ -28,8 +32,6 @@ from surveyapp.languages import said
 from surveyapp_models.angles import wrap_pi
 from surveyapp_models.arrays import Floats
 
-LEAST = 4
-"""Determinations from which the constant is predicted."""
 MOST = 240
 """The latest determinations that are used: older ones tell of another instrument."""
 CAUSE = said("constant: cause not known")
@@ -82,7 +84,7 @@ class PredictedConstants:
 
 def predictable(constant: InstrumentConstant) -> bool:
     """Whether there are enough determinations to predict from."""
-    return len(constant.calibrations) >= LEAST
+    return len(constant.calibrations) >= LEAST_PREDICTED
 
 
 def predict_constants(
@@ -96,7 +98,7 @@ def predict_constants(
     Parameters
     ----------
     constant : InstrumentConstant
-        With at least ``LEAST`` calibrations.
+        With at least ``LEAST_PREDICTED`` calibrations.
     facts : mapping of (session, target) to Circumstances
         Of the calibrations.
     wanted : sequence of Wanted

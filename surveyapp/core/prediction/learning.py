@@ -8,6 +8,7 @@ Source: prediction.md A.9; Dempster, Laird & Rubin (1977), J. R. Statist. Soc. B
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -44,10 +45,16 @@ class Evidence:
         Log mean likelihood; -inf where the campaign lacks the columns. A unit without sizes has
         the same number in every column.
     sessions : int
+    excess, spread : float
+        Of the scatter beside the stated sigmas: what the weighted squares have too much [1], and
+        what a variance of 1 rad^2 would add to them [rad^-2] (DerSimonian & Laird 1986, Control.
+        Clin. Trials 7, 177-188, equation 8).
     """
 
     table: Floats
     sessions: int
+    excess: float = 0.0
+    spread: float = 0.0
 
 
 def evidence_of(data: Determinations) -> Evidence:
@@ -63,7 +70,16 @@ def evidence_of(data: Determinations) -> Evidence:
             if own.size:
                 prior = found.log_prior[(units == unit) & ((sizes == k) | (sizes < 0))]
                 table[i, k] = _log_sum(own) - _log_sum(prior)
-    return Evidence(table, data.size)
+    return Evidence(table, data.size, *_excess(data))
+
+
+def _excess(data: Determinations) -> tuple[float, float]:
+    if data.sigmas is None or data.size < 2:
+        return 0.0, 0.0
+    w = data.sigmas**-2
+    mean = float(w @ data.values / w.sum())
+    excess = float(w @ (data.values - mean) ** 2) - (data.size - 1)
+    return excess, float(w.sum() - w @ w / w.sum())
 
 
 def _log_sum(values: Floats) -> float:
@@ -115,4 +131,13 @@ def learned(
         tuple(sizes.tolist()),
         origin,
         sum(item.sessions for item in archive),
+        _scatter(archive),
     )
+
+
+def _scatter(archive: Sequence[Evidence]) -> float | None:
+    """Standard deviation [rad] of the constant within campaigns, pooled over them."""
+    spread = math.fsum(item.spread for item in archive)
+    if spread <= 0.0:
+        return None
+    return math.sqrt(max(math.fsum(item.excess for item in archive) / spread, 0.0))

@@ -257,6 +257,7 @@ def _result(
         n=log.size,
         sha256=log.sha256,
         extra=_extra(judged, len(sights)),
+        notes={"model": f"{chosen}: a term that it does not hold is not proved; do not apply it"},
         temperature_c=(float(temperature.min()), float(temperature.max()))
         if known and temperature is not None
         else None,

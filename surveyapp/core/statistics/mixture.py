@@ -18,6 +18,8 @@ import numpy as np
 from surveyapp_models.arrays import Floats
 
 PROBABILITY = 0.95
+TIGHT, CLOSE = 1e-6, 1e-7
+"""Relative width of a half-width, and its probability, at which its search ends."""
 MOST_MEMBERS = 600
 LEAST_WEIGHT = 1e-6
 """Of the largest: members below it are left out of an interval. Hundreds of unlikely wide ones make
@@ -73,18 +75,31 @@ class Mixture:
     def _half_width(self, beside: float) -> float:
         weights, offsets = self.weights, self.offsets
         scales = np.sqrt(np.maximum(self.variances + beside, 1e-300))
-        low, high = 0.0, float(np.max(np.abs(offsets) + 6.0 * scales))
-        for _ in range(40):
-            middle = 0.5 * (low + high)
-            ends = np.stack([middle - offsets, -middle - offsets]) / scales
+
+        def missing(half: float) -> float:
+            ends = np.stack([half - offsets, -half - offsets]) / scales
             below = student_cdf(ends, self.dof)
-            if float(weights @ (below[0] - below[1])) < PROBABILITY:
-                low = middle
+            return PROBABILITY - float(weights @ (below[0] - below[1]))
+
+        low, high = 0.0, float(np.max(np.abs(offsets) + 6.0 * scales))
+        above, under = PROBABILITY, missing(high)
+        # twice the standard deviation of the whole is a good first guess
+        guess = min(2.0 * math.sqrt(float(weights @ (scales**2 + offsets**2))), 0.999 * high)
+        for _ in range(60):
+            value = missing(guess)
+            # Illinois: an end that stays counts half, so that both ends move
+            if value > 0.0:
+                low, above, under = guess, value, 0.5 * under
             else:
-                high = middle
-            if high - low <= 1e-5 * high:
+                high, under, above = guess, value, 0.5 * above
+            if high - low <= TIGHT * high or abs(value) < CLOSE:
                 break
-        return 0.5 * (low + high)
+            guess = (
+                low + (high - low) * above / (above - under)
+                if above > under
+                else 0.5 * (low + high)
+            )
+        return guess
 
 
 def half_widths(weights: Floats, means: Floats, variance: Floats, dof: float) -> Floats:

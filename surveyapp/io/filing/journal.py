@@ -73,6 +73,8 @@ def unsettled(folder: Path) -> bool:
 
 
 def _names(folder: Path) -> list[str]:
+    if folder.is_symlink():  # it may lead out of the project
+        return []
     try:
         return [item.name for item in folder.iterdir()]
     except (OSError, ValueError):  # a path with a null character is no folder

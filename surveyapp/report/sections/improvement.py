@@ -16,6 +16,7 @@ ADVICE: Final = {
     "clamp reading": said("read the clamped circle several times"),
     "constant instability": said("calibrate near the survey, before and after it"),
     "constant: cause not known": said("calibrate again as the diagnosis advises"),
+    "constant: scatter in the archive": said("determine the constant four times and more"),
     "constant: scatter of the determinations": said("calibrate more often"),
     "damping": said("read more turning points"),
     "deflection": said("have the deflection of the vertical determined there"),

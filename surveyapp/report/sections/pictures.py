@@ -81,7 +81,7 @@ def chart_figure(chart: Chart) -> Figure | None:
         up = Axis(-0.4, last + 0.4, tuple(float(i) for i in range(len(chart.y_names))), 0)
     frame = Frame(across, up)
     if chart.square:
-        frame = _squared(frame)
+        frame, x_names = _squared(frame), []
     label = f"lg of the {chart.y_label}" if chart.log_y else chart.y_label
     if chart.y_names:
         label = ", ".join(f"{i} {name}" for i, name in enumerate(chart.y_names))

@@ -1,33 +1,32 @@
-"""Files of other programs: a list, a preview of what was understood, one key to take it; and out.
+"""Files of other programs: a list, a preview of what was understood, one key to take it.
 
-Reading and writing run in a thread; nothing is written before the key.
+Reading runs in a thread; nothing is written before the key.
 """
 
 from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, Final
 
 from textual import work
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
-from textual.containers import Horizontal, Vertical, VerticalScroll
+from textual.containers import Horizontal, VerticalScroll
 from textual.screen import Screen
 from textual.widgets import Footer, Input, OptionList, Static
 from textual.widgets.option_list import Option
 
 from surveyapp.domain.fieldfile import ImportResult
-from surveyapp.domain.filing import ExportResult
 from surveyapp.errors import SurveyError
-from surveyapp.languages import shown, translated
 from surveyapp.observation import exchange
 from surveyapp.tui import texts
-from surveyapp.tui.cells import padded
 from surveyapp.tui.views.exchange import entry_text, import_text
 from surveyapp.tui.widgets.field import TextField, typed
 from surveyapp.tui.widgets.problems import problems_text
 from surveyapp.tui.widgets.titlebar import TitleBar
+
+_EVERY_PERCENT: Final = 5
 
 
 class ImportScreen(Screen[None]):
@@ -43,6 +42,8 @@ class ImportScreen(Screen[None]):
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("tab", "app.focus_next", texts.KEY_FIELD),
+        Binding("pagedown", "turn(1)", texts.KEY_PREVIEW, key_display="pgdn", priority=True),
+        Binding("pageup", "turn(-1)", texts.KEY_PREVIEW, show=False, priority=True),
         Binding("f8", "take", texts.KEY_TAKE),
         Binding("escape", "leave", texts.KEY_BACK),
     ]
@@ -65,7 +66,7 @@ class ImportScreen(Screen[None]):
         yield TitleBar(texts.IMPORT_TITLE.format(name=name))
         with Horizontal(id="exchange"):
             yield OptionList(id="files", compact=True)
-            with VerticalScroll(id="preview"):
+            with VerticalScroll(id="preview", can_focus=False):
                 yield Static(texts.IMPORT_CHOOSE, id="understood-file", markup=False)
         yield TextField(texts.IMPORT_OPTIONS, "options", hint=texts.IMPORT_HINT)
         yield Footer(show_command_palette=False)
@@ -101,6 +102,11 @@ class ImportScreen(Screen[None]):
         """Options change what is understood."""
         self.begin(preview=True)
 
+    def action_turn(self, pages: int) -> None:
+        """Move the preview: the list of files keeps the cursor."""
+        preview = self.query_one("#preview", VerticalScroll)
+        (preview.scroll_page_down if pages > 0 else preview.scroll_page_up)()
+
     def action_take(self) -> None:
         """Take the file into the project."""
         self.begin(preview=False)
@@ -115,12 +121,25 @@ class ImportScreen(Screen[None]):
     @work(thread=True, exclusive=True)
     def read(self, entry: exchange.Entry, options: str, *, preview: bool) -> None:
         """Preview or take; the answer comes back to the screen."""
+        told = -1
+
+        def progress(part: float) -> None:
+            nonlocal told
+            percent = int(100.0 * part)
+            if percent >= told + _EVERY_PERCENT:
+                told = percent
+                self.app.call_from_thread(self.tell_part, percent)
+
         try:
-            result = exchange.bring(entry, self.folder, options, preview=preview)
+            result = exchange.bring(entry, self.folder, options, preview=preview, progress=progress)
         except SurveyError as error:
             self.app.call_from_thread(partial(self.refused, error))
         else:
             self.app.call_from_thread(partial(self.show, result))
+
+    def tell_part(self, percent: int) -> None:
+        """Say how much of a large file is read."""
+        self.query_one(TitleBar).state = texts.IMPORT_PART.format(percent=percent)
 
     def show(self, result: ImportResult) -> None:
         """Show what was understood."""
@@ -134,75 +153,6 @@ class ImportScreen(Screen[None]):
         """Say in words what is wrong."""
         self.query_one("#understood-file", Static).update(problems_text(error))
         self.query_one(TitleBar).state = texts.IMPORT_REFUSED
-
-    def action_leave(self) -> None:
-        """Back to the project."""
-        self.dismiss(None)
-
-
-class ExportScreen(Screen[None]):
-    """A project for other programs."""
-
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("tab", "app.focus_next", texts.KEY_FIELD),
-        Binding("f8", "write", texts.KEY_WRITE),
-        Binding("escape", "leave", texts.KEY_BACK),
-    ]
-    DEFAULT_CSS = "ExportScreen #formats { height: 1fr; } ExportScreen #told { height: auto; }"
-
-    def __init__(self, folder: str) -> None:
-        super().__init__()
-        self.folder = folder
-        self.formats = exchange.export_formats()
-
-    def compose(self) -> ComposeResult:
-        """Formats, the file, what became of it."""
-        name = Path(self.folder).resolve().name
-        yield TitleBar(texts.EXPORT_TITLE.format(name=name))
-        with Vertical():
-            lines = [
-                Option(f"{padded(form, 8)} {translated(title)}")
-                for form, title in self.formats.items()
-            ]
-            yield OptionList(*lines, id="formats", compact=True)
-            yield TextField(texts.EXPORT_FILE, "file")
-            yield Static(id="told", markup=False)
-        yield Footer(show_command_palette=False)
-
-    def on_mount(self) -> None:
-        """Begin at the first format."""
-        self.query_one(TitleBar).state = texts.EXPORT_STATE
-        self.query_one("#formats").focus()
-
-    def form(self) -> str:
-        """The format under the cursor."""
-        return list(self.formats)[self.query_one("#formats", OptionList).highlighted or 0]
-
-    def on_option_list_option_highlighted(self) -> None:
-        """Each format has its usual file."""
-        path = exchange.export_path(self.folder, self.form())
-        self.query_one("#file", Input).value = path
-
-    def action_write(self) -> None:
-        """Write the file in a thread."""
-        self.write(self.form(), typed(self, "file"))
-
-    @work(thread=True, exclusive=True)
-    def write(self, form: str, path: str) -> None:
-        """Write; the answer comes back to the screen."""
-        try:
-            result = exchange.hand_over(form, self.folder, path)
-        except SurveyError as error:
-            answer = self.query_one("#told", Static).update
-            self.app.call_from_thread(partial(answer, problems_text(error)))
-        else:
-            self.app.call_from_thread(partial(self.show, result))
-
-    def show(self, result: ExportResult) -> None:
-        """Say what was written and what was left out."""
-        lines = [texts.EXPORT_DONE.format(path=result.path, items=result.items)]
-        lines += [f"{item.code}: {shown(item.text)}" for item in result.warnings]
-        self.query_one("#told", Static).update("\n".join(lines))
 
     def action_leave(self) -> None:
         """Back to the project."""

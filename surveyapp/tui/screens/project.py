@@ -250,7 +250,7 @@ class ProjectScreen(Screen[None]):
 
     def action_export(self) -> None:
         """Export for other programs."""
-        from surveyapp.tui.screens.exchange import ExportScreen
+        from surveyapp.tui.screens.export import ExportScreen
 
         self.app.push_screen(ExportScreen(self.folder))
 

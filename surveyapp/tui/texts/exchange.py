@@ -6,6 +6,7 @@ from typing import Final
 
 KEY_IMPORT: Final = "Import"
 KEY_EXPORT: Final = "Export"
+KEY_PREVIEW: Final = "Preview"
 KEY_TAKE: Final = "Take it"
 KEY_WRITE: Final = "Write"
 LONG_IMPORT: Final = "Import a field file of a total station or gyro"
@@ -16,9 +17,10 @@ IMPORT_OPTIONS: Final = "Options"
 IMPORT_HINT: Final = "traverse=main station-code=21 fix=A,B at=Stn hz=HA unit.hz=gon skip-damaged"
 IMPORT_CHOOSE: Final = (
     "Enter on a file shows what is understood of it; F8 takes it into the project. Nothing is "
-    "written before."
+    "written before. Tab leads to the options, page keys move this text."
 )
 IMPORT_READING: Final = "reading ..."
+IMPORT_PART: Final = "reading, {percent} %"
 IMPORT_PREVIEW: Final = "preview: F8 takes it"
 IMPORT_TAKEN: Final = "taken into the project"
 IMPORT_REFUSED: Final = "not understood"

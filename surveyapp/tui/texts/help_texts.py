@@ -255,7 +255,8 @@ nothing; the file itself and its readings as read are kept.
 Options stand in one line. traverse=NAME names the book;
 station-code=21 says which code block opens a station (GSI); fix=A,B
 fixes new stations; skip-damaged leaves damaged lines out. A table needs
-its columns and units: at=Stn to=Tgt hz=HA unit.hz=gon.
+its columns and units: at=Stn to=Tgt hz=HA unit.hz=gon. lines=1-50000
+takes a part of a file that is too large for one traverse.
 """
 _EXPORT: Final = """\
 Choose a format; the file lies beside the project unless you say

@@ -16,7 +16,10 @@ TAB_LINES: Final = "2 Lines"
 TAB_CONSTANTS: Final = "3 Constants"
 TAB_CHECKS: Final = "4 Checks"
 TAB_WARNINGS: Final = "5 Warnings"
-NO_SESSIONS: Final = "This project has no orientation session yet."
+NO_SESSIONS: Final = (
+    "This project has no orientation session yet: n makes one, i reads a field file of a total "
+    "station or of an automatic gyro."
+)
 BEING_OBSERVED: Final = "This session is still being observed: Enter goes on with it."
 NO_LINES: Final = "No line is oriented yet: a line needs sights of a target and gyro north."
 NO_CONSTANTS: Final = "No calibration session: there is no instrument constant from this project."

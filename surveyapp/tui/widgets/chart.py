@@ -106,11 +106,11 @@ def chart_text(chart: Chart, *, width: int, height: int) -> Text:
     for item, mark in zip(shown, _marks(shown), strict=True):
         _draw(canvas, item, (x, y), mark)
     text = Text(no_wrap=True)
-    text.append(f"{chart.title}"[:width], style="bold")
-    text.append(f"   {chart.y_label}\n"[: max(width - len(chart.title), 1)], style="dim")
+    text.append(chart.title[:width], style="bold")
+    text.append(f"   {chart.y_label}"[: max(width - len(chart.title), 0)] + "\n", style="dim")
     _framed(text, canvas, (y, names), margin)
     text.append(_x_axis(x, canvas.width, margin) + "\n", style="dim")
-    text.append(f"{chart.x_label:>{width - 1}}\n"[: width + 1], style="dim")
+    text.append(f"{chart.x_label:>{width - 1}}"[:width] + "\n", style="dim")
     for line in told:
         text.append(line + "\n")
     return text
@@ -213,7 +213,7 @@ def _below(chart: Chart, shown: Sequence[Series], width: int) -> list[str]:
 def coverage_text(coverage: Coverage, *, width: int) -> Text:
     """Cells of the sphere: the more readings, the darker; a blank was never visited."""
     text = Text(no_wrap=True)
-    text.append(f"{coverage.title}\n\n"[: width + 2], style="bold")
+    text.append(f"{coverage.title[:width]}\n\n", style="bold")
     count = len(coverage.cells[0])
     cell = max((width - 8) // count, 2)
     most = max((value for row in coverage.cells for value in row), default=0)
@@ -235,10 +235,10 @@ def coverage_text(coverage: Coverage, *, width: int) -> Text:
         name = f"{90 * quarter}"
         at = min(6 + cell * count * quarter // 4, len(line) - len(name))
         line[at : at + len(name)] = name
-    text.append("".join(line).rstrip() + f" {texts.CHART_DEGREES}\n", style="dim")
-    text.append(texts.CHART_SHADES.format(signs=" ".join(SHADES), most=most) + "\n")
-    if coverage.note:
-        text.append(coverage.note + "\n")
+    text.append(f"{''.join(line).rstrip()} {texts.CHART_DEGREES}"[:width] + "\n", style="dim")
+    told = texts.CHART_SHADES.format(signs=" ".join(SHADES), most=most)
+    for words in filter(None, (told, coverage.note)):
+        text.append(words[:width] + "\n")
     return text
 
 

@@ -29,7 +29,10 @@ EFFECT = Effect(
     ),
     basis=basis,
     datum="the constant at the reference temperature, else at the mean of the campaign",
-    source="Delta = Delta_0 + a (theta - theta_0), instrument calibration practice",
+    source=(
+        "Delta = Delta_0 + a (theta - theta_0), instrument calibration practice; over 50 K it is "
+        "not linear: a Gyromat 2000 needed a hyperbolic term as well (zfv 4/2004, abstract)"
+    ),
     remedy=(
         "Let the instrument reach the temperature of the place; determine the constant at the "
         "temperature of the mine, or apply the coefficient inside its range."

@@ -149,10 +149,11 @@ def motion_charts(result: Motion) -> tuple[Picture, ...]:
     if result.path is not None and len(result.path.points) > 1:
         path = result.path
         places = pairs((p[1] for p in path.points), (p[2] for p in path.points))
-        closes = "" if path.closure_m is None else f", closes to {path.closure_m:.3f} m"
+        ends = "its end is {:.3f} m from its beginning, or from the point that was stated"
+        closes = "" if path.closure_m is None else f"; {ends.format(path.closure_m)}"
         note = f"{path.mode}: {path.length_m:.2f} m{closes}"
-        ends = (Series("begin", places[:1], "dots"), Series("end", places[-1:], "dots"))
-        series = (Series("path", places), *ends)
+        marks = (Series("begin", places[:1], "dots"), Series("end", places[-1:], "dots"))
+        series = (Series("path", places), *marks)
         found.append(Chart("Path", "east [m]", "north [m]", series, square=True, note=note))
         sigma = [math.hypot(p[3], p[4]) for p in path.points]
         along = pairs((p[0] for p in path.points), sigma)
