@@ -126,14 +126,16 @@ def both_sides(
 
 
 def files_of(books: Books, card: str) -> Files:
-    """The files of one project: calibrations on K1-K2, surveys on U1-U2."""
+    """The files of one project: calibrations on K1-K2, surveys on U1-U2, marks hit exactly."""
     sessions = tuple(
         ProjectSession(name, "calibration", "K1", "K2", book)
         if name.startswith("cal")
         else ProjectSession(name, "survey", "U1", "U2", book)
         for name, book in books.items()
     )
-    return project_files(SimulatedProject("Coverage", sessions, card))
+    files = project_files(SimulatedProject("Coverage", sessions, card))
+    own = 'angle_unit = "dms"\ncentring_mm = { instrument = 0.0, target = 0.0 }'
+    return files | {"project.toml": files["project.toml"].replace('angle_unit = "dms"', own)}
 
 
 def turned(book: SimulatedSession, angle: float) -> SimulatedSession:

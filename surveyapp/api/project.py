@@ -65,10 +65,12 @@ def new_project(
     crs: str | None = None,
     angle_unit: str = "dms",
     mine_grid: str | None = None,
+    card: str | None = None,
 ) -> MadeProject:
     """Make a new project folder with a commented project.toml.
 
-    What it returns is a path as well: ``open_project`` and ``Path`` take it.
+    What it returns is a path as well: ``open_project`` and ``Path`` take it. With a ``card`` it has
+    the instrument G1, and ``to_enter`` tells what only its owner knows.
 
     Raises
     ------
@@ -77,6 +79,7 @@ def new_project(
         (``ROTATION E N BASE_E BASE_N [SIGMA]``, without a crs ``LAT LON``) is none.
     """
     from surveyapp.core.geodesy import open_grid
+    from surveyapp.core.observing.owner_values import missing_values
     from surveyapp.io.grid_line import mine_grid_line
     from surveyapp.io.template import create_project
     from surveyapp_models.angles import AngleUnit
@@ -87,8 +90,9 @@ def new_project(
     title = name if name is not None else path.resolve().name
     unit = AngleUnit(angle_unit)
     line = None if mine_grid is None else mine_grid_line(mine_grid, crs=crs, unit=unit)
-    create_project(path, name=title, crs=crs, angle_unit=unit, grid_line=line)
-    return MadeProject(str(path))
+    found = None if card is None else _installed(card)
+    create_project(path, name=title, crs=crs, angle_unit=unit, grid_line=line, card=card)
+    return MadeProject(str(path), () if found is None else missing_values(found))
 
 
 def simulate(
@@ -131,6 +135,19 @@ def simulate(
         kind, effects=effects, seed=seed, programme=programme, coefficients=coefficients
     )
     return write_simulated(Path(out), files, truth)
+
+
+def _installed(card: str) -> InstrumentCard:
+    """An installed card; one of one's own is copied into the folder that does not exist yet."""
+    from surveyapp.io.cards import installed_card_ids
+
+    known = installed_card_ids()
+    if card not in known:
+        hint = nearest_names(card, known) + "; a card of your own is copied in and named there"
+        raise SurveyError(
+            Problem("there is no such instrument card", "card", card, "the id of one", hint)
+        )
+    return model(card)
 
 
 def models() -> Listing[InstrumentCard]:

@@ -99,9 +99,12 @@ class MadeProject:
     Parameters
     ----------
     path : str
+    to_enter : tuple of str
+        What only the owner of its instrument knows, and the card does not state.
     """
 
     path: str
+    to_enter: tuple[str, ...] = ()
 
     def __fspath__(self) -> str:
         return self.path
@@ -114,7 +117,11 @@ class MadeProject:
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON, schema ``surveyapp.new/1``."""
-        return {"schema": "surveyapp.new/1", "path": self.path}
+        return {
+            "schema": "surveyapp.new/1",
+            "path": self.path,
+            "to_enter": [str(value) for value in self.to_enter],
+        }
 
 
 @dataclass(frozen=True, slots=True)

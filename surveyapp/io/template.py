@@ -65,6 +65,16 @@ angle_unit = {angle_unit}    # dms | gon | deg: how angles are written here and 
 # 1,,,backsight,{azimuth_bare},,L,,,,
 """
 
+_INSTRUMENT: Final = """
+[[instrument]]
+id = "G1"
+card = {card}
+# what the card does not state, as its owner has determined it:
+# scale_value_arcsec = 600.0
+# period = {{ latitude_deg = 47.0, tracking_s = 425.4, clamped_s = 388.3 }}
+# torsion = {{ lambda = 0.2 }}    # at that latitude; without it from both periods
+"""
+
 
 def _only_leftovers(folder: Path) -> bool:
     """Whether a folder is empty, but for what a killed ``new`` leaves; that is taken away."""
@@ -105,6 +115,7 @@ def create_project(
     crs: str | None = None,
     angle_unit: AngleUnit = AngleUnit.DMS,
     grid_line: str | None = None,
+    card: str | None = None,
 ) -> Path:
     """Begin a project in a folder that does not exist or is empty.
 
@@ -119,6 +130,8 @@ def create_project(
     angle_unit : AngleUnit
     grid_line : str, optional
         Of a mine's own grid, which names its base itself.
+    card : str, optional
+        Card of the instrument G1.
 
     Returns
     -------
@@ -152,6 +165,8 @@ def create_project(
         azimuth=toml_value(example),
         azimuth_bare=example,
     )
+    if card is not None:
+        text += _INSTRUMENT.format(card=toml_value(card))
     path = folder / "project.toml"
     atomic_write(path, text.encode("utf-8"))
     return path

@@ -68,6 +68,12 @@ FIELDS: Final[Mapping[TableKind, tuple[CorrectionField, ...]]] = {
         CorrectionField("constant", "number", "arcsec"),
         CorrectionField("constant", "number", "sigma_arcsec"),
         CorrectionField("constant_choice", "text"),
+        CorrectionField("scale_value_arcsec"),
+        *(
+            CorrectionField("period", "number", i)
+            for i in ("latitude_deg", "tracking_s", "clamped_s")
+        ),
+        CorrectionField("torsion", "number", "lambda"),
         CorrectionField("note", "text"),
     ),
     "orientation": (

@@ -10,7 +10,7 @@ import io
 import os
 import shutil
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
@@ -20,6 +20,7 @@ from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.io.settings import Settings, read_settings, write_settings
 from surveyapp.languages import said
+from surveyapp.observation.owner_entries import OwnerEntries
 
 OBSERVATIONS: Final = "observations"
 LONGEST_ID: Final = 80
@@ -71,6 +72,8 @@ class NewProject:
     constant : str
         Known instrument constant of the first of them and its sigma, two numbers in arc-seconds;
         empty where calibration sessions are to tell it.
+    owner : OwnerEntries
+        What the owner has determined of the first of them.
     """
 
     folder: str
@@ -83,6 +86,7 @@ class NewProject:
     stations: tuple[NewStation, ...] = ()
     instruments: tuple[tuple[str, str, str], ...] = ()
     constant: str = ""
+    owner: OwnerEntries = field(default_factory=OwnerEntries)
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,6 +268,7 @@ def _make_project(target: Path, form: NewProject) -> None:
     from surveyapp.io.writing import append_tables, set_value
 
     constant = _constant(form.constant)
+    owner = form.owner.overrides()
     folder = api.new_project(
         target,
         name=form.name,
@@ -279,7 +284,8 @@ def _make_project(target: Path, form: NewProject) -> None:
     tables: list[tuple[str, dict[str, object]]] = []
     for number, (identity, card, serial) in enumerate(form.instruments):
         table = {"id": identity, "card": card, "serial": serial or None}
-        tables.append(("instrument", {**table, "constant": constant if number == 0 else None}))
+        first = {"constant": constant, **owner} if number == 0 else {}
+        tables.append(("instrument", {**table, **first}))
     keys = ("name", "e", "n", "lat", "lon", "h")
     tables += [("station", {key: getattr(item, key) for key in keys}) for item in form.stations]
     append_tables(path, tables)

@@ -103,7 +103,11 @@ def test_listings_have_the_json_of_their_command(tmp_path: Path) -> None:
         json.dumps(document, allow_nan=False)
         assert len(made.rows()) == len(made)
     folder = api.new_project(tmp_path / "new")
-    assert folder.to_dict() == {"schema": "surveyapp.new/1", "path": str(tmp_path / "new")}
+    assert folder.to_dict() == {
+        "schema": "surveyapp.new/1",
+        "path": str(tmp_path / "new"),
+        "to_enter": [],
+    }
     assert api.open_project(folder).to_dict()["name"] == "new"
     json.dumps(api.open_project(SAMPLE).to_dict(), allow_nan=False)
 

@@ -84,7 +84,7 @@ async def test_enough_rings_at_the_rule_books_target(tmp_path: Path) -> None:
             await pilot.app.workers.wait_for_complete()
             await pilot.pause()
         shown = str(app.screen.query_one("#facts", Static).render())
-    assert 'ENOUGH  ±4.5" after two more  rule book ±27.7"' in shown
+    assert 'ENOUGH  ±4.8" after two more  rule book ±27.7"' in shown
     assert "Art. 62" in shown
     told = re.findall(r'(next|else): .{10,30}: ±(\d+\.\d)", cause (\d+)%', shown)
     assert [first for first, _, _ in told] == ["next", "else"]

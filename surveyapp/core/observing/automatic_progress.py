@@ -78,7 +78,8 @@ def _two_more(session: OrientationSession, reduction: Reduction, value: Uncertai
     judged = reduction.sigma_source == "residuals"
     dof = float(len(reduction.points) + 1) if judged else math.inf
     sigma = reduction.reading_sigma / math.sqrt(rounds)
-    return value.without(SOURCE).with_part(Source(SOURCE, session.id, dof), sigma).interval95
+    found = value.without(SOURCE).with_part(Source(SOURCE, session.id, dof), sigma).interval95
+    return min(found, value.interval95)  # as for tracked points: more rounds do no harm
 
 
 def _alert(reduction: Reduction, residuals: Floats, rng: np.random.Generator) -> Alert | None:

@@ -79,7 +79,8 @@ def two_more(
         return None
     sigma, dof = found
     part = Source(SWING_SOURCES[0], session.id, dof)
-    return north.without(*SWING_SOURCES).with_part(part, factor * sigma).interval95
+    wide = north.without(*SWING_SOURCES).with_part(part, factor * sigma).interval95
+    return min(wide, north.interval95)  # as for tracked points: two more do no harm
 
 
 def _after_readings(

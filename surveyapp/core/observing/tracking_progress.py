@@ -191,7 +191,11 @@ def _two_more(
     sides: Floats,
     known: tuple[int, ReadingSigma],
 ) -> float | None:
-    """95 % half-width of north after two more points, if the readings stay as they are."""
+    """95 % half-width of north after two more points, if the readings stay as they are.
+
+    Never wider than now: where the tape zero begins to rule, the interval is widened for its few
+    degrees of freedom, and two more points do no harm.
+    """
     next_index, sigma = known
     if north is None or fit is None or not math.isfinite(sigma.value):
         return None
@@ -202,7 +206,7 @@ def _two_more(
     dof = math.inf if sigma.origin == "card" else float(longer.size - 3)
     others = north.without("turning points", "damping")
     part = Source("turning points", "", dof)
-    return others.with_part(part, norm * sigma.value).interval95
+    return min(others.with_part(part, norm * sigma.value).interval95, north.interval95)
 
 
 def _alert(

@@ -13,6 +13,8 @@ from surveyapp.languages import said
 
 Groups = Mapping[tuple[str, str, str], Sequence[Uncertain]]
 """By station, target and epoch."""
+OWN_SCATTER = said("scatter of determinations")
+"""Name of the error of determinations whose sigma is that of their scatter."""
 
 
 def run_groups(project: Project, reduced: Sequence[ReducedSession], instrument: str) -> Groups:
@@ -33,5 +35,14 @@ def run_groups(project: Project, reduced: Sequence[ReducedSession], instrument: 
 
 
 def scatter_of(groups: Groups) -> RunScatter:
-    """Scatter between the runs of one line and epoch."""
-    return run_scatter([aligned(group) for group in groups.values()])
+    """Scatter between the runs of one line and epoch.
+
+    Determinations that have their sigma from their scatter contain it already.
+    """
+    return run_scatter(
+        [
+            aligned(group)
+            for group in groups.values()
+            if not any(source.name == OWN_SCATTER for item in group for source in item.parts)
+        ]
+    )

@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
-from surveyapp.core.orientation.repeated_runs import Groups
+from surveyapp.core.orientation.repeated_runs import OWN_SCATTER, Groups
 from surveyapp.core.swing.session import ReducedSession
 from surveyapp.core.uncertain import Source, Uncertain, aligned
 from surveyapp.domain.project import Project, ResultWarning
@@ -19,7 +19,7 @@ from surveyapp.domain.subject import Subject
 from surveyapp.languages import said
 from surveyapp_models.angles import RHO_ARCSEC
 
-NAME = said("scatter of determinations")
+NAME = OWN_SCATTER
 
 
 def with_scatter_sigma(

@@ -16,15 +16,24 @@ from textual.widgets import Footer, Input, OptionList, Select, Static, TextArea
 from textual.widgets.option_list import Option
 
 from surveyapp import api
+from surveyapp.core.observing.owner_values import OwnerValue, missing_values
 from surveyapp.errors import SurveyError
 from surveyapp.observation import home as api_home
 from surveyapp.observation.home import GridChoice, NewProject, NewStation
+from surveyapp.observation.owner_entries import OwnerEntries
 from surveyapp.tui import texts
 from surveyapp.tui.drafts import Draft, keep, put_back
-from surveyapp.tui.views.card import card_known
+from surveyapp.tui.views.card import card_known, owner_values
 from surveyapp.tui.widgets.field import AreaField, ChoiceField, TextField, chosen, typed
 from surveyapp.tui.widgets.problems import problems_text
 from surveyapp.tui.widgets.titlebar import TitleBar
+
+OWNER_FIELDS = {
+    "scale": OwnerValue.SCALE,
+    "periods": OwnerValue.PERIOD,
+    "torsion": OwnerValue.TORSION,
+}
+"""Fields in the order of ``OwnerEntries``, and the value that the card may lack."""
 
 
 class NewProjectScreen(Screen[str | None]):
@@ -69,6 +78,9 @@ class NewProjectScreen(Screen[str | None]):
             yield Static(id="card-told", classes="told", markup=False)
             yield TextField(texts.F_INSTRUMENT_ID, "instrument", value="G1")
             yield TextField(texts.F_SERIAL, "serial")
+            yield TextField(texts.F_SCALE, "scale", hint=texts.F_SCALE_HINT)
+            yield TextField(texts.F_PERIODS, "periods", hint=texts.F_PERIODS_HINT)
+            yield TextField(texts.F_TORSION, "torsion", hint=texts.F_TORSION_HINT)
             yield TextField(texts.F_CONSTANT, "constant", hint=texts.F_CONSTANT_HINT)
             books = {"": texts.NOT_DETERMINED, **{name: name for name in api_home.rule_books()}}
             yield ChoiceField(texts.F_RULES, "rules", books)
@@ -79,6 +91,7 @@ class NewProjectScreen(Screen[str | None]):
         """Begin at the name."""
         self.query_one("#grids").display = False
         self.query_one(TitleBar).state = texts.NEW_STATE
+        self.ask_owner(())
         put_back(self, self.draft)
         self.query_one("#name").focus()
 
@@ -162,8 +175,17 @@ class NewProjectScreen(Screen[str | None]):
         """Show what is known of the instrument."""
         if event.select.id == "card":
             identity = event.value if isinstance(event.value, str) else ""
-            known = card_known(api.model(identity)) if identity else ""
+            card = api.model(identity) if identity else None
+            known = "" if card is None else f"{card_known(card)}\n{owner_values(card)}".rstrip()
             self.query_one("#card-told", Static).update(known)
+            self.ask_owner(() if card is None else missing_values(card))
+
+    def ask_owner(self, absent: tuple[OwnerValue, ...]) -> None:
+        """Show the fields of what a card leaves to the owner."""
+        for name, value in OWNER_FIELDS.items():
+            field = self.query_one(f"#{name}").parent
+            if field is not None:
+                field.display = value in absent
 
     def form(self) -> NewProject:
         """What stands in the fields."""
@@ -180,7 +202,13 @@ class NewProjectScreen(Screen[str | None]):
             stations=self.stations(),
             instruments=(instrument,) if card and instrument[0] else (),
             constant=typed(self, "constant"),
+            owner=OwnerEntries(*(self.owner_text(name) for name in OWNER_FIELDS)),
         )
+
+    def owner_text(self, name: str) -> str:
+        """What stands in a field that the chosen card leaves to the owner."""
+        field = self.query_one(f"#{name}").parent
+        return typed(self, name) if field is not None and field.display else ""
 
     def action_make_import(self) -> None:
         """Make the folder and begin with a field file."""

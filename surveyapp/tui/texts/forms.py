@@ -46,6 +46,12 @@ F_STATIONS_HINT: Final = (
 F_INSTRUMENT: Final = "Instrument"
 F_INSTRUMENT_ID: Final = "Its id"
 F_SERIAL: Final = "Serial no."
+F_SCALE: Final = "Scale value"
+F_SCALE_HINT: Final = "arc-seconds of one division, as the owner determined it"
+F_PERIODS: Final = "Periods"
+F_PERIODS_HINT: Final = "T1 and T2 in s, latitude in deg, like 425.4 388.3 47.0"
+F_TORSION: Final = "Torsion ratio"
+F_TORSION_HINT: Final = "lambda at that latitude; empty: from T1 and T2"
 F_CONSTANT: Final = "Constant"
 F_CONSTANT_HINT: Final = "arc-seconds and sigma, like -9.7 3.0; empty: from calibrations"
 UNITS: Final = {
@@ -62,6 +68,12 @@ CARD_SIGMA: Final = 'one turning point ±{value}"'
 CARD_AZIMUTH: Final = 'one azimuth ±{value}"'
 CARD_PERIOD: Final = "period {value} s at latitude {latitude}"
 CARD_SCALE: Final = 'scale {value}" a division'
+CARD_OWNER: Final = "Its owner must enter: {values}; without them {without}."
+CARD_WITHOUT: Final = {
+    "period": "moments and spin are not checked",
+    "scale value": "there is no tape zero and no clamped swing",
+    "torsion ratio": "there is no tape zero and no clamped swing",
+}
 CARD_NOTHING: Final = "no values known; what is missing is taken from the residuals"
 
 # new session

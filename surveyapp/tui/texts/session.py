@@ -34,6 +34,15 @@ STEP_HINTS: Final = {
     "sights-after": "Sight each target once more in both faces.",
     "result": "Nothing is read in this session.",
 }
+OWNER_MISSING: Final = (
+    "\nNot known of {instrument}: {values}.\n{without}\nKey c on the project's page enters it."
+)
+OWNER_WITHOUT: Final = {
+    "tape-zero-before": "The tape zero cannot be taken off.",
+    "tape-zero-after": "The tape zero cannot be taken off.",
+    "observation": "The clamped swing gives no north.",
+}
+OWNER_NO_PERIOD: Final = "No moment is checked against it."
 STEP_MARKS: Final = {"open": "·", "begun": "~", "done": "√"}
 STEP_HERE: Final = ">"
 KIND_NAMES: Final = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from surveyapp.core.observing.owner_values import missing_values
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.tui import texts
 from surveyapp.tui.views.form import arcsec_text, number_text
@@ -24,3 +25,12 @@ def card_known(card: InstrumentCard) -> str:
         parts.append(texts.CARD_SCALE.format(value=arcsec_text(card.scale_value)))
     known = ", ".join(parts) if parts else texts.CARD_NOTHING
     return texts.CARD_KNOWN.format(title=card.title, known=known)
+
+
+def owner_values(card: InstrumentCard) -> str:
+    """What the owner must enter of it, and what does not work without; empty where nothing."""
+    absent = missing_values(card)
+    if not absent:
+        return ""
+    without = dict.fromkeys(texts.CARD_WITHOUT[value] for value in absent)
+    return texts.CARD_OWNER.format(values=", ".join(absent), without=" and ".join(without))

@@ -13,6 +13,7 @@ from textual.containers import Vertical
 from textual.message import Message
 from textual.widgets import Static
 
+from surveyapp.core.observing.owner_values import OwnerValue, missing_at
 from surveyapp.core.observing.progress import Progress
 from surveyapp.core.observing.step_values import step_values
 from surveyapp.core.observing.steps import Step, kinds_of
@@ -111,9 +112,22 @@ class RunPane(Vertical):
         progress = self.desk.progress
         self.query_one(Ledger).show(
             ledger_rows(observation.book, progress, rows),
-            hint=texts.STEP_HINTS[self.desk.step],
+            hint=texts.STEP_HINTS[self.desk.step] + self.missing_told(),
             scale=progress is not None and progress.scale,
         )
+
+    def missing_told(self) -> str:
+        """What the owner has not entered and this step needs."""
+        observation = self.desk.observation
+        instrument = observation.project.instrument(observation.session.instrument)
+        absent = missing_at(instrument.card, observation.session.method, self.desk.step)
+        if not absent:
+            return ""
+        without = texts.OWNER_WITHOUT[self.desk.step]
+        if absent == (OwnerValue.PERIOD,):
+            without = texts.OWNER_NO_PERIOD
+        values = ", ".join(absent)
+        return texts.OWNER_MISSING.format(instrument=instrument.id, values=values, without=without)
 
     @work(thread=True, exclusive=True)
     def judge(self) -> None:
