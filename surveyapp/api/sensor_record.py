@@ -5,8 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from surveyapp.errors import SurveyError
+from surveyapp.languages import said
 
 if TYPE_CHECKING:
+    from surveyapp.domain.calibration import Calibration
     from surveyapp.domain.sensor_entry import SensorLogEntry
     from surveyapp.report.blocks import Block
     from surveyapp.report.record import Extra
@@ -17,16 +19,18 @@ def sensor_sections(found: Computed) -> tuple[Extra, ...]:
     """A section for every sensor log of the folder; one that cannot be used says why."""
     from surveyapp.report.blocks import Heading, Paragraph
     from surveyapp.report.record import Extra
+    from surveyapp.report.sections.sensor_results import adopted_blocks
     from surveyapp.report.sections.sensors import title_of
 
     extras = []
     for entry in found.project.sensor_logs:
         try:
-            body = _body(found.project.path, entry)
+            body, verdict = _body(found.project.path, entry)
         except SurveyError as error:
             body = tuple(Paragraph(str(problem), "warning") for problem in error.problems)
-        blocks = (Heading(title_of(entry.id)), *_note(entry), *body)
-        extras.append(Extra(f"sensor log {entry.id}", blocks))
+            verdict = said("cannot be used: see its section")
+        blocks = (Heading(title_of(entry.id)), *_note(entry), *body, *adopted_blocks(entry))
+        extras.append(Extra(f"sensor log {entry.id}", blocks, verdict))
     return tuple(extras)
 
 
@@ -38,30 +42,35 @@ def _note(entry: SensorLogEntry) -> tuple[Block, ...]:
     return (Paragraph(note),) if isinstance(note, str) and note else ()
 
 
-def _body(folder: str, entry: SensorLogEntry) -> tuple[Block, ...]:
+def _body(folder: str, entry: SensorLogEntry) -> tuple[tuple[Block, ...], str]:
+    """Blocks, and what the first page says of them."""
     if entry.options.get("method"):
         return _north(folder, entry)
     if entry.kind is None or (entry.kind == "rate" and entry.programme is None):
         return _noise(folder, entry)
-    return (*_calibration(folder, entry), *_diagnosis(folder, entry))
+    blocks, verdict = _calibration(folder, entry)
+    return (*blocks, *_diagnosis(folder, entry)), verdict
 
 
-def _noise(folder: str, entry: SensorLogEntry) -> tuple[Block, ...]:
+def _noise(folder: str, entry: SensorLogEntry) -> tuple[tuple[Block, ...], str]:
     """Nothing to calibrate is stated: its noise is told."""
     from surveyapp.api.sensors import allan
     from surveyapp.report.sections.sensors import allan_blocks
 
-    return allan_blocks(entry.id, allan(folder, sensor=entry.id))[1:]
+    blocks = allan_blocks(entry.id, allan(folder, sensor=entry.id))[1:]
+    return blocks, said("its noise is told, nothing is judged")
 
 
-def _north(folder: str, entry: SensorLogEntry) -> tuple[Block, ...]:
+def _north(folder: str, entry: SensorLogEntry) -> tuple[tuple[Block, ...], str]:
     from surveyapp.api.rate import north
     from surveyapp.report.sections.sensor_results import north_blocks
 
-    return north_blocks(north(folder, sensor=entry.id))
+    result = north(folder, sensor=entry.id)
+    met = said("north is determined")
+    return north_blocks(result), met if result.met else said("NOT MET: north is not determined")
 
 
-def _calibration(folder: str, entry: SensorLogEntry) -> tuple[Block, ...]:
+def _calibration(folder: str, entry: SensorLogEntry) -> tuple[tuple[Block, ...], str]:
     from surveyapp.api.sensor_files import sensor_pictures
     from surveyapp.api.sensors import calibrate
     from surveyapp.report.sections.pictures import picture_blocks
@@ -72,11 +81,23 @@ def _calibration(folder: str, entry: SensorLogEntry) -> tuple[Block, ...]:
     stated = entry.options.get("heading_limit_deg")
     limit = float(stated) if isinstance(stated, int | float) else HEADING_LIMIT_DEG
     pictures = sensor_pictures(result, folder, sensor=entry.id).pictures
-    return (
+    blocks = (
         *calibration_blocks(entry.id, result)[1:],
         *check_blocks(result, heading_limit_deg=limit),
         *picture_blocks(pictures),
     )
+    return blocks, _judged(result)
+
+
+def _judged(result: Calibration) -> str:
+    """A calibration in one line."""
+    if result.geometry.verdict == "refused":
+        return said("NOT MET: the calibration is refused, no card comes of it")
+    if not result.met:
+        return said("NOT MET: not determined or inconsistent, no card comes of it")
+    if result.geometry.verdict == "restricted":
+        return said("calibrated, restricted to tilts like those of the record")
+    return said("calibrated")
 
 
 def _diagnosis(folder: str, entry: SensorLogEntry) -> tuple[Block, ...]:

@@ -54,10 +54,14 @@ class SealShown:
 
 @dataclass(frozen=True, slots=True)
 class Extra:
-    """A section from elsewhere: its id and its blocks, the heading among them."""
+    """A section from elsewhere: its id and its blocks, the heading among them.
+
+    ``verdict`` is what the first page says of it; empty: nothing.
+    """
 
     id: str
     blocks: tuple[Block, ...]
+    verdict: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,12 +104,22 @@ def _signed(seals: Sequence[SealShown]) -> tuple[tuple[str, str], ...]:
     return tuple(facts)
 
 
+def _told(extras: Sequence[Extra]) -> tuple[tuple[str, str], ...]:
+    """What the first page says of sections from elsewhere."""
+    return tuple((item.id, item.verdict) for item in extras if item.verdict)
+
+
 def _extras(record: Record) -> tuple[Block, ...]:
     return tuple(block for extra in record.extras for block in extra.blocks)
 
 
 SECTIONS: Final[tuple[Section, ...]] = (
-    Section("head", lambda r: head.blocks(r.project, r.result, r.rule_book, _signed(r.seals))),
+    Section(
+        "head",
+        lambda r: head.blocks(
+            r.project, r.result, r.rule_book, (*_told(r.extras), *_signed(r.seals))
+        ),
+    ),
     Section("azimuths", lambda r: azimuths.blocks(r.project, r.result)),
     Section("constants", lambda r: constants.blocks(r.result)),
     Section("reduction", lambda r: reduction.blocks(r.project, r.result)),

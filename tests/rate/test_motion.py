@@ -9,8 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bench.rate_motion import exceeding, split
 from surveyapp.core.sensors.rate.motion_log import MotionOptions, judge_motion
 from surveyapp.core.sensors.rate.odometer_path import Driven, reckon, snap
+from surveyapp.core.sensors.rate.zero_velocity import TOLERATED
 from surveyapp.core.simulate.rate.log import SimulatedLog
 from surveyapp.core.simulate.rate.recipes import simulate_rate
 from surveyapp.core.simulate.rate.vehicle import VehicleRun, usual_drive, vehicle_log
@@ -188,3 +190,21 @@ def test_two_detectors_agree_on_a_measured_walk_and_a_static_record_has_no_motio
         scale=(9.80665 / 16384.0, 1.0 / 131.0),
     )  # fmt: skip
     assert {s.state for s in judge_motion(static, MotionOptions()).segments} == {"stationary"}
+
+
+@pytest.mark.statistical
+def test_a_gate_that_calls_driving_rest_is_told_at_every_grade_of_sensor() -> None:
+    """Bench rate_motion: .000 to .003 with a right gate, .10 and more with a wrong one."""
+    for grade in (1.0, 4.0):
+        share, off = exceeding(0, grade, 1.0)
+        assert off <= 0.02
+        assert share <= TOLERATED
+        share, off = exceeding(0, grade, 500.0)
+        assert off > 0.05
+        assert share > 5.0 * TOLERATED
+
+
+def test_one_state_is_seldom_taken_for_two() -> None:
+    """Bench rate_motion: none of 60; three of 20 would have p = .001 at a rate of .02."""
+    for name in ("gamma 1", "half normal", "correlated"):
+        assert split(name, 400, 20) <= 0.10, name

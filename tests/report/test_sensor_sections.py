@@ -80,3 +80,19 @@ def test_a_log_outside_of_the_folder_is_not_read_into_the_record(tmp_path: Path)
     text = " ".join(api.report_text(folder).split())
     assert "outside of the project folder" in text
     assert "Allan deviation" not in text
+
+
+def test_a_project_of_sensors_alone_claims_no_check_on_its_first_page() -> None:
+    from pathlib import Path
+
+    from surveyapp import api
+
+    projects = Path(__file__).resolve().parents[2] / "projects"
+    for name, told in (
+        ("broad-attached-magnet", "NOT MET: the calibration is refused"),
+        ("mpu6050-static", "its noise is told, nothing is judged"),
+    ):
+        text = " ".join(api.report_text(projects / name).split())
+        assert "every confirmed check" not in text
+        assert "no azimuth is observed here" in text
+        assert told in text

@@ -206,6 +206,32 @@ def test_a_measured_sample_is_diagnosed_as_on_the_command_line(tmp_path: Path) -
     assert found.adoptable == tuple(item["effect"] for item in document["adopted"])
 
 
+async def test_what_was_named_is_adopted_once_and_stands_in_the_project(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
+    folder = Path(shutil.copytree(PROJECTS / "broad-attached-magnet", tmp_path / "broad"))
+    app = app_on(folder)
+    async with app.run_test(size=SMALL) as pilot:
+        screen = await open_log(pilot)
+        await pilot.press("a")  # nothing was diagnosed yet
+        await settle(pilot)
+        assert app.screen is screen
+        await pilot.press("d")
+        await settle(pilot)
+        await pilot.press("a")
+        await settle(pilot)
+        assert isinstance(app.screen, ConfirmScreen)
+        await pilot.press("enter")
+        await settle(pilot)
+    (entry,) = api.open_project(folder).sensor_logs
+    assert [effect.id for effect in entry.effects] == ["interference_step"]
+    written, refused = tasks.adopt_effects(str(folder), entry)
+    assert written == ()
+    assert "interference_step" in refused[0]
+    assert "interference step" in api.report_text(folder)
+
+
 def test_numbers_and_words_of_options_keep_their_kind() -> None:
     told = told_options("north", "latitude=47.5 method=indexing track scale.c=0.1 rate-hz=100")
     assert dict(told.own) == {"latitude": 47.5, "method": "indexing", "track": True}

@@ -224,6 +224,27 @@ def _diagnose(
     return Examined("diagnose", diagnosis_blocks(document, found.words), adoptable=adopted)
 
 
+def adopt_effects(folder: str, entry: SensorLogEntry) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Diagnose a log again and write what is named into its entry.
+
+    Returns
+    -------
+    written, refused : tuple of str
+        Places in project.toml, and why others were not written.
+
+    Raises
+    ------
+    SurveyError
+        If the project may not be written to.
+    """
+    if entry.kind in ("rate", "fog-station"):
+        document = api.diagnose_sensor(folder, entry.id, adopt=True).to_dict()
+    else:
+        document = api.diagnose_log(folder, sensor=entry.id, adopt=True, keep=True).to_dict()
+    refused = tuple(f"{item['effect']}: {item['reason']}" for item in document["not_written"])
+    return tuple(document["written"]), refused
+
+
 TASKS: Final[
     Mapping[str, Callable[[str, SensorLogEntry, ToldOptions, Progress | None], Examined]]
 ] = {

@@ -50,7 +50,9 @@ def blocks(
     )
     facts.append((said("checks"), verdict))
     facts += signed
-    facts.insert(1, (said("verdict"), _verdict(broken, still)))
+    answered = any(check.passed is not None and check.confirmed for check in result.checks)
+    text = _verdict(broken, still) if answered else _nothing_judged(project)
+    facts.insert(1, (said("verdict"), text))
     return (
         KeyValues(tuple(facts)),
         *_stations(project),
@@ -72,6 +74,13 @@ def _verdict(broken: int, still: int) -> str:
         )
     met = said("every confirmed check that could be answered is met")
     return met + said("; {still} open for want of data", still=still) if still else met
+
+
+def _nothing_judged(project: Project) -> str:
+    """No confirmed check was answered: that is no verdict on anything."""
+    if project.sensor_logs and not project.sessions:
+        return said("no azimuth is observed here; what each sensor log is good for stands below")
+    return said("no confirmed check could be answered")
 
 
 def observers(project: Project) -> list[str]:

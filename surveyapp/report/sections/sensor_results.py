@@ -14,7 +14,8 @@ from surveyapp.domain.motion import Motion
 from surveyapp.domain.noise import FilterResult
 from surveyapp.domain.north import NorthResult
 from surveyapp.domain.project import ResultWarning
-from surveyapp.languages import joined, term
+from surveyapp.domain.sensor_entry import SensorLogEntry
+from surveyapp.languages import joined, said, said_each, term
 from surveyapp.report.blocks import Block, Heading, KeyValues, Paragraph, Table
 from surveyapp.report.numbers import NOTHING, four_digits, plain
 
@@ -52,14 +53,14 @@ def filter_blocks(result: FilterResult) -> tuple[Block, ...]:
         (f"90 % of a step of {name.replace('_', ' ')}", _lag(value))
         for name, value in result.step_lag_90_samples.items()
     ]
-    facts = [("filter", f"{result.filter}, q {result.q:.4g}, r {result.r:.4g}"), *lags]
+    facts = [(said("filter"), f"{result.filter}, q {result.q:.4g}, r {result.r:.4g}"), *lags]
     if result.resamplings is not None:
-        facts.append(("resamplings", f"{result.resamplings} of {result.before.n} samples"))
+        facts.append((said("resamplings"), f"{result.resamplings} of {result.before.n} samples"))
     return (
-        Heading(f"Filter on {result.column}", 2),
+        Heading(said("Filter on {column}", column=result.column), 2),
         KeyValues(tuple(facts)),
-        Table(("time s", f"raw {result.unit}", "filtered", "ratio"), rows, "rrrr"),
-        Table(("coefficient", "before", "after", "unit", "why not"), terms, "lrrll"),
+        Table((said("time s"), f"raw {result.unit}", "filtered", "ratio"), rows, "rrrr"),
+        Table(said_each("coefficient", "before", "after", "unit", "why not"), terms, "lrrll"),
         *warning_blocks(result.warnings),
     )
 
@@ -82,9 +83,9 @@ def spectrum_blocks(result: LineSpectrum) -> tuple[Block, ...]:
     )
     scatter = result.scatter
     facts = [
-        ("record", f"{result.n} rows at {result.rate_hz:g} Hz"),
-        ("sd of a sample", _change(scatter.before, scatter.after, scatter.unit)),
-        ("sd of 10 s means", _change(scatter.before_10s, scatter.after_10s, scatter.unit)),
+        (said("record"), f"{result.n} rows at {result.rate_hz:g} Hz"),
+        (said("sd of a sample"), _change(scatter.before, scatter.after, scatter.unit)),
+        (said("sd of 10 s means"), _change(scatter.before_10s, scatter.after_10s, scatter.unit)),
     ]
     for i, family in enumerate(result.families, start=1):
         times = ", ".join(str(h) for h in family.harmonics)
@@ -96,11 +97,11 @@ def spectrum_blocks(result: LineSpectrum) -> tuple[Block, ...]:
             f"{m.field_uT:g} uT x {m.sensitivity_deg_h_t:g} deg/h per T / {m.shielding:g} "
             f"= {m.bias_deg_h:.4g} deg/h"
         )
-        facts.append(("magnetic bias", text))
+        facts.append((said("magnetic bias"), text))
     head = ("Hz", PM, f"amplitude {result.unit}", "false alarm", "family")
-    lines: Block = Table(head, rows, "rrrrr") if rows else Paragraph("No line stands out.")
+    lines: Block = Table(head, rows, "rrrrr") if rows else Paragraph(said("No line stands out."))
     return (
-        Heading(f"Spectrum of {result.column}", 2),
+        Heading(said("Spectrum of {column}", column=result.column), 2),
         KeyValues(tuple(facts)),
         lines,
         *_against(result.against),
@@ -125,32 +126,32 @@ def _against(found: Mapping[str, Any] | None) -> tuple[Block, ...]:
         )
         for axis in found["axes"]
     )
-    return (Table(("column", "sd", "sd second", "ratio", "new lines Hz"), rows, "lrrrl"),)
+    return (Table(said_each("column", "sd", "sd second", "ratio", "new lines Hz"), rows, "lrrrl"),)
 
 
 def motion_blocks(result: Motion) -> tuple[Block, ...]:
     """States, the path, what was laid back over it, and the test of the gate."""
     rows = tuple((f"{s.start_s:.2f}", f"{s.end_s:.2f}", s.state) for s in result.segments)
-    facts = [("record", f"{result.n} rows at {result.rate_hz:g} Hz")]
-    facts.append(("false alarm of a rest", f"{result.false_alarm:g}"))
+    facts = [(said("record"), f"{result.n} rows at {result.rate_hz:g} Hz")]
+    facts.append((said("false alarm of a rest"), f"{result.false_alarm:g}"))
     if result.path is not None:
         path = result.path
-        facts.append(("path", f"{path.mode}, {path.length_m:.2f} m"))
-        facts.append(("closes to", f"{plain(path.closure_m, 3)} m"))
+        facts.append((said("path"), f"{path.mode}, {path.length_m:.2f} m"))
+        facts.append((said("closes to"), f"{plain(path.closure_m, 3)} m"))
         sides = ", ".join(f"{side:.3f}" for side in path.sides_m)
-        facts.append(("between stops", f"{sides or NOTHING} m"))
+        facts.append((said("between stops"), f"{sides or NOTHING} m"))
     for item in result.snapped:
         span = f"{item.from_m:.1f} to {item.to_m:.1f} m"
-        facts.append(("laid back", f"{span}, {item.kind}, {item.heading_deg:+.3f} degrees"))
+        facts.append((said("laid back"), f"{span}, {item.kind}, {item.heading_deg:+.3f} degrees"))
     if result.zero_velocity is not None:
         verdict = str(result.zero_velocity["verdict"])
         share = result.zero_velocity.get("share_exceeding")
         told = "" if share is None else f", {share:.0%} of the innovations beyond their bound"
-        facts.append(("gate of rest", verdict + told))
+        facts.append((said("gate of rest"), verdict + told))
     return (
-        Heading("State of motion", 2),
+        Heading(said("State of motion"), 2),
         KeyValues(tuple(facts)),
-        Table(("from s", "to s", "state"), rows, "rrl"),
+        Table(said_each("from s", "to s", "state"), rows, "rrl"),
         *warning_blocks(result.warnings),
     )
 
@@ -158,22 +159,22 @@ def motion_blocks(result: Motion) -> tuple[Block, ...]:
 def north_blocks(result: NorthResult) -> tuple[Block, ...]:
     """North or heading with its reference, both roots where they are not told apart."""
     way = result.direction
-    facts = [("method", f"{result.method}, {result.n} rows")]
+    facts = [(said("method"), f"{result.method}, {result.n} rows")]
     name = "gyro north, circle reading" if result.key == "gyro_north" else "heading"
     value = "not determined" if way.deg is None else f"{way.deg:.5f} degrees {way.reference}"
     facts.append((name, value))
     if way.sigma_arcsec is not None:
         interval = plain(way.interval95_arcsec)
-        facts.append(("sigma, 95 % interval", f'{plain(way.sigma_arcsec)}", {PM}{interval}"'))
+        facts.append((said("sigma, 95 % interval"), f'{plain(way.sigma_arcsec)}", {PM}{interval}"'))
     third = result.extra.get("third_axis")
-    blocks: list[Block] = [Heading("North", 2), KeyValues(tuple(facts))]
+    blocks: list[Block] = [Heading(said("North"), 2), KeyValues(tuple(facts))]
     if third:
         blocks += _roots(third)
     rows = tuple(
         (term(p.name.replace("_", " ")), four_digits(p.value), four_digits(p.sigma), p.unit)
         for p in result.parameters
     )
-    blocks.append(Table(("parameter", "value", PM, "unit"), rows, "lrrl"))
+    blocks.append(Table((said("parameter"), "value", PM, "unit"), rows, "lrrl"))
     steps = result.extra.get("steps") or ()
     if steps:
         blocks.append(_steps(steps))
@@ -182,7 +183,7 @@ def north_blocks(result: NorthResult) -> tuple[Block, ...]:
         blocks.append(_tracking(tracking))
     if result.undetermined:
         names = ", ".join(result.undetermined)
-        blocks.append(Paragraph(f"Not determined: {names}.", "warning"))
+        blocks.append(Paragraph(said("Not determined: {names}.", names=names), "warning"))
     return (*blocks, *warning_blocks(result.warnings))
 
 
@@ -194,7 +195,7 @@ def _roots(third: Mapping[str, Any]) -> list[Block]:
     )
     found: list[Block] = [Paragraph(f"Third axis: {third['verdict']}.")]
     if rows:
-        found.append(Table(("heading deg", "bias of the third axis deg/h"), rows, "rr"))
+        found.append(Table(said_each("heading deg", "bias of the third axis deg/h"), rows, "rr"))
     return found
 
 
@@ -204,7 +205,7 @@ def _steps(steps: Sequence[Mapping[str, Any]]) -> Table:
         keys = [k for k in item if k not in ("step", "title")]
         told = ", ".join(f"{k} {_value(item[k])}" for k in keys)
         rows.append((str(item.get("step", "")), str(item.get("title", "")), told))
-    return Table(("step", "", "done"), tuple(rows), "lll")
+    return Table(said_each("step", "", "done"), tuple(rows), "lll")
 
 
 def _value(value: object) -> str:
@@ -225,7 +226,7 @@ def _tracking(tracking: Sequence[Mapping[str, Any]]) -> Table:
         )
         for i, item in enumerate(tracking, start=1)
     )
-    return Table(("stop", "bias deg/h", PM, ""), rows, "rrrl")
+    return Table((said("stop"), "bias deg/h", PM, ""), rows, "rrrl")
 
 
 def plan_blocks(plan: StopPlan) -> tuple[Block, ...]:
@@ -244,9 +245,13 @@ def plan_blocks(plan: StopPlan) -> tuple[Block, ...]:
     table = tuple((f"{bias:g}", plain(theta, 2)) for bias, theta in plan.pointing)
     return (
         Heading(f"Stops of a {plan.grade.title} at latitude {plan.latitude_deg:g}", 2),
-        Table(("stop s", "every m", "heading deg", "lateral m", "hours", "enough"), rows, "rrrrrl"),
+        Table(
+            said_each("stop s", "every m", "heading deg", "lateral m", "hours", "enough"),
+            rows,
+            "rrrrrl",
+        ),
         Paragraph(plan.words),
-        Table(("bias deg/h", "pointing error deg"), table, "rr"),
+        Table(said_each("bias deg/h", "pointing error deg"), table, "rr"),
     )
 
 
@@ -254,7 +259,7 @@ def diagnosis_blocks(document: Mapping[str, Any], words: Sequence[str]) -> tuple
     """The diagnosis of a log: words, candidates, before and after on held-out data."""
     unit = str(document.get("unit", ""))
     held = document.get("held_out") or {}
-    facts = [("verdict", str(document["verdict"]).replace("_", " "))]
+    facts = [(said("verdict"), str(document["verdict"]).replace("_", " "))]
     for name in ("before", "after"):
         model = document.get(name) or {}
         left = held.get(name, model.get("loo_rms"))
@@ -270,12 +275,30 @@ def diagnosis_blocks(document: Mapping[str, Any], words: Sequence[str]) -> tuple
         for item in document.get("candidates", ())
     )
     return (
-        Heading("Diagnosis", 2),
+        Heading(said("Diagnosis"), 2),
         KeyValues(tuple(facts)),
         *(Paragraph(word) for word in words),
-        Table(("effect", "verdict", "p of family", "BIC gained"), rows, "llrr"),
+        Table(said_each("effect", "verdict", "p of family", "BIC gained"), rows, "llrr"),
     )
 
 
 def _p(value: float | None) -> str:
     return NOTHING if value is None else f"{value:.2g}"
+
+
+def adopted_blocks(entry: SensorLogEntry) -> tuple[Block, ...]:
+    """Effects that were adopted of a log, with their proof; none where there are none."""
+    rows = tuple(
+        (
+            effect.id.replace("_", " "),
+            ", ".join(f"{name} {value:.4g} {unit}" for name, value, _, unit in effect.coefficients),
+            four_digits(effect.before),
+            four_digits(effect.after),
+            effect.adopted_at[:10],
+        )
+        for effect in entry.effects
+    )
+    if not rows:
+        return ()
+    head = said_each("effect", "coefficients", "rms before", "after", "adopted")
+    return (Heading(said("Adopted"), 2), Table(head, rows, "llrrl"))

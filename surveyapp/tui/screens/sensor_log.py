@@ -23,7 +23,12 @@ from textual.worker import Worker, get_current_worker
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.errors import SurveyError
 from surveyapp.observation.sensors.desk import card_path, save_card
-from surveyapp.observation.sensors.tasks import CancelledError, Examined, examine
+from surveyapp.observation.sensors.tasks import (
+    CancelledError,
+    Examined,
+    adopt_effects,
+    examine,
+)
 from surveyapp.report.text import blocks_text
 from surveyapp.tui import texts
 from surveyapp.tui.page_keys import page_bindings
@@ -66,6 +71,7 @@ class SensorLogScreen(Screen[None]):
             Binding(key, f"run('{task}')", name, tooltip=long, show=shown)
             for key, task, name, long, shown in TASK_KEYS
         ),
+        Binding("a", "adopt", texts.KEY_ADOPT, tooltip=texts.LONG_ADOPT_SENSOR, show=False),
         Binding("k", "card", texts.KEY_SAVE_CARD, tooltip=texts.LONG_SAVE_CARD),
         Binding("v", "picture", texts.KEY_PICTURE, tooltip=texts.LONG_PICTURE, show=False),
         Binding("x", "cancel", texts.KEY_CANCEL, tooltip=texts.LONG_CANCEL, show=False),
@@ -236,6 +242,33 @@ class SensorLogScreen(Screen[None]):
         else:
             told = texts.CARD_SAVED.format(path=path)
             self.app.call_from_thread(partial(self.notify, told, markup=False))
+
+    def action_adopt(self) -> None:
+        """Ask once, then write the named effects into the entry of the log."""
+        names = () if self.found is None else self.found.adoptable
+        if not names:
+            self.notify(texts.NOTHING_TO_ADOPT, severity="warning", markup=False)
+            return
+        told = ", ".join(name.replace("_", " ") for name in names)
+        self.app.push_screen(ConfirmScreen(texts.ADOPT_ASK.format(names=told)), self._adopt)
+
+    def _adopt(self, confirmed: bool | None) -> None:
+        if confirmed:
+            self.query_one(TitleBar).state = texts.TASK_COMPUTING.format(task="diagnose")
+            self.adopt()
+
+    @work(thread=True, exclusive=True)
+    def adopt(self) -> None:
+        """Diagnose again and write, in a thread."""
+        try:
+            written, refused = adopt_effects(self.folder, self.entry)
+        except SurveyError as error:
+            self.post_message(self.Refused(error))
+            return
+        for line in (*(texts.ADOPTED.format(place=place) for place in written), *refused):
+            self.app.call_from_thread(partial(self.notify, line, markup=False))
+        done = texts.TASK_DONE.format(task="diagnose")
+        self.app.call_from_thread(partial(setattr, self.query_one(TitleBar), "state", done))
 
     def action_leave(self) -> None:
         """Back to the list; what runs is forgotten."""

@@ -35,6 +35,7 @@ SENSOR_FACTS_LOG: Final = {
     "latitude": "latitude",
     "calibrated_on": "recorded on",
     "sha256": "sha256",
+    "effects": "adopted",
 }
 SENSOR_FACTS_CARD: Final = {
     "title": "title",
@@ -66,13 +67,14 @@ LONG_NORTH: Final = "North or heading from this log"
 LONG_STOPS: Final = "Plan of stops: what a bias leaves of the heading"
 LONG_DIAGNOSE_LOG: Final = "Diagnose: which effect the calibration lacks"
 LONG_SAVE_CARD: Final = "Save the card of this calibration"
+LONG_ADOPT_SENSOR: Final = "Adopt what the diagnosis has named"
 LONG_CANCEL: Final = "Cancel what is being computed"
 LONG_PICTURE: Final = "Next picture"
 LOG_OPTIONS: Final = "options"
 LOG_OPTIONS_HINT: Final = "key=value ..., Tab comes here, Enter computes again"
 LOG_BEGIN: Final = """\
 C  calibrate        parameters with sigma, before and after, a card
-D  diagnose         which effect the calibration lacks
+D  diagnose         which effect the calibration lacks; A adopts it
 L  Allan deviation  the five coefficients and their slopes
 F  filter           raw and filtered curves, the lag of a step
 S  spectrum         interference lines

@@ -81,6 +81,7 @@ def log_details(entry: SensorLogEntry) -> Text:
         "latitude": "" if entry.latitude_deg is None else f"{entry.latitude_deg:g}",
         "calibrated_on": str(entry.calibrated_on or ""),
         "sha256": (entry.sha256 or "")[:16],
+        "effects": ", ".join(effect.id.replace("_", " ") for effect in entry.effects),
     }
     pairs = [(texts.SENSOR_FACTS_LOG[key], value) for key, value in values.items() if value]
     return pairs_text(pairs)

@@ -27,7 +27,9 @@ WINDOW_S = 0.15
 """Of the likelihood ratio."""
 FALSE_ALARM = 0.01
 CLEARLY_TWO = 4.0
-"""Ashman's D from which a cluster is split again; one skewed cluster has about 2.5."""
+"""Ashman's D from which a cluster is split again. By simulation (bench rate_motion): of one cluster
+of any of seven shapes, skewed and correlated ones among them, none in 420 records of 400 values is
+split; of 100 values up to .08."""
 LEAST_STOP_S = 0.3
 """A shorter rest is a turning point of a vibration."""
 BRIDGED_S = 0.1
