@@ -368,7 +368,7 @@ def _book_name(identity: str) -> str:
                 said("the book is observations/<id>.csv"),
             )
         )
-    return said("{observations}/{identity}.csv", observations=OBSERVATIONS, identity=identity)
+    return f"{OBSERVATIONS}/{identity}.csv"
 
 
 def _new_book(path: Path) -> None:
