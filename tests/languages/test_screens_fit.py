@@ -47,9 +47,15 @@ def language(
 
 
 def cut_labels(app: Any) -> list[str]:
-    """Key labels of the footer that stand beyond the right edge."""
-    keys = app.screen.query(FooterKey)
-    return [str(key.render()) for key in keys if key.region.right > app.size.width]
+    """Key labels of the footer that stand beyond the right edge, or under the palette's."""
+    keys = list(app.screen.query(FooterKey))
+    palette = [key.region.x for key in keys if key.has_class("-command-palette")]
+    edge = min([app.size.width, *palette])
+    return [
+        str(key.render())
+        for key in keys
+        if not key.has_class("-command-palette") and key.region.right > edge
+    ]
 
 
 def cut_title(app: Any) -> list[str]:
