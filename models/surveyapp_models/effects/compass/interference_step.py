@@ -20,15 +20,20 @@ def basis(columns: Columns, /, **grid: float) -> Floats:
 
 
 def begins(columns: Columns) -> Floats:
-    """Times in the first two thirds of the record."""
-    low, high = columns["time_s"].min(), columns["time_s"].max()
-    return np.asarray(low + (high - low) * np.arange(1, COARSE * 2 // 3) / COARSE)
+    """Times of rows in the first two thirds of the record."""
+    return _rows(columns, 1.0 / COARSE, 2.0 / 3.0)
 
 
 def ends(columns: Columns) -> Floats:
-    """Times in the last third of the record."""
-    low, high = columns["time_s"].min(), columns["time_s"].max()
-    return np.asarray(low + (high - low) * np.arange(COARSE * 2 // 3, COARSE) / COARSE)
+    """Times of later rows, in the last third of the record."""
+    return _rows(columns, 2.0 / 3.0 + 1.0 / COARSE, 1.0)
+
+
+def _rows(columns: Columns, low: float, high: float) -> Floats:
+    """Times of rows at even shares of the record: a window between two holds one at least."""
+    times = np.unique(columns["time_s"])
+    shares = np.linspace(low, high, round(COARSE * (high - low)) + 1)
+    return np.unique(times[np.ceil(shares * (times.size - 1)).astype(np.intp)])
 
 
 EFFECT = Effect(
