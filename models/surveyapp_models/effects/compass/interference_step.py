@@ -21,19 +21,21 @@ def basis(columns: Columns, /, **grid: float) -> Floats:
 
 def begins(columns: Columns) -> Floats:
     """Times of rows in the first two thirds of the record."""
-    return _rows(columns, 1.0 / COARSE, 2.0 / 3.0)
+    times = np.unique(columns["time_s"])
+    places = np.floor(_shares(1.0 / COARSE, 2.0 / 3.0) * (times.size - 1)).astype(np.intp)
+    return np.asarray(times[np.unique(np.maximum(places, 1))])
 
 
 def ends(columns: Columns) -> Floats:
     """Times of later rows, in the last third of the record."""
-    return _rows(columns, 2.0 / 3.0 + 1.0 / COARSE, 1.0)
-
-
-def _rows(columns: Columns, low: float, high: float) -> Floats:
-    """Times of rows at even shares of the record: a window between two holds one at least."""
     times = np.unique(columns["time_s"])
-    shares = np.linspace(low, high, round(COARSE * (high - low)) + 1)
-    return np.unique(times[np.ceil(shares * (times.size - 1)).astype(np.intp)])
+    shares = _shares(2.0 / 3.0 + 1.0 / COARSE, 1.0)
+    return np.asarray(times[np.unique(np.ceil(shares * (times.size - 1)).astype(np.intp))])
+
+
+def _shares(low: float, high: float) -> Floats:
+    """Even shares of the record, a place of the grid apart."""
+    return np.linspace(low, high, round(COARSE * (high - low)) + 1)
 
 
 EFFECT = Effect(
