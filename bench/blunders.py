@@ -328,6 +328,7 @@ NEEDED = {
     "known azimuth": "coordinates of the known line, or a second known line",
     "scale": "two clampings of the line, or a second session clamped elsewhere",
     "card of another": "times of the turning points or passages: the period",
+    "station 1 deg": "coordinates of the target, or a traverse from the calibration line",
     "line 1 deg": "a traverse from the calibration line: the coordinates of both ends agree",
     "face": "sights in both faces, a second session",
     "sight": "sights before and after in both faces, a second session",
