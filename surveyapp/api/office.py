@@ -244,7 +244,14 @@ def _write_document(
     written = write_pdf(document, face=None if font is None else Path(font), advance=advance)
     write_output(output, written.data)
     digest = hashlib.sha256(written.data).hexdigest()
-    return ReportResult(str(output), written.pages, sections, digest, written.missing)
+    return ReportResult(
+        str(output),
+        written.pages,
+        sections,
+        digest,
+        written.missing,
+        referred=written.referred,
+    )
 
 
 def export_zip(folder: Folder, output: Folder, *, allow_outside: bool = False) -> ExportResult:

@@ -7,6 +7,7 @@ makes columns; it does not know the observations.
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -201,9 +202,9 @@ def _several(single: Candidate) -> list[Candidate]:
     count, n = len(single.points), single.columns.shape[1]
     result = []
     for several in (2, 3):
-        combinations = list(itertools.combinations(range(count), several))
-        if n < 4 + 3 * several or len(combinations) > MOST_PAIRS:
+        if n < 4 + 3 * several or math.comb(count, several) > MOST_PAIRS:
             continue
+        combinations = list(itertools.combinations(range(count), several))
         index = np.array(combinations)
         columns = np.concatenate([single.columns[index[:, i]] for i in range(several)], axis=2)
         names = tuple(single.points[0])

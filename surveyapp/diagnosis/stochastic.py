@@ -104,15 +104,33 @@ def _build(problem: Case) -> tuple[NoiseModel, ...]:
             decay = decay * np.where(step % 2.0 == 0.0, 1.0, -1.0)
         decay = decay * own
         models += [("ar1", (correlation, share), share * decay) for share in SHARES]
-    outer = np.outer(root, root)
-    stack = np.stack([np.eye(n) + process * outer for _, _, process in models])
-    lower = np.linalg.cholesky(stack)
-    whiteners = np.linalg.solve(lower, np.broadcast_to(np.eye(n), stack.shape))
-    logs = 2.0 * np.log(np.einsum("gii->gi", lower)).sum(axis=1)
+    whiteners, logs = _whitened([process for _, _, process in models], root, series)
     return tuple(
         NoiseModel(kind, point, process, w, float(log))
         for (kind, point, process), w, log in zip(models, whiteners, logs, strict=True)
     )
+
+
+def _whitened(processes: list[Floats], root: Floats, series: Floats) -> tuple[Floats, Floats]:
+    """Whiteners (g, n, n) of white noise and each process, and log determinants (g,).
+
+    Channels know nothing of each other: each is factorised by itself.
+    """
+    n = root.size
+    whiteners = np.zeros((len(processes), n, n))
+    logs = np.zeros(len(processes))
+    alone = np.flatnonzero(~np.isfinite(series))
+    whiteners[:, alone, alone] = 1.0
+    for one in np.unique(series[np.isfinite(series)]):
+        rows = np.flatnonzero(series == one)
+        block = np.ix_(rows, rows)
+        outer = np.outer(root[rows], root[rows])
+        stack = np.stack([np.eye(rows.size) + process[block] * outer for process in processes])
+        lower = np.linalg.cholesky(stack)
+        eye = np.broadcast_to(np.eye(rows.size), stack.shape)
+        whiteners[np.ix_(np.arange(len(processes)), rows, rows)] = np.linalg.solve(lower, eye)
+        logs += 2.0 * np.log(np.einsum("gii->gi", lower)).sum(axis=1)
+    return whiteners, logs
 
 
 def _order_within(rank: Floats, series: Floats) -> Floats:

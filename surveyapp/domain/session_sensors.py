@@ -68,6 +68,8 @@ class PreOrientation:
         Circle reading while the compass was read [rad].
     refusals : tuple of str
         Why the card does not hold.
+    modelled : bool
+        Whether the declination is that of the World Magnetic Model and not a stated one.
     """
 
     log: str
@@ -78,6 +80,7 @@ class PreOrientation:
     declination_sigma: float | None = None
     circle: float | None = None
     refusals: tuple[str, ...] = ()
+    modelled: bool = False
 
     @property
     def offset(self) -> float | None:
@@ -111,6 +114,9 @@ class PreOrientation:
             "magnetic_heading_deg": degrees(self.heading),
             "declination_deg": degrees(self.declination),
             "declination_sigma_deg": degrees(self.declination_sigma),
+            "declination_source": None
+            if self.declination is None
+            else ("model" if self.modelled else "stated"),
             "offset_deg": degrees(offset),
             "sigma_deg": degrees(self.sigma),
             "interval95_deg": degrees(self.interval95),

@@ -27,6 +27,12 @@ _COMMON: Final = (
     | getattr(os, "O_NOCTTY", 0)
 )
 _DRIVE: Final = re.compile(r"[A-Za-z]:")
+ON_WINDOWS: Final = os.name == "nt"
+LONGEST_WINDOWS: Final = 259
+"""Letters of a path that every program on Windows can open."""
+_DEVICES: Final = frozenset(
+    {"con", "prn", "aux", "nul", *(f"{name}{k}" for name in ("com", "lpt") for k in range(1, 10))}
+)
 _OUTSIDE_HINT: Final = "copy the file into the project folder and name it there"
 
 
@@ -42,6 +48,8 @@ def place_inside(folder: Path, name: str) -> Path | None:
     plain = name.replace("\\", "/")
     if not name or "\0" in name or plain.startswith("/") or _DRIVE.match(plain):
         return None
+    if ON_WINDOWS and is_reserved(name):
+        return None
     try:
         root = os.path.realpath(folder)
         real = os.path.realpath(folder / name)
@@ -49,6 +57,43 @@ def place_inside(folder: Path, name: str) -> Path | None:
         return None
     within = os.path.commonpath([root, real]) == root if _same_drive(root, real) else False
     return Path(real) if within and real != root else None
+
+
+def is_reserved(name: str) -> bool:
+    """Whether a part of a path is a device on Windows, or loses its last letter there.
+
+    CON, NUL, COM1 and their like are devices with any ending; a point or blank at the end is cut.
+    """
+    parts = [part for part in name.replace("\\", "/").split("/") if part not in ("", ".", "..")]
+    return any(p.split(".")[0].strip().lower() in _DEVICES or p[-1] in ". " for p in parts)
+
+
+def need_short_path(path: Path, *, room: int) -> None:
+    """Refuse a folder whose files would have paths that Windows does not open.
+
+    Parameters
+    ----------
+    path : Path
+    room : int
+        Letters that the files below it need.
+
+    Raises
+    ------
+    SurveyError
+    """
+    length = len(str(path.absolute())) + room
+    if ON_WINDOWS and length > LONGEST_WINDOWS:
+        from surveyapp.io.files import shown_path
+
+        raise SurveyError(
+            Problem(
+                "the path is longer than Windows allows",
+                shown_path(path),
+                f"{length} letters with the books below it",
+                f"at most {LONGEST_WINDOWS}",
+                "choose a folder nearer to the root of the drive",
+            )
+        )
 
 
 def _same_drive(first: str, second: str) -> bool:

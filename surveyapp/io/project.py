@@ -220,7 +220,9 @@ def _read_tables(top: _Top, repair: bool | None) -> Project:
     crs = table.text("crs", multiline=True)
     refuse_two_convergences(stations, sessions, files.findings)
     sensor_logs = read_sensor_logs(table, top.lines.get("sensor_log", ()))
-    sessions = with_sensors(sessions, orientations, files, sensor_logs, unit=unit)
+    sessions = with_sensors(
+        sessions, orientations, files, sensor_logs, unit=unit, stations=stations
+    )
     stations, length = with_regional_deflection(table, stations)
     project = Project(
         name=table.text("name") or files.path.resolve().name,

@@ -12,8 +12,9 @@ from typing import Final
 import numpy as np
 
 from surveyapp.core.sensors.compensation import compensate_compass, compensate_tilt
+from surveyapp.core.sensors.declination import model_declination
 from surveyapp.core.swing.levelling import ASIDE
-from surveyapp.domain.project import OrientationSession, ResultWarning
+from surveyapp.domain.project import OrientationSession, ResultWarning, Station
 from surveyapp.domain.readings import FieldBook, Reading, ReadingKind
 from surveyapp.domain.sensor_card import SensorCard
 from surveyapp.domain.sensor_entry import SensorLogEntry
@@ -52,6 +53,7 @@ def with_sensors(
     logs: Sequence[SensorLogEntry],
     *,
     unit: AngleUnit,
+    stations: Sequence[Station] = (),
 ) -> list[OrientationSession]:
     """Sessions with what their logs say; problems go to the findings.
 
@@ -64,7 +66,10 @@ def with_sensors(
     files : ProjectFiles
     logs : sequence of SensorLogEntry
     unit : AngleUnit
+    stations : sequence of Station
+        Where a declination is not stated, the World Magnetic Model gives it for the place and day.
     """
+    places = {station.name: station for station in stations}
     found = []
     for session, table in zip(sessions, tables, strict=True):
         levelling, aimed = table.table("levelling"), table.table("pre_orientation")
@@ -78,9 +83,10 @@ def with_sensors(
             _absorb(error, files, session)
         try:
             if aimed is not None:
-                session = replace(
-                    session, pre_orientation=_aimed(session, aimed, files, logs, unit=unit)
-                )
+                made = _aimed(session, aimed, files, logs, unit=unit)
+                if made is not None and made.declination is None and not made.refusals:
+                    made = _with_model(made, session, places.get(session.station), files)
+                session = replace(session, pre_orientation=made)
         except SurveyError as error:
             _absorb(error, files, session)
         found.append(session)
@@ -289,6 +295,37 @@ def _aimed(
         heading=mean % (2.0 * math.pi),
         sigma=sigma,
         declination_sigma=None if declination is None else added,
+    )
+
+
+def _with_model(
+    aimed: PreOrientation, session: OrientationSession, place: Station | None, files: ProjectFiles
+) -> PreOrientation:
+    """The same with the declination of the World Magnetic Model, where place and day are known."""
+    if place is None or place.latitude is None or place.longitude is None or session.date is None:
+        return aimed
+    try:
+        declination, sigma = model_declination(
+            latitude_deg=math.degrees(place.latitude),
+            longitude_deg=math.degrees(place.longitude),
+            height_m=place.h or 0.0,
+            day=session.date,
+        )
+    except SurveyError as error:
+        text = said(
+            "session {id}: no declination by the model: {what}",
+            id=session.id,
+            what=error.problems[0].what,
+        )
+        warning = ResultWarning("no_model_declination", text, Subject.session(session.id))
+        files.findings.warnings.append(warning)
+        return aimed
+    return replace(
+        aimed,
+        declination=math.radians(declination),
+        declination_sigma=math.radians(sigma),
+        sigma=math.hypot(aimed.sigma or 0.0, math.radians(sigma)),
+        modelled=True,
     )
 
 

@@ -7,10 +7,12 @@ from typing import Final
 
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import has_control, shown, shown_path
-from surveyapp.io.guarded import is_regular
+from surveyapp.io.guarded import is_regular, need_short_path
 from surveyapp.io.tomltext import atomic_write, toml_value
 from surveyapp_models.angles import AngleUnit
 
+ROOM: Final = 60
+"""Letters of ``observations/`` and a usual name of a book with its temporary file."""
 _EXAMPLES: Final = {
     AngleUnit.DMS: "246-52-09",
     AngleUnit.GON: "274.2991",
@@ -97,6 +99,7 @@ def need_own_folder(folder: Path) -> None:
     ------
     SurveyError
     """
+    need_short_path(folder, room=ROOM)
     if folder.exists() and (not folder.is_dir() or not _only_leftovers(folder)):
         raise SurveyError(
             Problem(

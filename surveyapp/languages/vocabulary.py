@@ -37,7 +37,13 @@ UNITS: Final = (
     "rounds",
     "observers",
 )
-CHOICES: Final = ("pooled", "nearest", "interpolated", "predicted", "known", "the only one")
+CHOICES: Final = (
+    "pooled",
+    "nearest",
+    "interpolated",
+    "predicted",
+    "known",
+)
 ESTIMATORS: Final = ("least-squares", "schuler", "amplitude", "transit", "mean", "median")
 SIGMA_SOURCES: Final = ("residuals", "card", "rounds")
 REFERENCES: Final = ("astronomic", "true", "grid", "gyro")

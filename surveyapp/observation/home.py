@@ -17,7 +17,9 @@ from typing import Final
 from surveyapp import api
 from surveyapp.domain.project import Method, Purpose
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.filing.dependencies import project_data, rows_of
 from surveyapp.io.filing.lock import ProjectLock
+from surveyapp.io.guarded import is_reserved
 from surveyapp.io.settings import Settings, read_settings, write_settings
 from surveyapp.languages import said
 from surveyapp.observation.owner_entries import OwnerEntries
@@ -329,6 +331,9 @@ def create_session(folder: api.Folder, form: NewSession) -> None:
         if not lock.writable:
             what = said("this project cannot be written to now")
             raise SurveyError(Problem(what, str(folder), said("it is open elsewhere")))
+        rows = rows_of(project_data(Path(folder)), "orientation")
+        if any(form.id == row.get("id") or book == row.get("book") for row in rows):
+            raise SurveyError(Problem(said("a session of this id exists already"), "id", form.id))
         _new_book(Path(folder) / book)
         before = read_text(path, where=path.name)
         table = {
@@ -355,6 +360,7 @@ def create_session(folder: api.Folder, form: NewSession) -> None:
 def _book_name(identity: str) -> str:
     """Path of the book of a session; the id names a file, so it must be able to."""
     usable = identity.isprintable() and not set(identity) & set('/\\:*?"<>|')
+    usable = usable and not is_reserved(identity)
     if not usable or identity.startswith(".") or len(identity.encode("utf-8")) > LONGEST_ID:
         raise SurveyError(
             Problem(
@@ -368,7 +374,7 @@ def _book_name(identity: str) -> str:
                 said("the book is observations/<id>.csv"),
             )
         )
-    return said("{observations}/{identity}.csv", observations=OBSERVATIONS, identity=identity)
+    return f"{OBSERVATIONS}/{identity}.csv"
 
 
 def _new_book(path: Path) -> None:

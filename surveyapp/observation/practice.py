@@ -31,23 +31,42 @@ if TYPE_CHECKING:  # the simulator is loaded when somebody practises
 SESSION: Final = "practice"
 SLOWEST: Final = 0.1
 FASTEST: Final = 200.0
-_PROJECT: Final = said(
-    "# A practice session on a simulated instrument. Its north is "
-    'invented.\nformat = 1\nname = "Practice"\nangle_unit = '
-    '"dms"\n\n[[instrument]]\nid = "SIM"\n{card}\n\n[[station]]\nname = "P"\nlat = '
-    '{latitude:.6f}\nlon = 8.0\n\n[[station]]\nname = "T"\n\n[[orientation]]\nid = '
-    '"{session}"\nstation = "P"\ntarget = "T"\ninstrument = "SIM"\nmethod = '
-    '"{method}"\nwanted_interval_arcsec = {wanted}\nbook = '
-    '"observations/{session}.csv"\n'
-)
+_PROJECT: Final = """\
+# A practice session on a simulated instrument. Its north is invented.
+format = 1
+name = "Practice"
+angle_unit = "dms"
 
-_SUSPENDED: Final = said(
-    'card = "wild-gak1"\nscale_value_arcsec = 600.0\nperiod = { latitude_deg = '
-    "47.0, tracking_s = 425.4, clamped_s = 388.3, unspun_s = 146.0 }\nsigma = { "
-    "reversal_arcsec = 6.0, scale_div = 0.05, azimuth_arcsec = 15.0, time_s = "
-    "0.3 }"
-)
-_AUTOMATIC: Final = said('card = "gyromat-2000"\nsigma = { azimuth_arcsec = 8.0 }')
+[[instrument]]
+id = "SIM"
+{card}
+
+[[station]]
+name = "P"
+lat = {latitude:.6f}
+lon = 8.0
+
+[[station]]
+name = "T"
+
+[[orientation]]
+id = "{session}"
+station = "P"
+target = "T"
+instrument = "SIM"
+method = "{method}"
+wanted_interval_arcsec = {wanted}
+book = "observations/{session}.csv"
+"""
+
+_SUSPENDED: Final = """\
+card = "wild-gak1"
+scale_value_arcsec = 600.0
+period = { latitude_deg = 47.0, tracking_s = 425.4, clamped_s = 388.3, unspun_s = 146.0 }
+sigma = { reversal_arcsec = 6.0, scale_div = 0.05, azimuth_arcsec = 15.0, time_s = 0.3 }"""
+_AUTOMATIC: Final = """\
+card = "gyromat-2000"
+sigma = { azimuth_arcsec = 8.0 }"""
 _WANTED: Final = {"tracking": 10.0, "amplitude": 40.0, "transit": 40.0, "automatic": 10.0}
 """95 % interval that a dozen readings reach [arcsec]."""
 
@@ -176,9 +195,7 @@ def begin(
         wanted=_WANTED[method],
     )
     header = ",".join(COLUMNS) + "\n"
-    atomic_write(
-        path / "observations" / said("{session}.csv", session=SESSION), header.encode("utf-8")
-    )
+    atomic_write(path / "observations" / f"{SESSION}.csv", header.encode("utf-8"))
     atomic_write(path / "project.toml", text.encode("utf-8"))  # last: before, it is no project
     start, begun = local_now(), steady_seconds()
 
@@ -200,6 +217,6 @@ def practice_folder() -> str:
 
     base = user_documents_folder()
     number = 1
-    while (base / said("practice-{number}", number=number)).exists():
+    while (base / f"practice-{number}").exists():
         number += 1
-    return str(base / said("practice-{number}", number=number))
+    return str(base / f"practice-{number}")

@@ -35,7 +35,6 @@ from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.io.filing.seals import is_closed
 from surveyapp.io.guarded import checked_inside
 from surveyapp.io.project import read_project
-from surveyapp.languages import said
 from surveyapp.observation.aim import Aim
 from surveyapp.observation.half_swing import half_swing_of
 
@@ -152,7 +151,7 @@ class SessionDesk:
     @property
     def torn(self) -> str | None:
         """File beside the book that holds a torn last line, None where there is none."""
-        name = said("{book_path}.torn", book_path=self.session.book_path)
+        name = f"{self.session.book_path}.torn"
         return name if (self.folder / name).exists() else None
 
     @property

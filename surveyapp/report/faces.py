@@ -45,6 +45,8 @@ def base_face() -> Path:
     return faces[0]
 
 
+WIDE_PACKAGE: Final = "paperang_p2_fonts_cjk"
+"""Package of the extra ``glyphs`` with WenQuanYi Micro Hei, a face with all of GB 18030 in use."""
 FURTHER_PACKAGES: Final = ("fontpkg_noto_sans_arabic", "fontpkg_heebo", "fontpkg_noto_sans_thai")
 """Packages of the extra ``glyphs``: Arabic, Hebrew, Thai (each under the Open Font License)."""
 FURTHER_FACES: Final = (
@@ -95,7 +97,11 @@ def _installed() -> dict[str, Path]:
 
 
 def wide_face() -> Path | None:
-    """First known TrueType face with Chinese, Japanese or Korean on this system, else None."""
+    """A TrueType face with Chinese, Japanese or Korean: of the package, else of this system."""
+    spec = find_spec(WIDE_PACKAGE)
+    if spec is not None and spec.origin is not None:
+        for path in sorted(Path(spec.origin).parent.rglob("*.ttc"))[:1]:
+            return path
     return next((_installed()[name] for name in WIDE_FACES if name in _installed()), None)
 
 

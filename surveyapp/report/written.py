@@ -46,6 +46,8 @@ class ReportResult:
         their codes.
     signature : str
         File of the signature with a key; empty without a key.
+    referred : tuple of str
+        Faces that the pages refer to and that are not embedded.
     """
 
     path: str
@@ -54,6 +56,7 @@ class ReportResult:
     sha256: str
     missing: tuple[tuple[str, str], ...] = ()
     signature: str = ""
+    referred: tuple[str, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON, schema ``surveyapp.report/1``."""
@@ -73,10 +76,13 @@ class ReportResult:
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """That letters are printed as their codes, and in which texts."""
-        if not self.missing:
-            return ()
-        return (ResultWarning("glyphs_missing", missing_text(self.missing)),)
+        """Letters that are printed as their codes, and faces that are not in the file."""
+        found = []
+        if self.missing:
+            found.append(ResultWarning("glyphs_missing", missing_text(self.missing)))
+        if self.referred:
+            found.append(ResultWarning("face_not_embedded", referred_text(self.referred)))
+        return tuple(found)
 
 
 def missing_text(missing: tuple[tuple[str, str], ...]) -> str:
@@ -88,4 +94,13 @@ def missing_text(missing: tuple[tuple[str, str], ...]) -> str:
         f"No type face at hand has {letters} of the letters in: {shown}{more}. The record prints "
         "their codes in brackets. pip install 'surveyapp[glyphs]' brings Arabic, Hebrew and Thai; "
         "--font FILE.ttf, or a folder of faces, names what has the others."
+    )
+
+
+def referred_text(faces: tuple[str, ...]) -> str:
+    """Which faces a viewer must have, and how they come into the file."""
+    return (
+        f"The record refers to the type face {', '.join(faces)} and does not contain it: a viewer "
+        "without it shows no Chinese, Japanese or Korean. pip install 'surveyapp[glyphs]' brings a "
+        "face that is embedded; --font FILE.ttf names one."
     )

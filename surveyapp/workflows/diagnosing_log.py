@@ -61,6 +61,16 @@ def diagnose_log(
         If the log is of another kind or too short, and for what is wrong with it.
     """
     if kind is None:
+        if not file.has(*MAG) and not file.has(*TILT):
+            raise SurveyError(
+                Problem(
+                    "the kind of the log is not stated, and its columns are no compass or tilt",
+                    f"[[sensor_log]] {identity}",
+                    "no kind",
+                    "compass | tilt | rate | fog-station",
+                    'write kind = "rate" (or another) under the log in project.toml',
+                )
+            )
         kind = "compass" if file.has(*MAG) else "tilt"
     record, log = _record(kind, identity, file, own, progress)
     second = None

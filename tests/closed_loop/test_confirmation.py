@@ -41,6 +41,11 @@ CAMPAIGN_SIZES = {
     "line_offset": 20.0,
     "gyro_block": 25.0,
     "warm_up": 40.0,
+    "observer": 20.0,
+    "pressure": 0.5,
+    "humidity": 0.5,
+    "supply_voltage": 6.0,
+    "after_transport": 40.0,
 }
 NOISE = 4.0 * ARCSEC
 
@@ -78,7 +83,7 @@ def run(seed: int, effect: str | None) -> Case:
 
 def series(seed: int, effect: str | None) -> Case:
     """A campaign of 45 determinations with one effect from the catalogue."""
-    g = np.random.default_rng(seed)
+    g, more = np.random.default_rng(seed), np.random.default_rng(1000 + seed)
     n = 45
     days = np.arange(n) // 3 * 14.0 + np.arange(n) % 3 * 0.1
     line = np.arange(n) // 3 % 4
@@ -93,6 +98,11 @@ def series(seed: int, effect: str | None) -> Case:
             line_reading=float(g.uniform(0.0, 6.28)),
             north_reading=float(g.uniform(0.0, 6.28)),
             running_s=float(g.uniform(200.0, 3000.0)),
+            observer=("Ana", "Ben", "Cleo")[int(more.integers(3))],
+            pressure_hpa=float(more.uniform(960.0, 1030.0)),
+            humidity_percent=float(more.uniform(30.0, 95.0)),
+            supply_v=float(more.uniform(22.0, 28.0)),
+            transport_h=float(more.uniform(0.5, 60.0)),
         )
         for i in range(n)
     ]

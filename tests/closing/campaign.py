@@ -22,7 +22,7 @@ import numpy as np
 
 from surveyapp import api
 from surveyapp.core.checks.filing_checks import filing_checks
-from surveyapp.errors import SurveyError
+from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.filing.ledger import append_entry, read_ledger
 from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.observation import home, practice
@@ -56,6 +56,8 @@ def _adopt_base(folder: Path) -> Path:
 
 def _adopt(folder: Path) -> None:
     project = api.open_project(folder)
+    if project.session("r1").effects:  # as tables_to_adopt: nothing is adopted twice
+        raise SurveyError(Problem("already adopted", "r1"))
     found = SimpleNamespace(subject="reversal_run", identity="r1", instrument="G1", ledger={"p": 1})
     adopting.record(project, cast("Any", found), [EFFECT], moment="2026-01-02", software="s")
 

@@ -13,8 +13,8 @@ from surveyapp.observation.record import write_record
 from tests.closing.campaign import ACTIONS, Action, campaign, on_a_full_disk, two_at_once
 from tests.tui.helpers_tui import make_calibrations
 
-MOMENTS = 8
-FEW = {"report": 3, "simulate": 3, "practice": 4}
+MOMENTS = 6
+FEW = {"report": 2, "simulate": 2, "practice": 3}
 """Acts that take long for themselves."""
 
 

@@ -5,12 +5,16 @@ probability 0.999 (binomial); the campaign of ``make bench`` has 2000 runs a met
 """
 
 import math
+import tempfile
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.special import bdtrik
 
-from bench.coverage import campaign
+from bench._coverage_lines import LINES as FURTHER
+from bench.coverage import azimuth_of, campaign, further, judged, write_files
+from surveyapp import api
 from surveyapp.core.simulate.specification import SwingMethod
 
 RUNS = 400
@@ -36,3 +40,32 @@ def test_interval_holds_the_truth(method: SwingMethod, seed: int, sigma_about: f
         ratio = float(np.std(item.errors) / np.sqrt(np.mean(item.sigmas**2)))
         assert 0.85 < ratio < 1.15
         assert float(np.mean(item.sigmas)) < sigma_about
+
+
+FEW = {"gyro": 120, "grid": 40, "combined": 120}
+"""Runs of a further line in the suite; the bench has 1000 (docs/reference/coverage.md)."""
+
+
+@pytest.mark.statistical
+@pytest.mark.parametrize("place", range(len(FURTHER)), ids=[line.name for line in FURTHER])
+def test_interval_holds_what_a_session_does_not_show(place: int) -> None:
+    line = FURTHER[place]
+    found, silent = further(line, FEW[line.quantity], 40 + place)
+    # a true share of 93 % or more lies above with a probability of 0.9995
+    size = found.errors.size
+    assert round(found.share * size) >= bdtrik(0.0005, size, 0.93)
+    assert abs(found.bias_in_sigma) < 3.5 / math.sqrt(size)
+    # lines of one side are found to disagree in 5 % of all cases
+    assert silent <= bdtrik(0.9995, FEW[line.quantity], 0.05)
+
+
+def test_leaving_out_the_tests_of_fit_changes_no_azimuth() -> None:
+    line = FURTHER[0]
+    with tempfile.TemporaryDirectory() as name:
+        drawn = next(line.draw(1, np.random.default_rng(3)))
+        write_files(Path(name), drawn.files)
+        whole = azimuth_of(api.orient(name).to_dict(), line.quantity)
+        found = judged(Path(name), drawn, line.quantity)
+    assert whole is not None
+    assert found is not None
+    assert found[1:] == (whole["sigma_arcsec"], whole["interval95_arcsec"])

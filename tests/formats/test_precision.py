@@ -8,6 +8,7 @@ import random
 import pytest
 
 from surveyapp.core.fieldfile.precision import (
+    circle_precision,
     distance_precision,
     face_precision,
     zenith_precision,
@@ -87,3 +88,18 @@ def test_the_pool_is_the_sigma_of_a_mean_of_two_faces(seed: int) -> None:
         (zeniths[0], zeniths[1], READING),
     ):
         assert abs((found * math.sqrt(2.0) / true) ** 2 - 1.0) < 3.3 * math.sqrt(2.0 / dof)
+
+
+def test_a_small_traverse_pools_both_circles() -> None:
+    """Four set-ups of one round: 4 degrees of freedom each are too few, 8 together are enough."""
+    squares = []
+    for seed in range(40):
+        sets = simulated(100 + seed, setups=4, rounds=1, targets=2)
+        assert face_precision(sets) is None
+        assert zenith_precision(sets) is None
+        both = circle_precision(sets)
+        assert both is not None
+        assert both.dof == 8
+        squares.append((both.direction * math.sqrt(2.0) / READING) ** 2)
+    # chi-square with 320 degrees of freedom, 99.9 %
+    assert abs(sum(squares) / len(squares) - 1.0) < 3.3 * math.sqrt(2.0 / 320)

@@ -138,6 +138,20 @@ def test_noise_of_one_gyro_knows_nothing_of_another() -> None:
             assert steps == pytest.approx(np.full(steps.size, model.point[0]), rel=1e-9)
 
 
+def test_many_stops_are_not_averaged_like_a_long_record() -> None:
+    """140 stops are 420 rows of three channels: block means would mix the gyros."""
+    rng = np.random.default_rng(5)
+    stops = []
+    for k in range(140):
+        force = rng.normal(size=3)
+        force *= 9.81 / np.linalg.norm(force)
+        out = 1e-3 + 2e-5 * np.roll(force, 1) + rng.normal(0.0, 1e-4, 3)
+        stops.append(RateStop(out, 6.0 * k, force))
+    found = diagnose(rate_case(stops, identity="many"))
+    assert named(found) == ["g_sensitivity"]
+    assert len(found.residuals_before) == 420
+
+
 def test_one_bumped_stop_is_a_gross_error() -> None:
     found = [named(diagnosed(seed, 12, gross_error=0.05 * DEG)) for seed in range(3)]
     assert found.count(["gross_error"]) >= 2

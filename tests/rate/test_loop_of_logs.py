@@ -66,3 +66,12 @@ def test_without_a_choice_the_sensor_logs_are_listed(tmp_path: Path) -> None:
         {"option": "--sensor", "id": "multi-position", "observations": None}
     ]
     assert "--sensor" in surveyapp("diagnose", folder).out
+
+
+def test_a_log_of_no_stated_kind_is_refused_by_that(tmp_path: Path) -> None:
+    folder = simulated(tmp_path / "unit", "rate", "--programme", "multi-position")
+    toml = folder / "project.toml"
+    toml.write_text(toml.read_text().replace('kind = "rate"\n', ""))
+    refused = surveyapp("diagnose", folder, "--sensor", "multi-position", "--json")
+    assert refused.code == 2
+    assert [p["found"] for p in refused.json["problems"]] == ["no kind"]

@@ -208,3 +208,15 @@ def test_one_state_is_seldom_taken_for_two() -> None:
     """Bench rate_motion: none of 60; three of 20 would have p = .001 at a rate of .02."""
     for name in ("gamma 1", "half normal", "correlated"):
         assert split(name, 400, 20) <= 0.10, name
+
+
+def test_a_path_over_a_gap_while_moving_is_not_to_be_used() -> None:
+    run = VehicleRun(legs=usual_drive(), gyro=Triad(noise=0.001), accelerometer=Triad(noise=0.02))
+    log = vehicle_log(run, np.random.default_rng(2))
+    time = log.columns["time_s"]
+    for (low, high), usable in (((25.0, 27.0), False), ((3.0, 5.0), True)):
+        rows = (time < low) | (time >= high)
+        cut = SimulatedLog({k: v[rows] for k, v in log.columns.items()}, {}, log.truth)
+        found = judge_motion(as_read(cut), MotionOptions(path=True))
+        assert found.met == usable
+        assert ("path_over_gap" in {w.code for w in found.warnings}) != usable

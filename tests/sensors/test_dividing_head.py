@@ -156,3 +156,22 @@ def test_a_log_without_a_test_ends_with_0_and_null(
         "coverage": None, "undetermined": [],
     }  # fmt: skip
     assert pytest.approx(K1, rel=1e-3) == 16777216.0 / 8.0 * 0.2278  # LSB/pF x pF/g
+
+
+@pytest.mark.statistical
+def test_the_sigma_of_linearity_is_the_scatter_of_repeated_tests(tmp_path: Path) -> None:
+    """A cubic of 0.2 %FS under 100 LSB of noise, 40 times; chi-square: within a third of 40."""
+    rng = np.random.default_rng(12)
+    angles = np.linspace(-30.0, 30.0, 13)
+    bend = 0.004 * K1 * (angles / 30.0) ** 3
+    values, sigmas = [], []
+    for _ in range(40):
+        output = K1 * np.sin(np.radians(angles)) + bend + rng.normal(0.0, 100.0, 13)
+        rows = [f"static,2,{a:g},,{e:.6f},,," for a, e in zip(angles, output, strict=True)]
+        found = {p.name: p for p in calibrated(tmp_path, [*static_rows({})[:13], *rows]).parameters}
+        item = found["linearity_30"]
+        assert item.value is not None
+        assert item.sigma is not None
+        values.append(item.value)
+        sigmas.append(item.sigma)
+    assert np.sqrt(np.mean(np.square(sigmas))) == pytest.approx(np.std(values, ddof=1), rel=0.4)

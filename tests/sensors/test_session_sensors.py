@@ -1,11 +1,13 @@
 """Tilt log and compass log of a session: what they move, what they check, what is refused."""
 
+import datetime as dt
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from surveyapp import api
+from surveyapp.core.sensors.declination import model_declination
 from surveyapp.errors import SurveyError
 from tests.sensors.test_levelling import project
 
@@ -35,8 +37,10 @@ heading_sigma_deg = 0.1
 def session(
     folder: Path, *, valid: str = "2030-01-01", kind: str = "tilt", start: float = 0.0,
     log: str = "T", temperature: float = 20.0, declination: str = "", card: bool = True,
+    day: str = "2026-05-01",
 ) -> Path:  # fmt: skip
-    more = f'levelling = {{ log = "{log}", card = "t.toml" }}\ndate = 2026-05-01\n'
+    more = f'levelling = {{ log = "{log}", card = "t.toml" }}\n'
+    more += f"date = {day}\n" if day else ""
     more += (
         f'pre_orientation = {{ log = "C", card = "c.toml"{declination}, circle = "10-00-00" }}\n'
     )
@@ -106,8 +110,27 @@ def test_a_model_declination_never_passes_ten_minutes(tmp_path: Path) -> None:
 
 
 def test_a_magnetic_heading_alone_says_nothing_of_north(tmp_path: Path) -> None:
-    checks = {c.rule: c for c in api.check(session(tmp_path / "a"))}
+    checks = {c.rule: c for c in api.check(session(tmp_path / "a", day="2031-06-01"))}
     assert checks["pre_orientation.tracking"].passed is None
+
+
+def test_without_a_stated_declination_the_model_serves_for_place_and_day(tmp_path: Path) -> None:
+    """Latitude 47, longitude 9, 2026-05-01; beyond the five years of the model it is told."""
+    pytest.importorskip("pygeomag")
+    aimed = api.orient(session(tmp_path / "a")).to_dict()["sessions"][0]["pre_orientation"]
+    value, sigma = model_declination(
+        latitude_deg=47.0, longitude_deg=9.0, height_m=0.0, day=dt.date(2026, 5, 1)
+    )
+    assert aimed["declination_source"] == "model"
+    assert aimed["declination_deg"] == pytest.approx(value)
+    assert aimed["declination_sigma_deg"] == pytest.approx(sigma)
+    assert aimed["sigma_deg"] >= sigma
+    late = api.orient(session(tmp_path / "b", day="2031-06-01")).to_dict()
+    assert late["sessions"][0]["pre_orientation"]["declination_deg"] is None
+    assert "no_model_declination" in {w["code"] for w in late["warnings"]}
+    stated = session(tmp_path / "c", declination=", declination_deg = 0.5, sigma_deg = 0.4")
+    aimed = api.orient(stated).to_dict()["sessions"][0]["pre_orientation"]
+    assert aimed["declination_source"] == "stated"
 
 
 def test_the_rows_say_what_was_levelled_and_where_to_turn_the_alidade(tmp_path: Path) -> None:
@@ -136,7 +159,7 @@ def test_without_a_declination_nothing_is_said_of_north(tmp_path: Path) -> None:
     from surveyapp.report.sections.session_sensors import pre_orientation_rows
     from surveyapp_models.angles import AngleUnit
 
-    item = api.orient(session(tmp_path / "a")).sessions[0]
+    item = api.orient(session(tmp_path / "a", day="2031-06-01")).sessions[0]
     rows = pre_orientation_rows(item.pre_orientation, AngleUnit.DMS)
     assert len(rows) == 2
     assert rows[1][1] == "-"

@@ -281,3 +281,13 @@ def test_every_field_of_a_correction_has_a_label() -> None:
     assert set(FIELDS) == set(texts.TABLE_KINDS)
     assert max(map(len, texts.CORRECT_LABELS.values())) < 15
     assert api_home.OBSERVATIONS == "observations"
+
+
+def test_a_session_of_the_same_id_is_refused_and_its_empty_book_stays(tmp_path: Path) -> None:
+    folder = make_project(tmp_path / "p")
+    before = (folder / "project.toml").read_bytes()
+    form = api_home.NewSession("r1", "3083", "3082", "G1", "tracking", "survey")
+    with pytest.raises(SurveyError, match="exists already"):
+        api_home.create_session(folder, form)
+    assert (folder / "observations" / "r1.csv").exists()
+    assert (folder / "project.toml").read_bytes() == before

@@ -17,11 +17,11 @@ from surveyapp.domain.penetration import StatedTolerance
 from surveyapp.domain.results import Check
 from surveyapp.domain.shaft_result import ShaftOrientation
 from surveyapp.domain.subject import Subject
-from surveyapp.languages import said
+from surveyapp.languages import said, term
 from surveyapp_models.angles import ARCSEC, wrap_pi
 
 COMPONENTS = ("lateral", "longitudinal", "vertical")
-MEETING = Subject.of("penetration", "meeting point")
+MEETING = Subject.of("penetration", said("meeting point"))
 _ROUNDING = 1e-12
 
 
@@ -45,7 +45,9 @@ def breakthrough_checks(evidence: BreakthroughEvidence | None) -> list[Check]:
                     passed=None if value is None else value <= limit * (1.0 + _ROUNDING),
                     unit="m",
                     where=MEETING.text,
-                    text=said("{name} error at the meeting point: {text}", name=name, text=text)
+                    text=said(
+                        "{name} error at the meeting point: {text}", name=term(name), text=text
+                    )
                     if value is not None
                     else text,
                     subject=MEETING,
@@ -114,10 +116,12 @@ def _errors(evidence: BreakthroughEvidence, name: str) -> list[tuple[float | Non
     if miss is not None:
         measured = (miss.lateral_m, miss.longitudinal_m, miss.vertical_m)[i]
     if measured is not None:
-        found.append((abs(measured), "measured"))
+        found.append((abs(measured), said("measured")))
     if found:
         return found
-    why = evidence.refused or said("nothing from which to predict the {name} error", name=name)
+    why = evidence.refused or said(
+        "nothing from which to predict the {name} error", name=term(name)
+    )
     return [(None, said("missing: a prediction ({why})", why=why))]
 
 

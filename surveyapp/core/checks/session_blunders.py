@@ -51,6 +51,7 @@ LEAST_OTHERS: Final = 3
 """Degrees of freedom of the other sessions from which they tell of one."""
 
 Items = Sequence[ReducedSession]
+_CLAUSE: Final = said("statistical test, level shared over the project")
 
 
 def session_blunder_checks(orientation: Orientation) -> list[Check]:
@@ -77,7 +78,7 @@ def _made(
     value: float,
     limit: float,
     unit: str = "",
-    clause: str = "statistical test, level shared over the project",
+    clause: str = _CLAUSE,
     target: str = "",
     passed: bool | None = None,
 ) -> Check:

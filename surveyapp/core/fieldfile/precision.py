@@ -59,6 +59,23 @@ def zenith_precision(sets: Sequence[ReducedSet]) -> tuple[float, int] | None:
     that of the mean of the faces; so are the zenith angles of a target in the sets of a set-up.
     Refraction and the heights of instrument and target are not in it.
     """
+    total, dof = _zenith_squares(sets)
+    return None if dof < LEAST_DOF or total <= 0.0 else (math.sqrt(total / dof), dof)
+
+
+def circle_precision(sets: Sequence[ReducedSet]) -> FacePrecision | None:
+    """Scatter of directions and zenith angles together, where each alone says too little.
+
+    Data sheets give both circles of an instrument one standard deviation. None with fewer than
+    ``LEAST_DOF`` degrees of freedom in both.
+    """
+    total, dof = (sum(x) for x in zip(_direction_squares(sets), _zenith_squares(sets), strict=True))
+    if dof < LEAST_DOF or total <= 0.0:
+        return None
+    return FacePrecision(math.sqrt(total / dof), int(dof))
+
+
+def _zenith_squares(sets: Sequence[ReducedSet]) -> tuple[float, int]:
     found: dict[tuple[str, str, str], list[float]] = {}
     total, dof = _within([item.index_spread for item in sets])
     for item in sets:
@@ -67,8 +84,7 @@ def zenith_precision(sets: Sequence[ReducedSet]) -> tuple[float, int] | None:
                 key = (item.name.rpartition("/")[0], item.at, sight.to)
                 found.setdefault(key, []).append(sight.zenith)
     between, more = _within(list(found.values()))
-    total, dof = total + between, dof + more
-    return None if dof < LEAST_DOF or total <= 0.0 else (math.sqrt(total / dof), dof)
+    return total + between, dof + more
 
 
 def _within(groups: Sequence[Sequence[float]]) -> tuple[float, int]:
@@ -89,12 +105,16 @@ def face_precision(sets: Sequence[ReducedSet]) -> FacePrecision | None:
     Two sources with the same variance, independent of each other as difference and mean of the
     faces are: the collimation within sets, and the directions of a set-up between its sets.
     """
-    total, dof = _within([item.spread for item in sets])
-    between, more = _between_sets(sets)
-    total, dof = total + between, dof + more
+    total, dof = _direction_squares(sets)
     if dof < LEAST_DOF or total <= 0.0:
         return None
     return FacePrecision(math.sqrt(total / dof), dof)
+
+
+def _direction_squares(sets: Sequence[ReducedSet]) -> tuple[float, int]:
+    total, dof = _within([item.spread for item in sets])
+    between, more = _between_sets(sets)
+    return total + between, dof + more
 
 
 def _between_sets(sets: Sequence[ReducedSet]) -> tuple[float, int]:

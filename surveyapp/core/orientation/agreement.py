@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from surveyapp.languages import listed, said
+from surveyapp.languages import listed, said, term
 from surveyapp_models.angles import RHO_ARCSEC
 
 
@@ -37,7 +37,7 @@ class Agreement:
 
 def agreement_text(test: Agreement, what: str) -> str:
     """Tell an agreement or disagreement in one sentence; ``what``: lines or epochs."""
-    names = listed(test.names)
+    names = listed([term(name) if name in ("before", "after") else name for name in test.names])
     if len(test.names) > 3:
         count = len(test.names)
         names = said("{count} epochs", count=count)

@@ -23,7 +23,7 @@ from surveyapp.domain.results import (
     TargetResult,
 )
 from surveyapp.domain.subject import Subject
-from surveyapp.languages import said
+from surveyapp.languages import joined, said
 
 
 def outcome(
@@ -87,7 +87,7 @@ def _loud(checks: Sequence[Check], predicted: frozenset[str]) -> list[ResultWarn
                 text += _INSTEAD if check.subject.id in predicted else _CHOOSE
             found.setdefault((check.warning_code, check.subject), []).append(text)
     return [
-        ResultWarning(code, f"{subject.text}: " + "; ".join(texts), subject)
+        ResultWarning(code, joined(": ", (subject.text, joined("; ", texts))), subject)
         for (code, subject), texts in found.items()
     ]
 

@@ -28,6 +28,7 @@ from surveyapp.core.geodesy import (
     position_of,
 )
 from surveyapp.core.orientation.adopted import apply_adopted
+from surveyapp.core.orientation.assumed_shares import with_shares
 from surveyapp.core.orientation.calibration_sessions import calibrations_of
 from surveyapp.core.orientation.campaign_columns import session_temperature
 from surveyapp.core.orientation.deflection_field import DeflectionField, deflection_field
@@ -178,7 +179,7 @@ def orient_project(
         known,
         lines,
         shown,
-        tuple(warnings),
+        with_shares(project, warnings, lines),
         deflections,
     )
 

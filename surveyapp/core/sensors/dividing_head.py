@@ -9,13 +9,13 @@ of a residual and the true error of the arcsine stand side by side.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from surveyapp.core.sensors.dynamic_test import bandwidth
 from surveyapp.core.sensors.linear import LinearFit, fit_linear, rms
+from surveyapp.core.sensors.linearity import Line, linearity, null
 from surveyapp.domain.calibration import (
     Calibration,
     Geometry,
@@ -37,25 +37,6 @@ TREND_P: Final = 0.001
 """Significance at which a trend of the zero is called warm-up (levelling.md)."""
 
 PF: Final = 1e12
-
-
-@dataclass(frozen=True, slots=True)
-class Line:
-    """E = K0 + K1 sin(angle) of one set, with what it was fitted to."""
-
-    fit: LinearFit
-    angle: Floats
-    output: Floats
-
-    @property
-    def zero(self) -> float:
-        """K0 [output]."""
-        return float(self.fit.x[0])
-
-    @property
-    def slope(self) -> float:
-        """K1 [output per g]."""
-        return float(self.fit.x[1])
 
 
 def _rows(log: SensorLog, test: str) -> Floats:
@@ -88,7 +69,7 @@ def calibrate_dividing_head(log: SensorLog) -> Calibration:
     unit = log.units.get("output", "LSB")
     parameters += _sensitivity(first, unit)
     for number, span in RANGES.items():
-        parameters += _linearity(lines[number], span)
+        parameters += linearity(lines[number], span)
     parameters += _transverse(log, first)
     parameters += _zero(log, first, warnings)
     parameters += _reversal(log, first)
@@ -163,35 +144,13 @@ def _line(log: SensorLog, number: int) -> Line | None:
     return Line(fit, angle, output)
 
 
-def _null(unit: str, *names: str) -> list[SensorParameter]:
-    return [SensorParameter(name, None, None, unit) for name in names]
-
-
 def _sensitivity(line: Line | None, unit: str) -> list[SensorParameter]:
     if line is None:
-        return [*_null(f"{unit}/g", "sensitivity"), *_null(unit, "zero")]
+        return [*null(f"{unit}/g", "sensitivity"), *null(unit, "zero")]
     sigma = line.fit.sigma
     return [
         SensorParameter("sensitivity", line.slope, float(sigma[1]), f"{unit}/g"),
         SensorParameter("zero", line.zero, float(sigma[0]), unit),
-    ]
-
-
-def _linearity(line: Line | None, span: int) -> list[SensorParameter]:
-    name = f"linearity_{span}"
-    if line is None:
-        small = _null("deg", f"{name}_small_angle", f"{name}_arcsine")
-        return [*_null("%FS", name), *small]
-    sine = np.sin(line.angle)
-    largest = float(np.max(np.abs(line.fit.residual)))
-    slope = abs(line.slope)
-    full_scale = slope * float(np.max(sine) - np.min(sine))
-    turned = np.arcsin(np.clip((line.output - line.zero) / line.slope, -1.0, 1.0))
-    arcsine = math.degrees(float(np.max(np.abs(turned - line.angle))))
-    return [
-        SensorParameter(name, 100.0 * largest / full_scale, None, "%FS"),
-        SensorParameter(f"{name}_small_angle", math.degrees(largest / slope), None, "deg"),
-        SensorParameter(f"{name}_arcsine", arcsine, None, "deg"),
     ]
 
 
@@ -200,7 +159,7 @@ def _transverse(log: SensorLog, first: Line | None) -> list[SensorParameter]:
     seven, wave, place = "transverse_seven_position", "transverse_sinusoid", "transverse_direction"
     rows = _rows(log, "transverse")
     if first is None or np.count_nonzero(rows) < 4:
-        return [*_null("%", seven, wave), *_null("deg", place)]
+        return [*null("%", seven, wave), *null("deg", place)]
     angle, flip = log.columns["angle_deg"][rows], log.columns["flip"][rows]
     output, slope = log.columns["output"][rows], abs(first.slope)
     phase = np.radians(angle + 180.0 * flip)
@@ -213,12 +172,12 @@ def _transverse(log: SensorLog, first: Line | None) -> list[SensorParameter]:
         if np.any((angle == a) & (flip == 0.0)) and np.any((angle == a) & (flip == 1.0))
     ]
     noise = None if fit is None else 100.0 * fit.sigma0 / (math.sqrt(2.0) * slope)
-    found = _null("%", seven)
+    found = null("%", seven)
     if pairs:
         largest = 100.0 * max(abs(p) for p in pairs) / (2.0 * slope)
         found = [SensorParameter(seven, largest, noise, "%")]
     if fit is None:
-        return [*found, *_null("%", wave), *_null("deg", place)]
+        return [*found, *null("%", wave), *null("deg", place)]
     cosine, sine = float(fit.x[1]), float(fit.x[2])
     amplitude = math.hypot(cosine, sine)
     along = np.array([0.0, cosine, sine]) / amplitude
@@ -240,7 +199,7 @@ def _zero(
     rows = _rows(log, "zero")
     n = int(np.count_nonzero(rows))
     if first is None or n < 3:
-        return _null("arcsec", *names)
+        return null("arcsec", *names)
     output = log.columns["output"][rows]
     to_arcsec = ARCSEC_PER_RAD / abs(first.slope)
     plain = float(np.std(output, ddof=1)) * to_arcsec
@@ -248,7 +207,7 @@ def _zero(
     fit = fit_linear(np.column_stack([np.ones(n), order]), output)
     found = [SensorParameter(names[0], plain, plain / math.sqrt(2.0 * (n - 1)), "arcsec")]
     if fit is None:
-        return [*found, *_null("arcsec", names[1])]
+        return [*found, *null("arcsec", names[1])]
     rest = fit.sigma0 * to_arcsec
     found.append(SensorParameter(names[1], rest, rest / math.sqrt(2.0 * (n - 2)), "arcsec"))
     p = _trend_p(fit)
@@ -273,14 +232,14 @@ def _reversal(log: SensorLog, first: Line | None) -> list[SensorParameter]:
     """Tilt by turning the sensor by 180 degrees: asin((E0 - E180) / 2 K1)."""
     rows = _rows(log, "reversal")
     if first is None or not np.any(rows):
-        return _null("arcsec", "tilt_reversal")
+        return null("arcsec", "tilt_reversal")
     flip, output = log.columns["flip"][rows], log.columns["output"][rows]
     direct, turned = output[flip == 0.0], output[flip == 1.0]
     if not direct.size or not turned.size:
-        return _null("arcsec", "tilt_reversal")
+        return null("arcsec", "tilt_reversal")
     sine = (float(direct.mean()) - float(turned.mean())) / (2.0 * first.slope)
     if abs(sine) >= 1.0:
-        return _null("arcsec", "tilt_reversal")
+        return null("arcsec", "tilt_reversal")
     noise = first.fit.sigma0 * math.sqrt(1.0 / direct.size + 1.0 / turned.size)
     sigma = noise / (2.0 * abs(first.slope) * math.sqrt(1.0 - sine**2))
     value = math.asin(sine) * ARCSEC_PER_RAD
@@ -293,7 +252,7 @@ def _capacitance(log: SensorLog) -> list[SensorParameter]:
     shares = ("capacitance_difference_over_mean", "capacitance_difference_over_sum")
     rows = _rows(log, "capacitance")
     if not np.any(rows):
-        return [*_null("pF", *plates), *_null("%", *shares)]
+        return [*null("pF", *plates), *null("%", *shares)]
     number = log.columns["set"][rows]
     product = log.columns["frequency_hz"][rows] * log.columns["impedance_ohm"][rows]
     if np.any(product <= 0.0):
@@ -304,13 +263,13 @@ def _capacitance(log: SensorLog) -> list[SensorParameter]:
     for index, name in enumerate(plates, start=1):
         values = capacitance[number == index]
         if not values.size:
-            found_plates += _null("pF", name)
+            found_plates += null("pF", name)
             continue
         sigma = float(np.std(values, ddof=1)) / math.sqrt(values.size) if values.size > 1 else None
         found_plates.append(SensorParameter(name, float(values.mean()), sigma, "pF"))
     upper, lower = found_plates
     if upper.value is None or lower.value is None:
-        return [*found_plates, *_null("%", *shares)]
+        return [*found_plates, *null("%", *shares)]
     difference, total = abs(upper.value - lower.value), upper.value + lower.value
     spread = None
     if upper.sigma is not None and lower.sigma is not None:

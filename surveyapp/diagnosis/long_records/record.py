@@ -71,8 +71,11 @@ class LongRecord:
 
 
 def is_long(problem: Case) -> bool:
-    """Whether a record must be reduced before it is diagnosed."""
-    if problem.size <= LONG:
+    """Whether a record must be reduced before it is diagnosed.
+
+    Channels that were observed side by side are means of stops already.
+    """
+    if problem.size <= LONG or problem.series is not None:
         return False
     known = problem.position[np.isfinite(problem.position)]
     return known.size == 0 or float(np.ptp(known)) > 0.0

@@ -10,6 +10,7 @@ from typing import Final
 
 from surveyapp.core.fieldfile.precision import (
     FacePrecision,
+    circle_precision,
     distance_precision,
     face_precision,
     zenith_precision,
@@ -131,8 +132,13 @@ def _sigmas(
     options: ImportOptions, sets: Sequence[ReducedSet]
 ) -> tuple[dict[str, object], list[ResultWarning]]:
     """Sigmas of the header: told, from the file itself, or assumed and told as such."""
-    angle, first = _angle_sigma(options.sigma_angle_arcsec, face_precision(sets))
-    zenith, more = _zenith_sigma(options.sigma_angle_arcsec, zenith_precision(sets))
+    faces, zeniths = face_precision(sets), zenith_precision(sets)
+    both = circle_precision(sets) if faces is None or zeniths is None else None
+    if both is not None:
+        faces = faces or both
+        zeniths = zeniths or (both.direction, both.dof)
+    angle, first = _angle_sigma(options.sigma_angle_arcsec, faces)
+    zenith, more = _zenith_sigma(options.sigma_angle_arcsec, zeniths)
     distance, second = _distance_sigma(options.sigma_distance, distance_precision(sets))
     centring = (
         f"{ASSUMED_CENTRING_MM:g} mm are assumed for centring and for the height of instrument and "

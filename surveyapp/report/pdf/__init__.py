@@ -32,6 +32,7 @@ from reportlab.platypus import Paragraph as Text
 from reportlab.platypus import Table as Grid
 
 from surveyapp.domain.advance import Advance, silent
+from surveyapp.languages import said, said_each, shown
 from surveyapp.report.blocks import (
     Block,
     Document,
@@ -68,6 +69,7 @@ class Written:
     data: bytes
     pages: int
     missing: tuple[tuple[str, str], ...] = ()
+    referred: tuple[str, ...] = ()
 
 
 def write_pdf(
@@ -126,7 +128,8 @@ def write_pdf(
 
     template.addPageTemplates([PageTemplate(id="page", frames=[frame], onPage=furniture)])
     template.build(_Story(_flowables(document, faces)), canvasmaker=_Canvas.maker(faces))
-    return Written(stream.getvalue(), pages[0], tuple(sorted(faces.missing.items())))
+    missing = tuple(sorted(faces.missing.items()))
+    return Written(stream.getvalue(), pages[0], missing, tuple(sorted(faces.referred)))
 
 
 class _Story(list[Flowable]):
@@ -177,7 +180,7 @@ class _Canvas(Canvas):
         total = self.getPageNumber() - 1
         for number in range(1, total + 1):
             self.beginForm(_NUMBER.format(number), upperx=A4[0], uppery=A4[1])
-            text = f"page {number} of {total}"
+            text = shown(said("page {number} of {total}", number=number, total=total))
             right = MARGIN + WIDTH - self._faces.width(text, SMALL)
             self.setFillColor(QUIET)
             _draw_text(self, self._faces, text, (right, _BOTTOM - 3.5 * mm), SMALL)
@@ -207,7 +210,7 @@ def _fitted(faces: Faces, text: str, size: float, room: float) -> str:
 
 
 _BOTTOM: Final = 16.0 * mm
-_PAGE_ROOM: Final = "page 0000 of 0000"
+_PAGE_ROOM: Final = "страница 0000 из 0000"
 """As wide as a page number may become: the lines of the foot keep away from it."""
 
 
@@ -314,7 +317,7 @@ def _key_values(block: KeyValues, faces: Faces) -> Flowable:
 
 def _signature(block: Signature, faces: Faces) -> Flowable:
     style = style_of(CELL + 0.5)
-    labels = ("role", "name and signature", "place and date")
+    labels = [shown(text) for text in said_each("role", "name and signature", "place and date")]
     quiet = style_of(SMALL, textColor=QUIET)
     rows: list[list[Flowable | str]] = [[Text(faces.markup(label), quiet) for label in labels]]
     rows += [[Text(faces.markup(role), style), "", ""] for role in block.roles]

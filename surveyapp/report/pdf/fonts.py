@@ -39,6 +39,8 @@ class Faces:
     _base: set[str] = field(default_factory=set, repr=False)
     _taken: list[Face] = field(default_factory=list, repr=False)
     missing: dict[str, str] = field(default_factory=dict)
+    referred: set[str] = field(default_factory=set)
+    """CID faces that a page refers to and that are not embedded."""
 
     def of(self, text: str) -> tuple[Face, ...]:
         """Faces for a text: the embedded ones, and a CID face where those lack a wide character."""
@@ -47,6 +49,7 @@ class Faces:
         name = _CID[language_of(text)]
         if name not in pdfmetrics.getRegisteredFontNames():
             pdfmetrics.registerFont(UnicodeCIDFont(name))
+        self.referred.add(name)
         return (*self.embedded, Face(name, is_wide), *self._for_the_rest(text))
 
     def _for_the_rest(self, text: str) -> tuple[Face, ...]:

@@ -121,15 +121,15 @@ def _measured(test: MissTest) -> list[Block]:
         for name, value in zip(names, test.t, strict=True)
     ]
     facts.append((said("chi-square"), said("{chi2:.2f}, p = {p:.4f}", chi2=test.chi2, p=test.p)))
-    facts.append((said("verdict"), test.verdict.replace("_", " ")))
+    facts.append((said("verdict"), term(test.verdict.replace("_", " "))))
     found: list[Block] = [KeyValues(tuple(facts))]
     if test.text:
         found.append(Paragraph(test.text))
     if test.candidates:
         rows = tuple(
             (
-                f"{item.effect.replace('_', ' ')} {item.subject}".strip(),
-                item.component,
+                joined(" ", (term(item.effect.replace("_", " ")), item.subject)),
+                term(item.component),
                 f"{item.needed:+.4g} {item.unit}",
                 plain(item.sigmas, 1),
             )
@@ -160,7 +160,7 @@ def _steps(result: Prediction) -> Table:
     for number, title in enumerate(STEP_TITLES, start=1):
         entries = [step for step in result.steps if step.id == number]
         if not entries:
-            rows.append((f"{number} {title}", said("open"), "", "", ""))
+            rows.append((joined(" ", (str(number), term(title))), said("open"), "", "", ""))
         for step in entries:
             readings = ", ".join(
                 said("{name} {value:+.1f} mm", name=name, value=value)
@@ -172,7 +172,13 @@ def _steps(result: Prediction) -> Table:
             )
             note = "; ".join(part for part in (readings, step.note) if part)
             rows.append(
-                (f"{number} {title}", step.done_at or said("open"), step.by, step.file, note)
+                (
+                    joined(" ", (str(number), term(title))),
+                    step.done_at or said("open"),
+                    step.by,
+                    step.file,
+                    note,
+                )
             )
     return Table(
         said_each("step", "done", "by", "file", "readings and notes"), tuple(rows), "lllll"

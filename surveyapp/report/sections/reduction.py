@@ -67,7 +67,7 @@ def _north(item: SessionResult, unit: AngleUnit) -> list[Row]:
     rows: list[Row] = []
     how = said(
         "{estimator}, {points_used} points, {dof} degrees of freedom",
-        estimator=item.estimator,
+        estimator=term(item.estimator or ""),
         points_used=item.points_used,
         dof=item.dof,
     )
@@ -84,7 +84,7 @@ def _north(item: SessionResult, unit: AngleUnit) -> list[Row]:
         rows += _tape_zero(item.tape_zero, correction)
         how = ""
     origin = (
-        said("sigma from {sigma_source}", sigma_source=item.sigma_source)
+        said("sigma from {sigma_source}", sigma_source=term(item.sigma_source))
         if item.sigma_source
         else said("no sigma: nothing tells")
     )
@@ -137,9 +137,9 @@ def _tape_zero(zero: TapeZeroResult, correction: float | None) -> list[Row]:
                 )
             )
     how = {
-        "time": "interpolated in time to the middle of the run",
-        "mean": "mean of before and after",
-        "single": "the only one",
+        "time": said("interpolated in time to the middle of the run"),
+        "mean": said("mean of before and after"),
+        "single": said("the only one"),
     }.get(zero.interpolation, zero.interpolation)
     rows.append(
         (

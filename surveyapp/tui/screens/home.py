@@ -32,7 +32,7 @@ class HomeScreen(Screen[None]):
         Binding("n", "new", texts.KEY_NEW_PROJECT),
         Binding("o", "folder", texts.KEY_FOLDER),
         Binding("p", "practise", texts.KEY_PRACTISE),
-        Binding("l", "app.language", texts.KEY_LANGUAGE),
+        Binding("l", "app.language", texts.KEY_LANGUAGE, show=False),
         Binding("q", "app.quit", texts.KEY_QUIT),
     ]
 

@@ -182,7 +182,14 @@ its field book stands.
 Verdicts are words: met, NOT MET, warning (a limit that nobody has
 confirmed), open (nothing to compare with). D asks what the model
 lacks, T shows the adjusted traverses, P the breakthrough, S the shafts,
-F5 reads the folder again after an edit by hand.
+F5 reads the folder again. E edits the session's book in your own
+editor ($EDITOR), Shift+E project.toml, C corrects stations, instruments
+and sessions in a form. I imports, X exports.
+"""
+_CORRECT: Final = """The fields hold what stands in project.toml. Change what is wrong, F8
+writes it; an empty field takes the value away. Comments in the file
+stay. What would make the project unusable, or change a session that is
+closed, is refused and said.
 """
 _RESULT_PAGE: Final = """\
 From the reading to the azimuth, one correction a line with its value,
@@ -321,6 +328,7 @@ PAGES: Final = {
     "NewSessionScreen": ("New session", _NEW_SESSION),
     "ProjectScreen": ("A project", _PROJECT),
     "ResultScreen": ("The result", _RESULT_PAGE),
+    "CorrectScreen": ("Correct", _CORRECT),
     "DiagnosisScreen": ("What the model lacks", _DIAGNOSIS),
     "TraverseScreen": ("Traverses", _TRAVERSE),
     "PenetrationScreen": ("Breakthrough", _BREAKTHROUGH),

@@ -44,6 +44,8 @@ NEEDED = (*GYROS, *ACCELEROMETERS)
 OPTIONAL = ("odometer_m", "power_cycle", "heading_deg", "temperature_c")
 SAME_STOP_M = 0.03
 """Stops closer than this are one that was bumped."""
+LONGEST_GAP_S = 0.2
+"""Gap while moving from which a path is not to be used: a turn of 15 degrees/s hides 3 degrees."""
 LEAST_ROWS = 100
 BEGIN_SIGMA = math.radians(0.5)
 """Of the azimuth at the beginning where it is stated without a sigma [rad]."""
@@ -108,7 +110,10 @@ def judge_motion(log: SensorLog, options: MotionOptions) -> Motion:
     )
     record = _Record(log, force, rate, still, noise, interval)
     path, snapped, zero, warnings = _path(record, options)
-    consistent = zero is None or zero["verdict"] == "consistent"
+    unseen = _unseen(time, still, interval) if path is not None else None
+    if unseen is not None:
+        warnings = [*warnings, unseen]
+    consistent = unseen is None and (zero is None or zero["verdict"] == "consistent")
     return Motion(
         source=log.id,
         n=log.size,
@@ -128,6 +133,21 @@ def judge_motion(log: SensorLog, options: MotionOptions) -> Motion:
         met=consistent,
         sha256=log.sha256,
     )
+
+
+def _unseen(time: Floats, still: Mask, interval: float) -> ResultWarning | None:
+    """That a path runs over a gap in which the unit may have moved: it is not known there."""
+    gaps = np.diff(time)
+    rows = np.flatnonzero((gaps > max(LONGEST_GAP_S, 1.5 * interval)) & ~(still[:-1] & still[1:]))
+    if rows.size == 0:
+        return None
+    first = int(rows[0])
+    text = (
+        f"the record has a gap from {time[first]:.6g} to {time[first + 1]:.6g} s while moving"
+        + (f", and {rows.size - 1} more" if rows.size > 1 else "")
+        + ": what was turned there is not known, and the path after it is not to be used"
+    )
+    return ResultWarning("path_over_gap", text)
 
 
 def _thresholds(gate: Gate, limits: Thresholds) -> dict[str, float]:

@@ -297,22 +297,23 @@ class Style:
     filled: frozenset[int]
 
 
-def style_of(text: FieldText, columns: Columns) -> Style:
+def style_of(table: FieldText, columns: Columns) -> Style:
     """How a table writes its cells.
 
     A spreadsheet that drops idle zeros does so with every tenth number; then nothing can be said
-    of decimals.
+    of decimals. A number that is written again (a height) tells nothing more.
 
     Parameters
     ----------
-    text : FieldText
+    table : FieldText
     columns : Columns
     """
     counts: dict[int, Counter[int]] = {place: Counter() for place in columns.places.values()}
     heights = [place for name, place in columns.places.items() if name in ("hi", "ht")]
     given: Counter[int] = Counter()
+    told: dict[int, set[str]] = {place: set() for place in counts}
     rows = 0
-    for line_number, line in text.lines():
+    for line_number, line in table.lines():
         if line_number <= columns.header_line:
             continue
         row = _split(line, columns.separator)
@@ -321,8 +322,11 @@ def style_of(text: FieldText, columns: Columns) -> Style:
         rows += 1
         given.update(place for place in heights if row[place])
         for place, count in counts.items():
-            if columns.is_number(place, row[place]):
-                count[decimals_of(row[place], comma=columns.comma)] += 1
+            text = row[place]
+            if text not in told[place] and columns.is_number(place, text):
+                count[decimals_of(text, comma=columns.comma)] += 1
+                if len(told[place]) < _SAMPLE:
+                    told[place].add(text)
     filled = frozenset(
         place for place in heights if rows >= _LEAST_ROWS and given[place] >= _USUAL * rows
     )
