@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from surveyapp.cli.orient import checks_text, warnings_text
-from surveyapp.cli.output import print_json
+from surveyapp.cli.output import WIDTH, print_json
 from surveyapp.errors import Problem, SurveyError
 
 
@@ -40,6 +39,8 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print_json(found.to_dict())
     else:
-        text = checks_text(found.checks) or "Nothing in this project can be checked yet."
-        print("\n\n".join(filter(None, [text, warnings_text(found.warnings)])))
+        from surveyapp.report.sections import checks
+        from surveyapp.report.text import blocks_text
+
+        print(blocks_text(checks.blocks(found.checks, found.warnings), WIDTH))
     return 0 if found.passed else 1

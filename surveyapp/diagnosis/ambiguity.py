@@ -7,7 +7,7 @@ import numpy as np
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.compare import added_signal, best_with
 from surveyapp.diagnosis.fits import Fit
-from surveyapp.diagnosis.loop import NOISE_WORDS, Search
+from surveyapp.diagnosis.loop import NOISE_WORDS, Search, noise_words
 from surveyapp.diagnosis.result import Ambiguity
 from surveyapp.languages import said
 
@@ -41,9 +41,9 @@ def ambiguities(problem: Case, found: Search) -> tuple[Ambiguity, ...]:
     if not options:
         return ()
     for _, reason in found.refused:
-        for kind, words in NOISE_WORDS.items():
+        for kind in NOISE_WORDS:
             noise = best_with(found.levels[-1], kind)
-            if words in reason and noise is not None:
+            if noise_words(problem, kind) in reason and noise is not None:
                 options.setdefault(kind, noise)
     best = min(fit.bic for fit in found.near)
     options = dict(list(options.items())[:MOST_OPTIONS])

@@ -54,6 +54,17 @@ NOISE_WORDS = {
 }
 
 
+WANDERING_CHANNEL = said("a bias that wanders at random")
+"""Of channels side by side, which have no north."""
+
+
+def noise_words(problem: Case, kind: str) -> str:
+    """A noise in words, as it shows in a record of this kind."""
+    if kind == "random_walk" and problem.series is not None:
+        return WANDERING_CHANNEL
+    return NOISE_WORDS[kind]
+
+
 @dataclass(frozen=True, slots=True)
 class Search:
     """What the search found, before it is put into words.
@@ -235,7 +246,8 @@ def _failure(problem: Case, after: Fit, names: list[str], proofs: Proofs) -> tup
                 return name, said("it does not help to predict observations that were left out")
         kind = imitating_noise(problem, after, without)
         if kind is not None:
-            return name, said("{kind} would look like it too often", kind=NOISE_WORDS[kind])
+            words = noise_words(problem, kind)
+            return name, said("{kind} would look like it too often", kind=words)
         if proofs.confirm is not None and not is_event(after, name):
             failure = unconfirmed(proofs.confirm, after, without)
             failure = failure or other_coefficient(proofs.confirm, after, without, name)

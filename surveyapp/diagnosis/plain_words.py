@@ -96,8 +96,11 @@ def _figure(result: Diagnosis, value: float, sign: str = "") -> str:
 
 def _name(identity: str, known: dict[str, Effect]) -> str:
     parts = identity.split(" + ")
+    shapes = NOISE_AND_SHAPES
+    if any(effect.subject == "rate" for effect in known.values()):
+        shapes = {**shapes, "random_walk": said("a bias that wanders at random")}
     titles = [
-        NOISE_AND_SHAPES.get(part, term(known[part].title.lower()) if part in known else part)
+        shapes.get(part, term(known[part].title.lower()) if part in known else part)
         for part in parts
     ]
     whole = titles[0]

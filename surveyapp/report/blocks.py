@@ -6,6 +6,7 @@ numbers are formatted by the section, lengths in figures are millimetres on pape
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -128,7 +129,34 @@ class PageBreak:
     """What follows begins on a new page."""
 
 
-Block = Heading | Paragraph | KeyValues | Table | Figure | Signature | PageBreak
+@dataclass(frozen=True, slots=True)
+class ForWidth:
+    """The same facts twice: with the width of a page, and for a terminal.
+
+    Parameters
+    ----------
+    page, narrow : tuple of Block
+    """
+
+    page: tuple[Block, ...]
+    narrow: tuple[Block, ...]
+
+
+Block = Heading | Paragraph | KeyValues | Table | Figure | Signature | PageBreak | ForWidth
+
+
+def on_page(blocks: Iterable[Block]) -> Iterator[Block]:
+    """The blocks as a page shows them."""
+    for block in blocks:
+        if isinstance(block, ForWidth):
+            yield from on_page(block.page)
+        else:
+            yield block
+
+
+def without_figures(blocks: Iterable[Block]) -> tuple[Block, ...]:
+    """The blocks that tell everything in words and numbers."""
+    return tuple(block for block in blocks if not isinstance(block, Figure))
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,7 +24,7 @@ def seconds(angle: float | None, decimals: int = 2, *, sign: bool = False) -> st
 
 
 def signed_angle(angle: float | None) -> str:
-    """A small angle [rad] with its sign: seconds, from a minute on minutes and seconds too."""
+    """A small angle [rad] with its sign: seconds, from a minute and a degree on those as well."""
     if angle is None or not math.isfinite(angle):
         return NOTHING
     total = round(abs(angle) * RHO_ARCSEC, 2)
@@ -32,7 +32,10 @@ def signed_angle(angle: float | None) -> str:
     minutes, rest = divmod(total, 60.0)
     if not minutes:
         return f'{sign}{rest:.2f}"'
-    return f'{sign}{minutes:.0f}\'{rest:05.2f}" ({sign}{total:.2f}")'
+    degrees, minutes = divmod(minutes, 60.0)
+    if not degrees:
+        return f"{sign}{minutes:.0f}'{rest:05.2f}\""
+    return f"{sign}{degrees:.0f}\N{DEGREE SIGN}{minutes:02.0f}'{rest:05.2f}\""
 
 
 def direction(angle: float | None, unit: AngleUnit, decimals: int = 1) -> str:
@@ -45,6 +48,11 @@ def with_sigma(item: AngleResult | None, unit: AngleUnit) -> tuple[str, str, str
     if item is None:
         return NOTHING, NOTHING, NOTHING
     return direction(item.value, unit), seconds(item.sigma), seconds(item.interval95)
+
+
+def line_name(station: str, target: str | None) -> str:
+    """A line as people write it; a station alone where it has no target."""
+    return station if target is None else f"{station}-{target}"
 
 
 def four_digits(value: float | None) -> str:

@@ -125,7 +125,7 @@ SECTIONS: Final[tuple[Section, ...]] = (
     Section("reduction", lambda r: reduction.blocks(r.project, r.result)),
     Section("fieldbook", lambda r: fieldbook.blocks(r.project)),
     Section("extras", _extras),
-    Section("checks", lambda r: checks.blocks(r.result)),
+    Section("checks", lambda r: checks.blocks(r.result.checks, r.result.warnings)),
     Section("seal", lambda r: seal.blocks(r.seals)),
     Section("signature", lambda _: signature.blocks()),
     Section("full_numbers", lambda r: full_numbers.blocks(r.result)),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import textwrap
 import unicodedata
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import Final
 
@@ -12,6 +12,7 @@ from surveyapp.report.blocks import (
     Block,
     Document,
     Figure,
+    ForWidth,
     Heading,
     KeyValues,
     Label,
@@ -28,6 +29,10 @@ from surveyapp.report.in_words import in_words
 WIDTH: Final = 100
 _NARROWEST: Final = 8
 """Columns below which no text is squeezed."""
+_LEAST_TEXT: Final = 14
+"""Columns below which a last text stands below its row."""
+_BELOW: Final = 4
+"""Columns by which it is set in."""
 _GAP: Final = 2
 _MM_PER_COLUMN: Final = 2.0
 _MM_PER_ROW: Final = 4.0
@@ -51,8 +56,16 @@ def blocks_text(blocks: Iterable[Block], width: int = WIDTH) -> str:
     width : int
         Columns of the terminal: texts are wrapped, and texts of tables where they must be.
     """
-    told = in_words(tuple(blocks))
-    return "\n\n".join(part for block in told if (part := block_text(block, width)))
+    text, last = "", None
+    for block in in_words(tuple(blocks)):
+        part = block_text(block, width)
+        if not part:
+            continue
+        # remarks of one kind stand close together
+        close = isinstance(block, Paragraph) and block.tone == last != "body"
+        text += (("\n" if close else "\n\n") if text else "") + part
+        last = block.tone if isinstance(block, Paragraph) else None
+    return text
 
 
 def block_text(block: Block, width: int = WIDTH) -> str:
@@ -63,7 +76,10 @@ def block_text(block: Block, width: int = WIDTH) -> str:
             return f"{block.text}\n{rule * display_width(block.text)}"
         case Paragraph():
             mark = "! " if block.tone == "warning" else ""
-            return textwrap.fill(mark + block.text, width, break_on_hyphens=False)
+            set_in = "" if block.tone == "body" else "  "
+            return textwrap.fill(
+                mark + block.text, width, subsequent_indent=set_in, break_on_hyphens=False
+            )
         case KeyValues():
             return _facts(block, width)
         case Table():
@@ -72,6 +88,8 @@ def block_text(block: Block, width: int = WIDTH) -> str:
             return _figure(block)
         case Signature():
             return "\n\n".join(f"  {role}: ______________________" for role in block.roles)
+        case ForWidth():
+            return blocks_text(block.narrow, width)
         case PageBreak():
             return ""
 
@@ -98,49 +116,110 @@ def _facts(block: KeyValues, width: int) -> str:
 
 def table_text(table: Table, width: int = WIDTH, *, indent: int = 2) -> str:
     """A table: columns as wide as needed, the widest texts wrapped where the terminal ends."""
+    return "\n".join(line for _, line in table_lines(table, width, indent=indent))
+
+
+def table_lines(
+    table: Table, width: int = WIDTH, *, indent: int = 2
+) -> Iterator[tuple[int | None, str]]:
+    """The lines of a table, each with the number of its row; None for the head.
+
+    Texts of a last column that would be squeezed together stand below their rows instead.
+    """
     align = table.align or "l" * len(table.head)
     rows = [
         tuple(f"~{cell}~" if cell else "" for cell in row) if index in table.struck else row
         for index, row in enumerate(table.rows)
     ]
-    everything = (table.head, *rows) if any(table.head) else tuple(rows)
-    widths = [max(display_width(row[i]) for row in everything) for i in range(len(align))]
-    room = width - indent - _GAP * (len(align) - 1)
-    words = [max(_longest_word(row[i]) for row in everything) for i in range(len(align))]
-    _squeeze(widths, align, [max(_NARROWEST, word) for word in words], room)
-    narrow = list(widths)
-    _squeeze(narrow, align, [_NARROWEST] * len(align), room)
-    if sum(narrow) <= room:  # words are broken only where that helps
-        widths = narrow
-    lines = []
-    for row in everything:
+    headed = any(table.head)
+    everything = (table.head, *rows) if headed else tuple(rows)
+    below = _finds_no_room(everything, align, width - indent)
+    shown = [row[:-1] for row in everything] if below else list(everything)
+    widths, gap = _layout(shown, align[: len(align) - below], width - indent)
+    for place, row in enumerate(shown):
+        number = place - headed if place >= headed else None
         cells = [_wrapped(c, w) for c, w in zip(row, widths, strict=True)]
         for i in range(max((len(cell) for cell in cells), default=0)):
-            shown = [
+            parts = [
                 _padded(cell[i] if i < len(cell) else "", w, a)
-                for cell, w, a in zip(cells, widths, align, strict=True)
+                for cell, w, a in zip(cells, widths, align, strict=False)
             ]
-            lines.append((" " * indent + (" " * _GAP).join(shown)).rstrip())
-    return "\n".join(lines)
+            yield number, (" " * indent + (" " * gap).join(parts)).rstrip()
+        if below and number is not None and everything[place][-1]:
+            for line in _wrapped(everything[place][-1], width - indent - _BELOW):
+                yield number, " " * (indent + _BELOW) + line
+
+
+def _finds_no_room(rows: Sequence[Sequence[str]], align: str, room: int) -> bool:
+    """Whether the texts of the last column would have less than their least width."""
+    if len(align) < 2 or not align.endswith("l") or not rows:
+        return False
+    floors = [w if a == "r" else min(w, f) for w, f, a in _columns(rows, align)]
+    widest = max(display_width(row[-1]) for row in rows)
+    floors[-1] = min(widest, max(floors[-1], _LEAST_TEXT))
+    return sum(floors) + _GAP * (len(align) - 1) > room
+
+
+def _columns(rows: Sequence[Sequence[str]], align: str) -> list[tuple[int, int, str]]:
+    """Width of each column, the least that leaves its words whole, and its alignment."""
+    widths = [max(display_width(row[i]) for row in rows) for i in range(len(align))]
+    words = [max(_longest_word(row[i]) for row in rows) for i in range(len(align))]
+    return [(w, max(_NARROWEST, f), a) for w, f, a in zip(widths, words, align, strict=True)]
+
+
+def _layout(rows: Sequence[Sequence[str]], align: str, room: int) -> tuple[list[int], int]:
+    """Columns of each cell and between cells.
+
+    What does not fit is squeezed step by step: texts to their words, heads of numbers to their
+    words, the gaps, texts to their parts before and after hyphens. Numbers stay whole.
+    """
+    if not rows:
+        return [0] * len(align), _GAP
+    columns = _columns(rows, align)
+    widths = [width for width, _, _ in columns]
+    numbers = [
+        max((display_width(row[i]) for row in rows[1:]), default=0) for i in range(len(align))
+    ]
+    heads = [
+        max(number, _longest_word(cell)) for number, cell in zip(numbers, rows[0], strict=True)
+    ]
+    halves = [
+        max(_longest_word(row[i].replace("-", "- ")) for row in rows) for i in range(len(align))
+    ]
+    texts = [width if a == "r" else floor for width, floor, a in columns]
+    whole = [
+        head if a == "r" else floor for head, (_, floor, a) in zip(heads, columns, strict=True)
+    ]
+    parts = [
+        head if a == "r" else max(_NARROWEST, half)
+        for head, half, a in zip(heads, halves, align, strict=True)
+    ]
+    least = [head if a == "r" else _NARROWEST for head, a in zip(heads, align, strict=True)]
+    for floors, gap in ((texts, _GAP), (whole, _GAP), (whole, 1), (parts, 1), (least, 1)):
+        _squeeze(widths, floors, room - gap * (len(align) - 1))
+        if sum(widths) + gap * (len(align) - 1) <= room:
+            return widths, gap
+    return widths, 1
 
 
 def _longest_word(cell: str) -> int:
     return max((display_width(word) for word in cell.split()), default=0)
 
 
-def _squeeze(widths: list[int], align: str, floors: list[int], available: int) -> None:
-    """Take columns from the widest texts until the table fits, or no text has any left."""
+def _squeeze(widths: list[int], floors: Sequence[int], available: int) -> None:
+    """Take columns from the widest cells until the row fits, or none has any left."""
     while sum(widths) > available:
-        texts = [i for i, letter in enumerate(align) if letter != "r" and widths[i] > floors[i]]
-        if not texts:
+        free = [i for i, width in enumerate(widths) if width > floors[i]]
+        if not free:
             return
-        widths[max(texts, key=lambda i: widths[i])] -= 1
+        widths[max(free, key=lambda i: widths[i])] -= 1
 
 
 def _wrapped(cell: str, width: int) -> list[str]:
     if display_width(cell) <= width:
         return [cell]
-    return textwrap.wrap(cell, width) or [""]
+    whole = _longest_word(cell) <= width
+    return textwrap.wrap(cell, width, break_on_hyphens=not whole) or [""]
 
 
 def _figure(figure: Figure) -> str:

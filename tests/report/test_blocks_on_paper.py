@@ -102,9 +102,10 @@ def test_a_figure_in_a_terminal_shows_its_labels() -> None:
 def test_numbers_say_what_is_not_known() -> None:
     assert plain(None) == plain(math.inf) == plain(math.nan) == "-"
     assert plain(-0.0001, 2) == "0.00"
-    assert signed_angle(-1519.79 * ARCSEC) == '-25\'19.79" (-1519.79")'
+    assert signed_angle(-1519.79 * ARCSEC) == "-25'19.79\""
+    assert signed_angle(3723.45 * ARCSEC) == "+1\N{DEGREE SIGN}02'03.45\""
     assert signed_angle(-1e-9 * ARCSEC) == '+0.00"'
-    assert signed_angle(59.999 * ARCSEC) == '+1\'00.00" (+60.00")'
+    assert signed_angle(59.999 * ARCSEC) == "+1'00.00\""
 
 
 def test_odd_blocks_can_be_written() -> None:

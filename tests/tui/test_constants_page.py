@@ -18,6 +18,7 @@ from surveyapp.core.orientation.constant_axis import EPOCH, calendar_moment, con
 from surveyapp.core.orientation.predicted_constant import CAUSE, SCATTER
 from surveyapp.core.orientation.terms import TERMS
 from surveyapp.domain.results import BudgetLine, ConstantResult, Determination
+from surveyapp.report.sections.improvement import ADVICE
 from surveyapp.tui import texts
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.widgets.constants import ConstantCanvas, ConstantPlot, draw_constant
@@ -170,4 +171,4 @@ def test_every_source_of_error_has_an_advice() -> None:
     assert len(names) > 10
     adopted = {ADOPTED, f"{ADOPTED} outside its range"}
     told = names | set(SWING_SOURCES) | adopted | set(TERMS) | {CAUSE, SCATTER}
-    assert told <= set(texts.IMPROVE)
+    assert told <= set(ADVICE)

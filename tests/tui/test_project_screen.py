@@ -42,7 +42,7 @@ async def test_shows_the_grid_azimuths_that_the_api_computes(
         await app.workers.wait_for_complete()
         await pilot.pause()
         await pilot.press("2")
-        shown = {row[0]: row[2] for row in table_of(app, "lines")}
+        shown = {row[0]: row[4] for row in table_of(app, "lines")}
     assert shown == {
         f"{line.station}-{line.target}": format_angle(line.grid_azimuth.value, AngleUnit.DMS)
         for line in expected.lines

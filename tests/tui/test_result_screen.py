@@ -16,10 +16,9 @@ from surveyapp.core.simulate.specification import SessionSpec
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.errors import SurveyError
 from surveyapp.observation.session import NewRow, SessionDesk
-from surveyapp.tui import texts
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.result import ResultScreen
-from surveyapp.tui.views.result import result_headline, result_sections
+from surveyapp.tui.views.result import result_headline, result_text
 from surveyapp_models.angles import AngleUnit
 from tests.tui.helpers_tui import SMALL, make_project, simulated
 
@@ -76,7 +75,7 @@ def test_points_on_the_scale_stand_in_divisions(tmp_path: Path) -> None:
     (folder / "observations" / "r1.csv").write_text(simulated_book, encoding="utf-8")
     project = api.open_project(folder)
     result = api.orient(project, session="r1")
-    sections = dict(result_sections(project, result, "r1", 74))
-    lines = sections[texts.R_POINTS].plain.splitlines()
-    assert len(lines) == 8
-    assert all(" div " in line for line in lines)
+    lines = result_text(project, result, "r1", 74).plain.splitlines()
+    head = next(i for i, line in enumerate(lines) if line.split()[:2] == ["point", "seq"])
+    assert "residual div" in lines[head]
+    assert [line.split()[0] for line in lines[head + 1 : head + 9]] == list("12345678")

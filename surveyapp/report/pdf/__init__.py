@@ -37,6 +37,7 @@ from surveyapp.report.blocks import (
     Block,
     Document,
     Figure,
+    ForWidth,
     Heading,
     KeyValues,
     PageBreak,
@@ -262,6 +263,8 @@ def _block(block: Block, faces: Faces) -> list[Flowable]:
             return [KeepTogether([*figure_flowables(block, faces), Spacer(0, 2.0 * mm)])]
         case Signature():
             return [KeepTogether([_signature(block, faces)])]
+        case ForWidth():
+            return [flowable for item in block.page for flowable in _block(item, faces)]
         case PageBreak():
             return [NewPage()]
 

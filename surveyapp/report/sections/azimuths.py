@@ -5,24 +5,23 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from surveyapp.domain.project import Project
-from surveyapp.domain.results import (
-    AngleResult,
-    CombinedResult,
-    LineResult,
-    OrientationResult,
-    to_degrees,
-)
-from surveyapp.languages import joined, said, said_each
+from surveyapp.domain.results import AngleResult, CombinedResult, LineResult, OrientationResult
+from surveyapp.languages import counted, joined, said, said_each, term
 from surveyapp.report.blocks import Block, Heading, Paragraph, Table
 from surveyapp.report.numbers import (
     NOTHING,
     direction,
+    line_name,
     plain,
     seconds,
     signed_angle,
     with_sigma,
 )
+from surveyapp.report.sections.improvement import most_helps
 from surveyapp_models.angles import AngleUnit
+
+STEPS = said_each("step", "value", '±"', '95 % ±"', "where it comes from")
+"""Columns of every table of steps."""
 
 
 def blocks(project: Project, result: OrientationResult) -> tuple[Block, ...]:
@@ -30,10 +29,10 @@ def blocks(project: Project, result: OrientationResult) -> tuple[Block, ...]:
     found: list[Block] = [Heading(said("Azimuths"))]
     if not result.lines:
         text = said("No line was oriented: no survey session has sights of a target.")
-        return (Heading(said("Azimuths")), Paragraph(text), *_norths(project, result))
-    found.append(_summary(project, result))
+        return (Heading(said("Azimuths")), Paragraph(text))
+    found.append(summary(project, result))
     for line in result.lines:
-        found += _line(project, line)
+        found += line_blocks(project, line)
     return (*found, *_combined(project, result.combined))
 
 
@@ -44,7 +43,7 @@ def _combined(project: Project, sides: Sequence[CombinedResult]) -> tuple[Block,
         test = f"{plain(side.chi_square, 2)} ({side.dof})"
         verdict = said("agree") if side.agree else said("disagree, not combined")
         lines = joined("; ", [joined(" ", (of.name, _share(of.weight))) for of in side.lines])
-        name = f"{side.station} - {side.target}"
+        name = line_name(side.station, side.target)
         value = with_sigma(side.grid_azimuth, project.angle_unit)
         rows.append((name, *value, test, verdict, lines))
     if not rows:
@@ -62,20 +61,12 @@ def _share(weight: float | None) -> str:
     return said("no sigma") if weight is None else plain(100.0 * weight, 1)
 
 
-def _norths(project: Project, result: OrientationResult) -> tuple[Block, ...]:
-    rows = [
-        (session.id, session.station, *with_sigma(session.gyro_north, project.angle_unit))
-        for session in result.sessions
-        if session.gyro_north is not None
-    ]
-    if not rows:
-        return ()
-    head = said_each("session", "station", "gyro north on the circle", '±"', '95 % ±"')
-    return (Table(head, tuple(rows), "llrrr"),)
+SUMMARY = said_each("line", "instrument", "rounds", "azimuth", "value", '±"', '95 % ±"')
+"""Columns of ``summary``."""
 
 
-def _summary(project: Project, result: OrientationResult) -> Table:
-    unit = project.angle_unit
+def summary(project: Project, result: OrientationResult) -> Table:
+    """Each oriented line in one row, with the last azimuth that it reaches."""
     rows = []
     for line in result.lines:
         final = line.grid_azimuth or line.true_azimuth or line.gyro_azimuth
@@ -86,36 +77,39 @@ def _summary(project: Project, result: OrientationResult) -> Table:
             if line.true_azimuth
             else said("gyro")
         )
-        rows.append(
-            (
-                f"{line.station} - {line.target}",
-                line.instrument,
-                str(line.rounds),
-                kind,
-                *with_sigma(final, unit),
-                plain(to_degrees(final.value), 6),
-            )
-        )
-    head = said_each("line", "instrument", "rounds", "azimuth", "value", '±"', '95 % ±"', "degrees")
-    return Table(head, tuple(rows), "llrlrrrr", strong=frozenset(range(len(rows))))
+        name, value = line_name(line.station, line.target), with_sigma(final, project.angle_unit)
+        rows.append((name, line.instrument, str(line.rounds), kind, *value))
+    return Table(SUMMARY, tuple(rows), "llrlrrr", strong=frozenset(range(len(rows))))
 
 
-def _line(project: Project, line: LineResult) -> list[Block]:
-    unit = project.angle_unit
-    rows, strong = _steps(project, line, unit)
-    head = said_each("step", "value", '±"', '95 % ±"', "where it comes from")
-    found: list[Block] = [
-        Heading(said("Line {station} - {target}", station=line.station, target=line.target), 2),
-        Table(head, tuple(rows), "lrrrl", strong=strong),
-    ]
-    if line.budget:
-        budget = [
-            (item.source, seconds(item.sigma), plain(100.0 * item.share, 1)) for item in line.budget
-        ]
-        found.append(
-            Table(said_each("source of error", '±"', "share of variance %"), tuple(budget), "lrr")
-        )
-    return found
+def line_blocks(project: Project, line: LineResult) -> tuple[Block, ...]:
+    """One line: every step from the gyro azimuth on, the budget, and what would help most."""
+    rows, strong = _steps(project, line, project.angle_unit)
+    name = line_name(line.station, line.target)
+    return (
+        Heading(said("Line {name}", name=name), 2),
+        Table(STEPS, tuple(rows), "lrrrl", strong=strong),
+        *_budget(line),
+    )
+
+
+def _budget(line: LineResult) -> tuple[Block, ...]:
+    """The parts of the sigma, those that are zero in one sentence, and the part that matters."""
+    if not line.budget:
+        return ()
+    rows = tuple(
+        (term(item.source), seconds(item.sigma), plain(100.0 * item.share, 1))
+        for item in line.budget
+        if item.sigma > 0.0
+    )
+    head = said_each("source of error", '±"', "share of variance %")
+    zero = [term(item.source) for item in line.budget if item.sigma == 0.0]
+    found: list[Block] = [Table(head, rows, "lrr")] if rows else []
+    if zero:
+        found.append(Paragraph(said("Zero: {sources}.", sources=joined(", ", zero)), "small"))
+    if helps := most_helps(line):
+        found.append(Paragraph(helps))
+    return tuple(found)
 
 
 def _steps(
@@ -136,7 +130,12 @@ def _steps(
     result(
         said("gyro azimuth"),
         line.gyro_azimuth,
-        said("{rounds} rounds: {sessions}", rounds=line.rounds, sessions=sessions),
+        counted(
+            "{count} round: {sessions}",
+            "{count} rounds: {sessions}",
+            count=line.rounds,
+            sessions=sessions,
+        ),
     )
     choice = line.constant_choice or ""
     origin = said("no constant of this instrument is known")

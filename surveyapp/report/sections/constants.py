@@ -5,54 +5,53 @@ from __future__ import annotations
 import math
 
 from surveyapp.core.orientation.constant_axis import EPOCH, calendar_moment
-from surveyapp.domain.results import ConstantResult, Determination, OrientationResult, to_arcsec
-from surveyapp.languages import said, said_each, term
-from surveyapp.report.blocks import Block, Figure, Heading, KeyValues, Table
-from surveyapp.report.numbers import NOTHING, plain, seconds
+from surveyapp.domain.results import (
+    Check,
+    ConstantResult,
+    Determination,
+    OrientationResult,
+    to_arcsec,
+)
+from surveyapp.domain.subject import Subject
+from surveyapp.languages import joined, said, said_each, term
+from surveyapp.report.blocks import Block, Figure, Heading, Paragraph, Table
+from surveyapp.report.numbers import NOTHING, four_digits, line_name, plain, seconds
 from surveyapp.report.plots import Axis, Frame, axis
 
-_STABLE = {
-    True: said("stable"),
-    False: said("NOT STABLE: lines or epochs disagree"),
-    None: said("nothing can tell"),
-}
+_STABLE = {True: said("stable"), False: said("NOT STABLE"), None: ""}
+
+
+SUMMARY = said_each("instrument", "line", 'constant "', '±"', "n", "rounds", "length m")
+"""Columns of ``summary``."""
+TESTS = ("constant.lines", "constant.before_after", "constant.known")
+"""Checks that tell whether a constant stands still."""
 
 
 def blocks(result: OrientationResult) -> tuple[Block, ...]:
-    """Blocks of every instrument whose constant is known."""
-    found: list[Block] = []
-    for constant in result.constants:
-        if constant.value is not None:
-            found += _constant(constant)
-    return (Heading(said("Instrument constant")), *found) if found else ()
-
-
-def _constant(constant: ConstantResult) -> list[Block]:
+    """All constants line by line, then each with its tests and its determinations."""
+    shown = [constant for constant in result.constants if constant.value is not None]
+    if not shown:
+        return ()
     found: list[Block] = [
-        Heading(
-            said(
-                "{instrument}: true minus gyro azimuth, astronomic terms",
-                instrument=constant.instrument,
-            ),
-            2,
-        ),
-        KeyValues(
-            (
-                (
-                    said("constant"),
-                    f'{seconds(constant.value, sign=True)}" ± {seconds(constant.sigma)}"',
-                ),
-                (said("95 % interval"), f'± {seconds(constant.interval95)}"'),
-                (said("choice"), term(constant.choice)),
-                (said("determinations"), str(constant.count)),
-                (said("stability"), _STABLE[constant.stable]),
-            )
-        ),
+        Heading(said("Instrument constant (true minus gyro, astronomic terms)")),
+        summary(result),
     ]
-    if constant.by_line:
-        rows = tuple(
+    for constant in shown:
+        found += [Paragraph(text) for text in told(result, constant)]
+        if constant.determinations:
+            found += [_determinations(constant), _plot(constant)]
+    return tuple(found)
+
+
+def summary(result: OrientationResult) -> Table:
+    """One row for each calibration line of each instrument, then what is made of them."""
+    rows: list[tuple[str, ...]] = []
+    strong: set[int] = set()
+    for constant in result.constants:
+        rows += [
             (
-                f"{line.station} - {line.target}",
+                constant.instrument,
+                line_name(line.station, line.target),
                 seconds(line.value, sign=True),
                 seconds(line.sigma),
                 str(line.count),
@@ -60,12 +59,51 @@ def _constant(constant: ConstantResult) -> list[Block]:
                 plain(line.distance_m, 1),
             )
             for line in constant.by_line
-        )
-        head = said_each("known line", 'constant "', '±"', "determinations", "rounds", "length m")
-        found.append(Table(head, rows, "lrrrrr"))
-    if constant.determinations:
-        found += [_determinations(constant), _plot(constant)]
-    return found
+        ]
+        if constant.value is not None:
+            strong.add(len(rows))
+            value, sigma = seconds(constant.value, sign=True), seconds(constant.sigma)
+            choice = joined(" ", (term(constant.choice), *filter(None, [_STABLE[constant.stable]])))
+            rows.append((constant.instrument, choice, value, sigma, str(constant.count), "", ""))
+    return Table(SUMMARY, tuple(rows), "llrrrrr", strong=frozenset(strong))
+
+
+def owner_of(result: OrientationResult, row: int) -> ConstantResult | None:
+    """The constant that a row of ``summary`` belongs to."""
+    owners = [
+        constant
+        for constant in result.constants
+        for _ in range(len(constant.by_line) + (constant.value is not None))
+    ]
+    return owners[row] if 0 <= row < len(owners) else None
+
+
+def told(result: OrientationResult, constant: ConstantResult) -> list[str]:
+    """The value in force with its interval, then each test with its verdict."""
+    value = said(
+        '{instrument}: {choice} {value}" ±{sigma}", ±{interval}" (95 %)',
+        instrument=constant.instrument,
+        choice=term(constant.choice),
+        value=seconds(constant.value, sign=True),
+        sigma=seconds(constant.sigma),
+        interval=seconds(constant.interval95),
+    )
+    own = Subject.of("instrument", constant.instrument)
+    tests = [_test(c) for c in result.checks if c.rule in TESTS and c.subject == own]
+    return [value, *(tests or [said("Nothing can tell whether it stands still.")])]
+
+
+def _test(check: Check) -> str:
+    """A test in words, with its numbers where the words do not tell them."""
+    if '"' in check.text:
+        return said("{verdict}: {text}", verdict=term(check.verdict), text=check.text)
+    return said(
+        '{verdict}: {text}: {value}", limit {limit}"',
+        verdict=term(check.verdict),
+        text=check.text or check.rule,
+        value=four_digits(check.value),
+        limit=four_digits(check.limit),
+    )
 
 
 def _determinations(constant: ConstantResult) -> Table:
@@ -77,7 +115,7 @@ def _determinations(constant: ConstantResult) -> Table:
         rows.append(
             (
                 item.session,
-                f"{item.station} - {item.target}",
+                line_name(item.station, item.target),
                 term(item.phase),
                 seconds(item.value, sign=True),
                 seconds(item.sigma),

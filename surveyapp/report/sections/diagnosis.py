@@ -81,14 +81,23 @@ def value_text(diagnosis: Diagnosis, quantity: Estimate, unit: AngleUnit) -> str
             f"{format_angle(wrap_two_pi(quantity.value), unit)} \N{PLUS-MINUS SIGN}{plain(sigma)}"
         )
     value = quantity.value / diagnosis.scale
+    if diagnosis.unit != "arcsec":
+        return f"{value:+.4g} \N{PLUS-MINUS SIGN}{_figure(diagnosis, sigma)}"
     return f"{plain(value, 2, sign=True)} \N{PLUS-MINUS SIGN}{plain(sigma)}"
+
+
+def _figure(diagnosis: Diagnosis, value: float | None) -> str:
+    """To a tenth of an arc-second; in another unit, whose size nobody knows, three figures."""
+    if value is None or diagnosis.unit == "arcsec":
+        return plain(value)
+    return f"{value:.3g}"
 
 
 def models(diagnosis: Diagnosis, unit: AngleUnit) -> Table:
     """Before, after, and averaged over the models."""
 
     def small(value: float | None) -> str:
-        return plain(None if value is None else value / diagnosis.scale)
+        return _figure(diagnosis, None if value is None else value / diagnosis.scale)
 
     def row(name: str, model: ModelResult) -> tuple[str, ...]:
         return (

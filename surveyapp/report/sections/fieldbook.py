@@ -39,7 +39,7 @@ def blocks(project: Project) -> tuple[Block, ...]:
 
 
 def _session(session: OrientationSession) -> list[Block]:
-    line = session.station if session.target is None else f"{session.station} - {session.target}"
+    line = session.station if session.target is None else f"{session.station}-{session.target}"
     facts = [
         (said("line"), line),
         (said("instrument, method"), joined(", ", (session.instrument, term(session.method)))),

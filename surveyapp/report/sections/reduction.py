@@ -12,30 +12,74 @@ from surveyapp.domain.results import (
     TargetResult,
 )
 from surveyapp.languages import joined, said, said_each, term
-from surveyapp.report.blocks import Block, Figure, Heading, Paragraph, Table
+from surveyapp.report.blocks import Block, Heading, Paragraph, Table
 from surveyapp.report.numbers import (
     NOTHING,
     direction,
+    line_name,
     plain,
     seconds,
     signed_angle,
     with_sigma,
 )
-from surveyapp.report.plots import Frame, axis, half_wave
-from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, wrap_pi, wrap_two_pi
+from surveyapp.report.sections import session_sensors
+from surveyapp.report.sections.azimuths import STEPS
+from surveyapp.report.sections.swing_plots import plots
+from surveyapp_models.angles import AngleUnit, wrap_pi, wrap_two_pi
 
 Row = tuple[str, str, str, str, str]
 
 
 def blocks(project: Project, result: OrientationResult) -> tuple[Block, ...]:
-    """Blocks of every session."""
-    found: list[Block] = []
-    for item in result.sessions:
-        found += _session(project, item)
-    return (Heading(said("Reduction")), *found) if found else ()
+    """All sessions, then the reduction of each."""
+    found = [block for item in result.sessions for block in session_blocks(project, item)]
+    return (*summary(project, result), *found)
 
 
-def _session(project: Project, item: SessionResult) -> list[Block]:
+SUMMARY = said_each("session", "method", "points", "gyro north", "azimuth", '±"', 'rms "')
+"""Columns of ``summary``."""
+
+
+def summary(project: Project, result: OrientationResult) -> tuple[Block, ...]:
+    """Each session in one row, then each sight of a target in one row."""
+    unit = project.angle_unit
+    rows = tuple(summary_row(item, unit) for item in result.sessions)
+    if not rows:
+        return ()
+    found: list[Block] = [Heading(said("Sessions")), Table(SUMMARY, rows, "llrrrrr")]
+    sights = tuple(
+        (
+            item.id,
+            term(item.purpose),
+            line_name(item.station, target.target),
+            with_sigma(target.line_reading, unit)[0],
+            *with_sigma(target.gyro_azimuth, unit)[:2],
+        )
+        for item in result.sessions
+        for target in item.targets
+    )
+    if sights:
+        head = said_each("session", "purpose", "line", "line reading", "gyro azimuth", '±"')
+        found.append(Table(head, sights, "lllrrr"))
+    return tuple(found)
+
+
+def summary_row(item: SessionResult, unit: AngleUnit) -> tuple[str, ...]:
+    """One session: what it was reduced from, gyro north, and the azimuth of its target."""
+    azimuth = None if item.main is None else item.main.gyro_azimuth
+    return (
+        item.id,
+        joined(", ", (term(item.method), term(item.estimator))),
+        str(item.points_used),
+        with_sigma(item.gyro_north, unit)[0],
+        with_sigma(azimuth, unit)[0],
+        with_sigma(azimuth or item.gyro_north, unit)[1],
+        seconds(item.residual_rms, 1),
+    )
+
+
+def session_blocks(project: Project, item: SessionResult) -> tuple[Block, ...]:
+    """The reduction of one session: every step, figures of merit, its points and warnings."""
     unit = project.angle_unit
     session = project.session(item.id)
     rows = [*_north(item, unit)]
@@ -44,20 +88,20 @@ def _session(project: Project, item: SessionResult) -> list[Block]:
         rows += _target(session, target, unit)
         if target.gyro_azimuth is not None:
             strong.add(len(rows) - 1)
-    line = item.station if item.target is None else f"{item.station} - {item.target}"
-    head = said_each("step", "value", '±"', '95 % ±"', "where it comes from")
+    line = line_name(item.station, item.target)
     found: list[Block] = [
         Heading(
             said("Session {id}: {line}, {method}", id=item.id, line=line, method=term(item.method)),
             2,
         ),
-        Table(head, tuple(rows), "lrrrl", strong=frozenset(strong)),
+        Table(STEPS, tuple(rows), "lrrrl", strong=frozenset(strong)),
+        *session_sensors.blocks(item, unit),
         *_effects(project, session),
         _figures_of_merit(item),
     ]
     found += _points(item, unit)
     found += [Paragraph(joined(": ", (w.code, w.text)), "warning") for w in item.warnings]
-    return found
+    return tuple(found)
 
 
 def _north(item: SessionResult, unit: AngleUnit) -> list[Row]:
@@ -297,80 +341,4 @@ def _points(item: SessionResult, unit: AngleUnit) -> list[Block]:
         tuple(tuple(row[i] for i in used) for row in rows),
         "".join("rrcrrrrr"[i] for i in used),
     )
-    return [table, *_plots(item)]
-
-
-def _plots(item: SessionResult) -> list[Figure]:
-    residuals = [(float(p.index + 1), p.residual) for p in item.points if p.residual is not None]
-    scale = item.method in ("amplitude", "transit")
-    figures = []
-    if len(item.points) > 2 and item.method != "automatic":
-        figures.append(_scale_swing(item) if scale else _swing(item))
-    if len(residuals) > 1:
-        factor, unit = (1.0, said("div")) if scale else (RHO_ARCSEC, said("arcsec"))
-        points = [(x, y * factor) for x, y in residuals]
-        figures.append(_residuals(item, points, unit))
-    return figures
-
-
-def _swing(item: SessionResult) -> Figure:
-    """Turning points about gyro north in arc-minutes, the fitted swing between them."""
-    reference = item.gyro_north.value if item.gyro_north is not None else item.points[0].observed
-    reference -= item.tape_zero_correction or 0.0
-
-    def minutes(angle: float) -> float:
-        return wrap_pi(angle - reference) * RHO_ARCSEC / 60.0
-
-    observed = [(float(p.index + 1), minutes(p.observed)) for p in item.points]
-    fitted = [(float(p.index + 1), minutes(p.fitted)) for p in item.points if p.fitted is not None]
-    frame = Frame(
-        axis([x for x, _ in observed], count=10, whole=True),
-        axis([y for _, y in observed], about_zero=True),
-    )
-    parts = frame.axes(said("turning point"), said("arcmin from gyro north as observed"))
-    parts.append(frame.level(0.0, "mean"))
-    if len(fitted) > 1:
-        parts.append(frame.curve(half_wave(fitted), "data"))
-    parts += frame.marks(observed, "circle")
-    return frame.figure(said("Swing: circles observed, line fitted"), parts)
-
-
-def _scale_swing(item: SessionResult) -> Figure:
-    """Turning points on the scale, the fitted swing between them."""
-    observed = [(float(p.index + 1), p.observed) for p in item.points]
-    fitted = [(float(p.index + 1), p.fitted) for p in item.points if p.fitted is not None]
-    frame = Frame(
-        axis([x for x, _ in observed], count=10, whole=True), axis([y for _, y in observed])
-    )
-    parts = frame.axes(said("turning point"), said("divisions"))
-    middle = {name: value for name, value, _ in item.quantities}.get("middle of the swing")
-    if middle is not None:
-        parts.append(frame.level(middle, "mean"))
-    if len(fitted) > 1:
-        parts.append(frame.curve(half_wave(fitted), "data"))
-    parts += frame.marks(observed, "circle")
-    title = said("Swing on the scale: circles observed, line fitted; dashed: its middle")
-    return frame.figure(title, parts)
-
-
-def _residuals(item: SessionResult, points: list[tuple[float, float]], unit: str) -> Figure:
-    sigma = None
-    if item.reading_sigma is not None and math.isfinite(item.reading_sigma):
-        sigma = item.reading_sigma * (RHO_ARCSEC if unit == "arcsec" else 1.0)
-    values = [y for _, y in points] + ([2.0 * sigma] if sigma else [])
-    frame = Frame(
-        axis([x for x, _ in points], count=10, whole=True),
-        axis(values, about_zero=True),
-        height_mm=45.0,
-    )
-    parts = frame.axes(said("point"), unit)
-    parts.append(frame.level(0.0, "axis"))
-    if sigma:
-        parts += [frame.level(2.0 * sigma, "limit"), frame.level(-2.0 * sigma, "limit")]
-    for x, y in points:
-        parts += frame.bar(x, low=min(0.0, y), high=max(0.0, y))
-    parts += frame.marks(points, "dot")
-    title = (
-        said("Residuals; dashed: twice the sigma of one reading") if sigma else said("Residuals")
-    )
-    return frame.figure(title, parts)
+    return [table, *plots(item)]

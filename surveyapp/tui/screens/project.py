@@ -36,6 +36,8 @@ from surveyapp.tui.widgets.problems import Problems
 from surveyapp.tui.widgets.records import Records
 from surveyapp.tui.widgets.titlebar import TitleBar
 
+SIDES = 6
+"""Columns beside the details: padding and scroll bar."""
 PAGES = {
     "sessions": texts.TAB_SESSIONS,
     "lines": texts.TAB_LINES,
@@ -296,4 +298,5 @@ class ProjectScreen(Screen[None]):
         """What is known of a row of a page."""
         if self.result is None or self.project is None:
             return Text()
-        return details_of(self.project, self.result, page, row)
+        width = self.size.width - SIDES
+        return details_of(self.project, self.result, page, row, width=width)

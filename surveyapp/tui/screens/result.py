@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import ClassVar
 
-from rich.text import Text
 from textual import work
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
@@ -27,7 +26,7 @@ from surveyapp.tui.drafts import Draft
 from surveyapp.tui.entry_desk import problem_text
 from surveyapp.tui.screens.signature import SignatureScreen
 from surveyapp.tui.views.checks import summary
-from surveyapp.tui.views.result import result_headline, result_sections, truth_text
+from surveyapp.tui.views.result import result_headline, result_text, truth_text
 from surveyapp.tui.widgets.problems import problems_text
 from surveyapp.tui.widgets.titlebar import TitleBar
 
@@ -137,11 +136,7 @@ class ResultScreen(Screen[None]):
         if self.project is None or self.result is None:
             return
         width = max(self.size.width - SIDES, 40)
-        text = Text()
-        for heading, body in result_sections(self.project, self.result, self.session, width):
-            text.append(f"{heading}\n", style="bold underline")
-            text.append_text(body).rstrip()
-            text.append("\n\n")
+        text = result_text(self.project, self.result, self.session, width)
         self.query_one("#sections", Static).update(text)
 
     def on_result_screen_failed(self, message: Failed) -> None:

@@ -17,22 +17,11 @@ FOUND: Final = "found: {text}"
 EXPECTED: Final = "expected: {text}"
 
 # columns
-COL_SESSION: Final = "session"
-COL_METHOD: Final = "method"
-COL_POINTS: Final = "n"
 COL_NORTH: Final = "gyro north"
-COL_SIGMA: Final = '±"'
 COL_AZIMUTH: Final = "gyro azimuth"
-COL_LINE: Final = "line"
 COL_GRID: Final = "grid azimuth"
-COL_INTERVAL: Final = '95 % ±"'
-COL_CONSTANT: Final = 'constant "'
-COL_COUNT: Final = "n"
-COL_INSTRUMENT: Final = "instrument"
-COL_LENGTH: Final = "length m"
 COL_VERDICT: Final = "verdict"
 COL_CHECK: Final = "check"
-COL_WHERE: Final = "where"
 COL_VALUE: Final = "value"
 COL_LIMIT: Final = "limit"
 COL_WARNING: Final = "warning"

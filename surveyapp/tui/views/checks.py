@@ -1,43 +1,10 @@
-"""Checks as rows of text; the verdict is a word and never a colour alone."""
+"""Checks in half a sentence, and a value with its unit."""
 
 from __future__ import annotations
 
-from surveyapp.domain.results import Check, OrientationResult
-from surveyapp.languages import shown, translated
+from surveyapp.domain.results import OrientationResult
+from surveyapp.languages import translated
 from surveyapp.tui import texts
-
-CHECK_COLUMNS = (
-    texts.COL_VERDICT,
-    texts.COL_CHECK,
-    texts.COL_WHERE,
-    texts.COL_VALUE,
-    texts.COL_LIMIT,
-)
-
-
-def ordered_checks(result: OrientationResult) -> list[Check]:
-    """The checks, what is not met first, what could not be answered last."""
-    order = {False: 0, True: 1, None: 2}
-    return sorted(result.checks, key=lambda check: order[check.passed])
-
-
-def check_rows(result: OrientationResult) -> list[tuple[str, ...]]:
-    """Each check in one row, what is not met first."""
-    return [
-        (
-            translated(check.verdict),
-            check.rule,
-            shown(check.where),
-            quantity_text(check.value, check.unit),
-            quantity_text(check.limit, check.unit),
-        )
-        for check in ordered_checks(result)
-    ]
-
-
-def check_texts(result: OrientationResult) -> list[str]:
-    """Sentence and clause of each check, in the order of ``check_rows``."""
-    return [f"{shown(check.text)}\n{shown(check.clause)}" for check in ordered_checks(result)]
 
 
 def quantity_text(value: float | None, unit: str) -> str:

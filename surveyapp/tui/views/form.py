@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from surveyapp.domain.results import AngleResult, finite, to_arcsec
+from surveyapp.report.numbers import signed_angle
 from surveyapp.tui import texts
 from surveyapp_models.angles import AngleUnit, format_angle
 
@@ -36,13 +37,4 @@ def number_text(value: float | None, decimals: int = 1, *, sign: bool = False) -
 
 def small_text(value: float | None) -> str:
     """A small angle [rad]: its sign and seconds, from a minute and a degree on those as well."""
-    seconds = to_arcsec(value)
-    if seconds is None or value is None:
-        return texts.NOT_DETERMINED
-    if abs(seconds) < 59.995:
-        return f'{seconds:+.2f}"'
-    sign = "-" if value < 0.0 else "+"
-    degrees, minutes, rest = format_angle(abs(value), AngleUnit.DMS, 2).split("-")
-    if int(degrees):
-        return f"{sign}{degrees}°{minutes}'{rest}\""
-    return f"{sign}{int(minutes)}'{rest}\""
+    return signed_angle(value)

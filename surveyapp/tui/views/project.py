@@ -1,4 +1,4 @@
-"""The pages of a project: their rows, and what is known of one."""
+"""The pages of a project: their rows, and what is known of one, from the blocks of the record."""
 
 from __future__ import annotations
 
@@ -7,16 +7,15 @@ from rich.text import Text
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
 from surveyapp.languages import shown
+from surveyapp.report.sections import azimuths, checks, reduction
 from surveyapp.tui import texts
-from surveyapp.tui.views.checks import CHECK_COLUMNS, check_rows, check_texts
-from surveyapp.tui.views.lines import LINE_COLUMNS, budget_rows, chain_rows, helps_text, line_rows
-from surveyapp.tui.views.session import SESSION_COLUMNS, session_details, session_rows
-from surveyapp.tui.widgets.records import pairs_text, table_text
+from surveyapp.tui.views.blocks import blocks_as_text
+from surveyapp.tui.views.session import session_rows
 
 LISTS: dict[str, tuple[tuple[str, ...], str]] = {
-    "sessions": (SESSION_COLUMNS, texts.NO_SESSIONS),
-    "lines": (LINE_COLUMNS, texts.NO_LINES),
-    "checks": (CHECK_COLUMNS, texts.NO_CHECK_ROWS),
+    "sessions": (reduction.SUMMARY, texts.NO_SESSIONS),
+    "lines": (azimuths.SUMMARY, texts.NO_LINES),
+    "checks": (checks.HEAD, texts.NO_CHECK_ROWS),
     "warnings": ((texts.COL_WARNING,), texts.NO_WARNINGS),
 }
 """Columns of each page that is a list, and what it says without rows."""
@@ -26,33 +25,24 @@ def page_rows(project: Project, result: OrientationResult) -> dict[str, list[tup
     """Rows of each page that is a list."""
     return {
         "sessions": session_rows(project, result),
-        "lines": line_rows(result, project.angle_unit),
-        "checks": check_rows(result),
+        "lines": list(azimuths.summary(project, result).rows),
+        "checks": [checks.row(check) for check in checks.ordered(result.checks)],
         "warnings": [(warning.code,) for warning in result.warnings],
     }
 
 
-def details_of(project: Project, result: OrientationResult, page: str, row: int) -> Text:
+def details_of(
+    project: Project, result: OrientationResult, page: str, row: int, *, width: int
+) -> Text:
     """Details of a row of the page of sessions, lines, checks or warnings."""
     if page == "sessions":
-        return _session(project, result, project.sessions[row].id)
+        wanted = project.sessions[row].id
+        for session in result.sessions:
+            if session.id == wanted:
+                return blocks_as_text(reduction.session_blocks(project, session), width)
+        return Text(texts.BEING_OBSERVED)
     if page == "lines":
-        return _line(project, result, row)
+        return blocks_as_text(azimuths.line_blocks(project, result.lines[row]), width)
     if page == "checks":
-        return Text(check_texts(result)[row])
+        return Text(shown(checks.details(checks.ordered(result.checks)[row])))
     return Text(shown(result.warnings[row].text))
-
-
-def _session(project: Project, result: OrientationResult, wanted: str) -> Text:
-    for session in result.sessions:
-        if session.id == wanted:
-            return pairs_text(session_details(session, project.angle_unit))
-    return Text(texts.BEING_OBSERVED)
-
-
-def _line(project: Project, result: OrientationResult, row: int) -> Text:
-    line = result.lines[row]
-    text = table_text(chain_rows(project, line), left=(0, 3))
-    head = (texts.D_BUDGET, texts.COL_SIGMA, texts.D_SHARE)
-    text.append("\n").append_text(table_text([head, *budget_rows(line)]))
-    return text.append(helps_text(line))

@@ -16,13 +16,9 @@ from textual.widgets import DataTable, Static
 
 from surveyapp.core.orientation.constant_axis import ConstantAxis, constant_axis
 from surveyapp.domain.results import ConstantResult, Determination, OrientationResult
+from surveyapp.languages import shown
+from surveyapp.report.sections import constants as section
 from surveyapp.tui import texts
-from surveyapp.tui.views.constants import (
-    CONSTANT_COLUMNS,
-    constant_of,
-    constant_rows,
-    constant_told,
-)
 from surveyapp.tui.widgets.canvas import Canvas
 from surveyapp.tui.widgets.records import Records
 from surveyapp_models.angles import ARCSEC
@@ -48,13 +44,13 @@ class ConstantsPage(Vertical):
 
     def compose(self) -> ComposeResult:
         """Table and drawing."""
-        yield Records(CONSTANT_COLUMNS, empty=texts.NO_CONSTANTS)
+        yield Records(section.SUMMARY, empty=texts.NO_CONSTANTS)
         yield ConstantPlot()
 
     def show(self, result: OrientationResult) -> None:
         """Show another result."""
         self.result = result
-        self.query_one(Records).show(constant_rows(result))
+        self.query_one(Records).show(section.summary(result).rows)
         self.draw(0)
 
     def on_data_table_row_highlighted(self, event: DataTable.RowHighlighted) -> None:
@@ -64,7 +60,7 @@ class ConstantsPage(Vertical):
     def draw(self, row: int) -> None:
         """Draw the constant that a row of the table belongs to."""
         if self.result is not None:
-            self.query_one(ConstantPlot).show(self.result, constant_of(self.result, row))
+            self.query_one(ConstantPlot).show(self.result, section.owner_of(self.result, row))
 
 
 class ConstantPlot(Vertical):
@@ -80,7 +76,7 @@ class ConstantPlot(Vertical):
         self.display = constant is not None and constant.value is not None
         if constant is not None:
             self.query_one(ConstantCanvas).show(constant)
-            lines = "\n".join(constant_told(result, constant))
+            lines = "\n".join(shown(text) for text in section.told(result, constant))
             self.query_one("#constant-told", Static).update(lines)
 
 

@@ -9,6 +9,7 @@ from textual.app import ComposeResult
 from textual.containers import Container, VerticalScroll
 from textual.widgets import DataTable, Static
 
+from surveyapp.languages import shown
 from surveyapp.tui.cells import columns, padded
 
 NUMERIC = "+-±.0123456789"
@@ -48,7 +49,7 @@ class Records(Container):
     def on_mount(self) -> None:
         """Nothing is shown before there is something to show."""
         table = self.query_one(DataTable)
-        table.add_columns(*self.columns)
+        table.add_columns(*(shown(column) for column in self.columns))
         self._show(rows=0)
         self.query_one(".empty").display = False
 
@@ -61,7 +62,7 @@ class Records(Container):
         ]
         for row in rows:
             cells = [
-                Text(cell, justify="right" if numeric else "left", no_wrap=True)
+                Text(shown(cell), justify="right" if numeric else "left", no_wrap=True)
                 for cell, numeric in zip(row, right, strict=True)
             ]
             table.add_row(*cells)
@@ -71,6 +72,13 @@ class Records(Container):
         self.query_one(DataTable).display = rows > 0
         self.query_one(VerticalScroll).display = rows > 0 and self.details is not None
         self.query_one(".empty").display = rows == 0
+
+    def on_resize(self) -> None:
+        """The details take the width that there is."""
+        table = self.query_one(DataTable)
+        if self.details is not None and table.row_count:
+            text = self.details(max(table.cursor_row, 0))
+            self.query_one(VerticalScroll).query_one(Static).update(text)
 
     def on_data_table_row_highlighted(self, event: DataTable.RowHighlighted) -> None:
         """Show the details of the row."""
