@@ -21,6 +21,7 @@ from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Column, Columns, Effect
 from surveyapp_models.effects.rate import DEG_S
+from surveyapp_models.effects.rate.gross_error import rows as rows_of
 
 PASS = Column("pass", "number of the pass, from 1")
 TABLE = Column("table_rate", "of the table about the axis that points up, rad/s")
@@ -128,5 +129,8 @@ def fog_case(turns: Sequence[FogTurn], *, identity: str, extra: tuple[Effect, ..
         f"pass {t.pass_id}, set {t.set_id}, {'back' if t.rate > 0.0 else 'clockwise'}"
         for t in turns
     )
-    record = Record(output, columns, identity=identity, labels=labels, extra=extra)
+    named = {"row": dict(zip(rows_of(columns).tolist(), labels, strict=True))}
+    record = Record(
+        output, columns, identity=identity, labels=labels, grid_labels=named, extra=extra
+    )
     return case_of(subject, record)

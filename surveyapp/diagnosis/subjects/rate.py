@@ -36,6 +36,7 @@ from surveyapp_models.effects.rate import (
     TEMPERATURE,
     by_axis,
 )
+from surveyapp_models.effects.rate.gross_error import rows as rows_of
 
 LEAST_STOPS = 4
 
@@ -199,6 +200,7 @@ def rate_case(
         sigma=sigma,
         identity=identity,
         labels=tuple(labels),
+        grid_labels={"row": dict(zip(rows_of(columns).tolist(), labels, strict=True))},
         groups=columns["stop"],
         series=series,
         extra=extra,
