@@ -20,15 +20,22 @@ def basis(columns: Columns, /, **grid: float) -> Floats:
 
 
 def begins(columns: Columns) -> Floats:
-    """Times in the first two thirds of the record."""
-    low, high = columns["time_s"].min(), columns["time_s"].max()
-    return np.asarray(low + (high - low) * np.arange(1, COARSE * 2 // 3) / COARSE)
+    """Times of rows in the first two thirds of the record."""
+    times = np.unique(columns["time_s"])
+    places = np.floor(_shares(1.0 / COARSE, 2.0 / 3.0) * (times.size - 1)).astype(np.intp)
+    return np.asarray(times[np.unique(np.maximum(places, 1))])
 
 
 def ends(columns: Columns) -> Floats:
-    """Times in the last third of the record."""
-    low, high = columns["time_s"].min(), columns["time_s"].max()
-    return np.asarray(low + (high - low) * np.arange(COARSE * 2 // 3, COARSE) / COARSE)
+    """Times of later rows, in the last third of the record."""
+    times = np.unique(columns["time_s"])
+    shares = _shares(2.0 / 3.0 + 1.0 / COARSE, 1.0)
+    return np.asarray(times[np.unique(np.ceil(shares * (times.size - 1)).astype(np.intp))])
+
+
+def _shares(low: float, high: float) -> Floats:
+    """Even shares of the record, a place of the grid apart."""
+    return np.linspace(low, high, round(COARSE * (high - low)) + 1)
 
 
 EFFECT = Effect(
