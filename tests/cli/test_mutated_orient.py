@@ -95,7 +95,7 @@ def judge(files: dict[str, bytes], name: str) -> None:
     swaps=SWAPS,
 )
 @seed(20261122)
-@settings(max_examples=600, deadline=None, database=None)
+@settings(max_examples=250, deadline=None, database=None)
 def check_one_mutant(
     base: str,
     where: float,
@@ -112,11 +112,11 @@ def check_one_mutant(
     judge(files, f"{base}, {name}")
 
 
-def test_six_hundred_mutants_are_oriented_or_refused() -> None:
+def test_two_hundred_and_fifty_mutants_are_oriented_or_refused() -> None:
     check_one_mutant()
-    assert sum(COUNTS.values()) >= 500
-    assert COUNTS[2] > 100
-    assert COUNTS[0] + COUNTS[1] > 100
+    assert sum(COUNTS.values()) >= 200
+    assert COUNTS[2] > 40
+    assert COUNTS[0] + COUNTS[1] > 40
 
 
 def test_every_base_is_oriented() -> None:
