@@ -203,7 +203,7 @@ def further(line: Line, count: int, seed: int) -> tuple[Coverage, int]:
     return joined([part_of(line, min(PART, count - at), (seed, at)) for at in starts])
 
 
-def row_of(name: str, quantity: str, item: Coverage, before: str = "", silent: int = 0) -> str:
+def row_of(name: str, quantity: str, item: Coverage, before: str = "", *, silent: int = 0) -> str:
     """One row of the table."""
     held = round(item.share * item.errors.size)
     size = item.errors.size
@@ -234,7 +234,7 @@ def further_rows(place: int) -> list[str]:
     """Row of the further line at a place of ``FURTHER``: 1000 runs."""
     line = FURTHER[place]
     found, silent = further(line, FURTHER_RUNS, 20261128 + place)
-    return [row_of(line.name, NAMES[line.quantity], found, line.before, silent)]
+    return [row_of(line.name, NAMES[line.quantity], found, line.before, silent=silent)]
 
 
 def page(rows: list[str]) -> list[str]:

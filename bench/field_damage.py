@@ -37,7 +37,7 @@ def run() -> Iterator[str]:
                     if made is not None and not (
                         form in FREE_COLUMNS and kind in ("drop", "double")
                     ):
-                        counts[kind][outcome(file, written, truth, made, kind)] += 1
+                        counts[kind][outcome(file, written, truth, made, kind=kind)] += 1
             for kind, found in counts.items():
                 numbers = " ".join(f"{found[name]:8d}" for name in OUTCOMES)
                 yield f"{form:<8} {kind:<8} {numbers}"

@@ -73,7 +73,7 @@ def coverage_of_headings() -> Iterator[str]:
         heading = rng.uniform(0.0, 2.0 * math.pi)
         body = attitude_matrix(heading=heading, pitch=math.radians(pitch), roll=math.radians(roll))
         bias = rng.normal(0.0, 10.0, 3) * DEG_H
-        found = solve_indexing([_stop(body, phi, bias, a, rng) for a in index], Setting(phi))
+        found = solve_indexing([_stop(body, phi, bias, a, rng=rng) for a in index], Setting(phi))
         if found.verdict != "resolved":
             told += 1
             continue
@@ -85,7 +85,7 @@ def coverage_of_headings() -> Iterator[str]:
 
 
 def _stop(
-    body: Floats, latitude: float, bias: Floats, angle: float, rng: np.random.Generator
+    body: Floats, latitude: float, bias: Floats, angle: float, *, rng: np.random.Generator
 ) -> Stop:
     sensor = body @ axis_rotation(2, -math.radians(angle))
     rate = sensor.T @ earth_rate(latitude) + bias + rng.normal(0.0, SIGMA, 3)

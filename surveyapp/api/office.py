@@ -77,7 +77,7 @@ def report(
         extras = (*extras, *_diagnoses(found, advance))
     document, sections = _record(found, extras)
     with in_language(language):
-        made = _write_document(document, sections, Path(output), font, advance)
+        made = _write_document(document, sections, Path(output), font, advance=advance)
     if secret is None:
         return made
     from surveyapp.io.filing.signatures import sign_file
@@ -235,6 +235,7 @@ def _write_document(
     sections: tuple[str, ...],
     output: Path,
     font: Folder | None,
+    *,
     advance: Advance = silent,
 ) -> ReportResult:
     from surveyapp.io.outputs import write_output

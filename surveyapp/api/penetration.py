@@ -70,7 +70,7 @@ def predict(
     if plan is not None:
         allowed = None if found.tolerance is None else found.tolerance.lateral_m
         candidates = candidates_of(ready.mine, ready.defaults)
-        placed = plan_sides(ready.mine, candidates, plan, allowed, found.factor)
+        placed = plan_sides(ready.mine, candidates, plan, allowed, factor=found.factor)
         return replace(found, plan=placed)
     if monte_carlo:
         return replace(found, simulated=simulated(ready.mine, executor))

@@ -64,10 +64,10 @@ def compare_snapshots(a: Snapshot, b: Snapshot) -> ComparisonResult:
     unknown: list[str] = []
     if a.files is None or b.files is None:
         unknown.append("input")
-        found += _pair("input", "sha256 of the input", a.result, b.result, "input_sha256")
+        found += _pair("input", "sha256 of the input", a.result, b.result, key="input_sha256")
     else:
         found += _files(a, b)
-    found += _pair("software", "software", a.result, b.result, "software")
+    found += _pair("software", "software", a.result, b.result, key="software")
     parts: tuple[tuple[Part, object, object], ...] = (
         ("card", a.cards, b.cards),
         ("rule_book", a.rule_book, b.rule_book),
@@ -86,7 +86,7 @@ def compare_snapshots(a: Snapshot, b: Snapshot) -> ComparisonResult:
 
 
 def _pair(
-    part: Part, name: str, a: Mapping[str, Any], b: Mapping[str, Any], key: str
+    part: Part, name: str, a: Mapping[str, Any], b: Mapping[str, Any], *, key: str
 ) -> list[Difference]:
     left, right = str(a.get(key, "")), str(b.get(key, ""))
     return [] if left == right else [Difference(part, name, left, right)]

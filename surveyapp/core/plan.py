@@ -147,7 +147,9 @@ def _combined(own: float, dof: float, zero: float) -> tuple[float, float]:
 def _tracking(card: InstrumentCard, here: CardAt, most: int) -> list[_Candidate]:
     if card.sigma.reversal is None or here.tracking_s is None:
         return []
-    return _turning_points(card, here, most, here.tracking_s.value, (card.sigma.reversal, 1.0))
+    return _turning_points(
+        card, here, most, here.tracking_s.value, reading=(card.sigma.reversal, 1.0)
+    )
 
 
 def _clamped_scale(card: InstrumentCard, here: CardAt) -> float | None:
@@ -160,11 +162,13 @@ def _amplitude(card: InstrumentCard, here: CardAt, most: int) -> list[_Candidate
     scale = _clamped_scale(card, here)
     if scale is None or card.sigma.scale_div is None or here.clamped_s is None:
         return []
-    return _turning_points(card, here, most, here.clamped_s.value, (card.sigma.scale_div, scale))
+    return _turning_points(
+        card, here, most, here.clamped_s.value, reading=(card.sigma.scale_div, scale)
+    )
 
 
 def _turning_points(
-    card: InstrumentCard, here: CardAt, most: int, period: float, reading: tuple[float, float]
+    card: InstrumentCard, here: CardAt, most: int, period: float, *, reading: tuple[float, float]
 ) -> list[_Candidate]:
     """Turning points alone; ``reading``: sigma of one, and what one unit of it is in north."""
     spread, scale = reading

@@ -140,7 +140,7 @@ def search(problem: Case, *, draws: int, confirm: Case | None) -> Search:
     chosen = _chosen(last, near) or base
     names = _names(problem, levels, near, confirmed=confirm is not None)
     proofs = Proofs(current, draws, confirm)
-    adopted, refused, after = _proved(problem, chosen, names, base, proofs)
+    adopted, refused, after = _proved(problem, chosen, names, base, proofs=proofs)
     return Search(
         tuple(levels),
         tuple(gates),
@@ -202,7 +202,7 @@ class Proofs:
 
 
 def _proved(
-    problem: Case, best: Fit, names: list[str], base: Fit, proofs: Proofs
+    problem: Case, best: Fit, names: list[str], base: Fit, *, proofs: Proofs
 ) -> tuple[tuple[str, ...], tuple[tuple[str, str], ...], Fit]:
     """Keep the names that predict better and are missed when removed; fit them jointly."""
     refused: list[tuple[str, str]] = []

@@ -144,7 +144,7 @@ def pool(cases: Sequence[Case], rng: np.random.Generator) -> Pooled:
         best = max(
             (i for i, (n, _) in enumerate(columns) if n == name), key=lambda i: evidence[0, i]
         )
-        found.append(_effect(cases, told, (name, best), float(per_effect[0, k]), p))
+        found.append(_effect(cases, told, (name, best), float(per_effect[0, k]), p=p))
     noises = np.sum([item.noises for item in told], axis=0)
     split = len(WALKS)
     for name, values in zip(NOISES, (noises[:split], noises[split:]), strict=True):
@@ -271,6 +271,7 @@ def _effect(
     told: Sequence[_Told],
     which: tuple[str, int],
     evidence: float,
+    *,
     p: float,
 ) -> PooledEffect:
     """The common coefficient at the best grid point: mean over sessions and their differences."""

@@ -143,7 +143,7 @@ def case_of(subject: Subject, record: Record) -> Case:
     values = np.asarray(record.observations, dtype=np.float64)
     columns = {name: np.asarray(c, dtype=np.float64) for name, c in record.columns.items()}
     sigma = None if record.sigma is None else np.asarray(record.sigma, dtype=np.float64)
-    _check(subject, record.identity, values, columns, sigma)
+    _check(subject, record.identity, values, columns, sigma=sigma)
     position = columns.get(subject.position, np.arange(values.size, dtype=np.float64))
     weights = np.full(values.size, 1.0 / max(values.size, 1))
     if sigma is not None:
@@ -188,6 +188,7 @@ def _check(
     identity: str,
     values: Floats,
     columns: Mapping[str, Floats],
+    *,
     sigma: Floats | None,
 ) -> None:
     where = identity or subject.title

@@ -103,7 +103,7 @@ def expected(
         near = _near_sight(observation, target, face) if chosen is ReadingKind.BACKSIGHT else None
         return Expected(step, chosen, face, target, near=near, number=number)
     if chosen in TURNING:
-        return _expected_point(step, rows, progress, chosen, observation.book)
+        return _expected_point(step, rows, progress, chosen, book=observation.book)
     same = [row for row in rows if row.kind is chosen]
     near = same[-1].value if same and QUANTITY[chosen] is Dimension.ANGLE else None
     side = _alternate(same[-1]) if len(same) > 1 else None
@@ -140,6 +140,7 @@ def _expected_point(
     rows: tuple[Reading, ...],
     progress: Progress | None,
     kind: ReadingKind,
+    *,
     book: FieldBook,
 ) -> Expected:
     """The next turning point: its side and the leading part of its reading from the forecast."""

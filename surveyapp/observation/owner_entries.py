@@ -34,10 +34,14 @@ class OwnerEntries:
             If a text is not what its field asks for, all of them together.
         """
         problems: list[Problem] = []
-        scale = _numbers(self.scale, (1,), "scale value", "arc-seconds, like 600", problems)
+        scale = _numbers(
+            self.scale, (1,), "scale value", "arc-seconds, like 600", problems=problems
+        )
         expected = "T1, T2 and latitude, like 425.4 388.3 47.0"
-        periods = _numbers(self.periods, (2, 3), "periods", expected, problems)
-        torsion = _numbers(self.torsion, (1,), "torsion ratio", "lambda, like 0.2", problems)
+        periods = _numbers(self.periods, (2, 3), "periods", expected, problems=problems)
+        torsion = _numbers(
+            self.torsion, (1,), "torsion ratio", "lambda, like 0.2", problems=problems
+        )
         if problems:
             raise SurveyError(problems)
         found: dict[str, object] = {}
@@ -52,7 +56,7 @@ class OwnerEntries:
 
 
 def _numbers(
-    text: str, counts: tuple[int, ...], where: str, expected: str, problems: list[Problem]
+    text: str, counts: tuple[int, ...], where: str, expected: str, *, problems: list[Problem]
 ) -> list[float]:
     if not text.strip():
         return []

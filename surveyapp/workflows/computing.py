@@ -63,7 +63,7 @@ class OrientedProject:
             No such traverse, or a gyro side that no session has oriented.
         """
         waiting = waiting_sides(self.project, self.orientation.project)
-        found = network_of(self.project, traverse, self.sides, self.constants, waiting)
+        found = network_of(self.project, traverse, self.sides, self.constants, waiting=waiting)
         return replace(found, warnings=(*found.warnings, *self.notes))
 
 

@@ -72,10 +72,10 @@ def diagnose_log(
                 )
             )
         kind = "compass" if file.has(*MAG) else "tilt"
-    record, log = _record(kind, identity, file, own, progress)
+    record, log = _record(kind, identity, file, own, progress=progress)
     second = None
     if confirm is not None:
-        second, other = _record(kind, confirm.identity, confirm.file, own, None)
+        second, other = _record(kind, confirm.identity, confirm.file, own, progress=None)
         if other.sha256 == log.sha256:
             raise SurveyError(
                 Problem(
@@ -133,7 +133,7 @@ def adopt_log(
 
 
 def _record(
-    kind: str, identity: str, file: LogFile, own: Sequence[Effect], progress: Progress | None
+    kind: str, identity: str, file: LogFile, own: Sequence[Effect], *, progress: Progress | None
 ) -> tuple[SensorRecord, SensorLog]:
     """A log as the loop takes it."""
     needed = tuple(need.name for effect in own for need in effect.needs if file.has(need.name))

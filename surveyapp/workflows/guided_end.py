@@ -52,7 +52,7 @@ def end_run(
         register_log(folder, request, _wish(state, options), progress=progress)
     entry = next(e for e in read_project(folder).sensor_logs if e.id == identity)
     if programme.ends_in == "north":
-        found = _north(folder, entry, state, options, moment, progress)
+        found = _north(folder, entry, state, options, moment=moment, progress=progress)
         return ProgrammeResult(state, identity, north=found)
     asked = CalibrationRequest(
         kind=programme.kind,
@@ -96,6 +96,7 @@ def _north(
     entry: SensorLogEntry,
     state: ProgrammeState,
     options: Mapping[str, object],
+    *,
     moment: datetime,
     progress: Progress | None,
 ) -> NorthResult:

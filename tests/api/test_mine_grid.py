@@ -233,7 +233,7 @@ def test_a_printed_convergence_that_is_not_the_one_of_the_grid_is_refused(tmp_pa
     ],
 )
 def test_coordinates_in_another_unit_or_exchanged_are_told(
-    tmp_path: Path, crs: str, e: float, n: float, rule: str
+    tmp_path: Path, crs: str, e: float, n: float, *, rule: str
 ) -> None:
     folder = project(tmp_path, grid=f'crs = "{crs}"', a=f"e = {e}\nn = {n}", c=f"e = {e}\nn = {n}")
     failed = [c.rule for c in api.check(folder) if c.confirmed and c.passed is False]

@@ -102,6 +102,7 @@ def test_tongjin_constants_as_printed(
     printed: float,
     bearing: str,
     gyro: str,
+    *,
     convergence: float,
     east: float,
     north: float,

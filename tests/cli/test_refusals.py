@@ -257,7 +257,7 @@ def test_good_project_is_good(tmp_path: Path) -> None:
     ],
 )
 def test_bad_arguments_are_told(
-    tmp_path: Path, arguments: list[str], where: str, found: str, hint: str
+    tmp_path: Path, arguments: list[str], where: str, found: str, *, hint: str
 ) -> None:
     folder = good_project(tmp_path / "project")
     named = {"DIR": str(folder), "OTHER": str(tmp_path / "other")}

@@ -50,6 +50,7 @@ def test_table_of_reversal_estimators(
     error: float,
     bias: Callable[[float], float],
     arcsec: float,
+    *,
     tolerance: float,
 ) -> None:
     w = np.array(weights, dtype=float) / sum(weights)

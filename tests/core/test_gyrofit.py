@@ -88,7 +88,7 @@ def test_fit_equals_lmfit() -> None:
     first=st.sampled_from([-1.0, 1.0]),
 )
 def test_exact_swing_is_recovered(
-    north: float, amplitude: float, decrement: float, count: int, first: float
+    north: float, amplitude: float, decrement: float, count: int, *, first: float
 ) -> None:
     k = np.arange(float(count))
     sides = first * np.where(k % 2 == 0, 1.0, -1.0)

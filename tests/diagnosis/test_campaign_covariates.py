@@ -55,7 +55,7 @@ def told(column: str, values: Floats | list[str], shift: Floats, seed: int = 1) 
     ],
 )
 def test_what_the_project_tells_is_named(
-    column: str, effect: str, low: float, high: float, rate: float
+    column: str, effect: str, low: float, high: float, *, rate: float
 ) -> None:
     values = np.random.default_rng(2).uniform(low, high, N)
     assert told(column, values, rate * (values - values.mean())) == {effect}

@@ -68,6 +68,7 @@ def test_each_model_of_the_table(
     points: dict[str, dict[str, float]],
     parameters: int,
     error: float,
+    *,
     bic: float | None,
 ) -> None:
     fit = fit_of(problem, **points)

@@ -63,7 +63,7 @@ def damaged(lines: Sequence[str], kind: str, r: random.Random) -> tuple[list[str
 
 
 def outcome(
-    file: Path, written: Written, truth: Counter[Reading], made: tuple[list[str], int], kind: str
+    file: Path, written: Written, truth: Counter[Reading], made: tuple[list[str], int], *, kind: str
 ) -> str:
     """``named``, ``refused``, ``harmless``, ``missing`` or ``silent``; ``wrong`` with skip."""
     lines, place = made

@@ -100,7 +100,7 @@ def test_damage_is_named_or_does_no_harm(tmp_path: Path, form: str) -> None:
             made = damaged(written.lines, kind, r)
             if made is None:
                 continue
-            what = outcome(tmp_path / "f", written, truth, made, kind)
+            what = outcome(tmp_path / "f", written, truth, made, kind=kind)
             assert what != "wrong", (written.dialect, kind, made[1])
             if kind in ("cut", "torn", "join"):
                 found[what] += 1

@@ -76,7 +76,7 @@ def test_a_last_line_cut_anywhere_never_gives_a_false_value(tmp_path: Path, form
         path = here / "f"
         path.write_text(text, encoding="utf-8")
         options = OPTIONS.get(form, {})
-        if not _taken(form, path, project(here / "p"), f"line {last + 1}", options):
+        if not _taken(form, path, project(here / "p"), f"line {last + 1}", options=options):
             continue
         found = rows(here / "p" / "imports" / "main.raw.csv")[-1]
         expected = whole[found["line"]]
@@ -86,7 +86,7 @@ def test_a_last_line_cut_anywhere_never_gives_a_false_value(tmp_path: Path, form
         assert found["ht_m"] in ("", expected["ht_m"])
 
 
-def _taken(form: str, path: Path, folder: Path, line: str, options: dict[str, Any]) -> bool:
+def _taken(form: str, path: Path, folder: Path, line: str, *, options: dict[str, Any]) -> bool:
     """Whether the file was imported; what refuses it names the line."""
     try:
         api.import_file(form, path, folder, traverse="main", **options)

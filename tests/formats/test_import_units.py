@@ -68,7 +68,7 @@ def test_all_blocks_on_one_line(tmp_path: Path) -> None:
 @pytest.mark.parametrize("feet", [False, True])
 @pytest.mark.parametrize("order", ["NEZ", "ENZ"])
 def test_sdr_in_every_unit(
-    tmp_path: Path, version: str, angle: str, feet: bool, order: str
+    tmp_path: Path, version: str, angle: str, feet: bool, *, order: str
 ) -> None:
     lines = w.sdr(SETUPS, SIGHTS, version=version, angle=angle, feet=feet, order=order)
     folder, result = bring(tmp_path, "sdr", lines)
@@ -121,7 +121,7 @@ def test_jobxml_adds_prism_and_ppm_to_the_raw_distance(tmp_path: Path, namespace
 )
 @pytest.mark.parametrize("feet", [False, True])
 def test_tables_in_every_unit(
-    tmp_path: Path, angle: str, separator: str, comma: bool, feet: bool
+    tmp_path: Path, angle: str, separator: str, comma: bool, *, feet: bool
 ) -> None:
     lines = w.table(SIGHTS, angle=angle, separator=separator, comma=comma, feet=feet)
     length = "ft" if feet else "m"

@@ -155,6 +155,7 @@ def test_a_command_reads_once_and_orients_once(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     command: list[str],
+    *,
     orientations: int,
 ) -> None:
     main(["orient", str(folder)])  # every module is loaded before the names are counted

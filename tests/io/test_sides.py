@@ -124,7 +124,7 @@ def test_a_tape_at_rest_has_no_sides() -> None:
 )
 @settings(max_examples=150, deadline=None, derandomize=True)
 def test_a_damped_swing_anywhere_on_the_circle_is_read_right(
-    count: int, amplitude: float, ratio: float, north: float, first: int, missed: set[int]
+    count: int, amplitude: float, ratio: float, north: float, *, first: int, missed: set[int]
 ) -> None:
     values: list[float | None] = [north + first * amplitude * (-ratio) ** k for k in range(count)]
     for k in missed:

@@ -83,7 +83,7 @@ PERIOD_TABLE = [
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 @pytest.mark.parametrize(("degrees", "tracking", "simple", "clamped", "ratio"), PERIOD_TABLE)
 def test_periods_follow_the_table(
-    degrees: float, tracking: float, simple: float, clamped: float, ratio: float, sign: float
+    degrees: float, tracking: float, simple: float, clamped: float, *, ratio: float, sign: float
 ) -> None:
     gyro, latitude = table_gyro(), rad(sign * degrees)
     assert tracking_period_s(gyro, latitude) == pytest.approx(tracking, abs=6e-4)

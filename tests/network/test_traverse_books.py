@@ -120,7 +120,7 @@ def test_check_answers_what_the_rule_book_asks_of_traverses(tmp_path: Path) -> N
     text = text.replace('name = "T"', 'name = "T"\nrule_book = "cn-coal-15"', 1)
     (folder / "project.toml").write_text(text, encoding="utf-8")
     checks = {check.rule: check for check in api.check(folder)}
-    again = [c for rule, c in checks.items() if c.unit == "arcsec" and c.where == "A-B-C"]
+    again = [c for c in checks.values() if c.unit == "arcsec" and c.where == "A-B-C"]
     assert [round(c.value or 0.0) for c in again] == [25]
     assert again[0].limit == 40.0  # the 15" class
     assert again[0].passed is True

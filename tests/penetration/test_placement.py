@@ -62,6 +62,7 @@ def test_printed_placements(
     bent: bool,
     shared: float,
     k: int,
+    *,
     best: float,
     chosen: tuple[int, ...] | None,
     first: float,
@@ -143,7 +144,7 @@ def test_least_programme(tolerance: float, sides: int | None) -> None:
     start = outlook(mine, candidates(range(1, 40)))
     found = least_sides(start, tolerance / 2.0)
     assert (None if found is None else len(found[0])) == sides
-    plan = plan_sides(mine, candidates(range(1, 40)), 1, tolerance, 2.0)
+    plan = plan_sides(mine, candidates(range(1, 40)), 1, tolerance, factor=2.0)
     if sides is None:
         assert plan.least is None
         assert "0.310 m" in plan.why

@@ -320,7 +320,7 @@ def test_a_limit_is_reached_by_the_data_of_a_project(name: str, tmp_path: Path) 
     ],
 )
 def test_an_instrument_is_valid_where_its_card_says_so(
-    override: str, row: str, date: str, rule: str, passed: bool | None, tmp_path: Path
+    override: str, row: str, date: str, rule: str, *, passed: bool | None, tmp_path: Path
 ) -> None:
     folder = Folder(tmp_path, "automatic-gyro", instrument=override)
     rows = [f"{azimuths(100.0)[0]}{row}"]

@@ -180,7 +180,7 @@ def test_a_text_keeps_its_moment_only_until_it_is_changed(tmp_path: Path) -> Non
     ],
 )
 def test_what_the_instrument_cannot_have_is_asked_about(
-    tmp_path: Path, step: Step, kind: ReadingKind, good: str, odd: str, doubt: Doubt
+    tmp_path: Path, step: Step, kind: ReadingKind, good: str, *, odd: str, doubt: Doubt
 ) -> None:
     desk, _, _ = desk_at(tmp_path, step)
     assert doubts(desk, good, kind) == []

@@ -154,7 +154,7 @@ def clamped(tmp_path: Path, method: SwingMethod, kind: str, count: int) -> tuple
     ("method", "kind"), [("amplitude", "scale_reversal"), ("transit", "transit")]
 )
 def test_clamped_session(
-    snap_compare: Snap, tmp_path: Path, method: SwingMethod, kind: str, size: tuple[int, int]
+    snap_compare: Snap, tmp_path: Path, method: SwingMethod, kind: str, *, size: tuple[int, int]
 ) -> None:
     """After six points or passages, with the target of the rule book."""
     folder, seconds = clamped(tmp_path, method, kind, 6)

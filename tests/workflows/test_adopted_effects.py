@@ -212,7 +212,7 @@ def test_a_line_that_stands_off_does_not_move_a_survey_of_it(tmp_path: Path) -> 
     ],
 )
 def test_an_adopted_table_that_no_longer_fits_is_refused(
-    tmp_path: Path, temperature: Path, pattern: str, text: str, message: str
+    tmp_path: Path, temperature: Path, pattern: str, text: str, *, message: str
 ) -> None:
     folder = copy(temperature, tmp_path / "p")
     edit(folder, lambda old: re.sub(pattern, text, old, count=1))

@@ -102,14 +102,14 @@ def _place_checks(grid: Grid, positions: dict[str, Position]) -> list[Check]:
             Subject.of("station", scaled.station),
             abs(scale - 1.0),
             SCALE_MARGIN,
-            said("scale factor {scale:.6f}", scale=scale),
+            text=said("scale factor {scale:.6f}", scale=scale),
         ),
         _check(
             "angles",
             Subject.of("station", bent.station),
             angle,
             MOST_DISTORTION_ARCMIN,
-            said("the grid changes angles by up to {angle:.3f}'", angle=angle),
+            text=said("the grid changes angles by up to {angle:.3f}'", angle=angle),
             unit="arcmin",
         ),
     ]
@@ -120,7 +120,7 @@ def _place_checks(grid: Grid, positions: dict[str, Position]) -> list[Check]:
         )
         limit = MOST_CONVERGENCE_DEG
         subject = Subject.of("station", turned.station)
-        checks.append(_check("convergence", subject, abs(degrees), limit, text, unit="deg"))
+        checks.append(_check("convergence", subject, abs(degrees), limit, text=text, unit="deg"))
     return checks
 
 
@@ -136,11 +136,11 @@ def _chord_check(orientation: Orientation) -> list[Check]:
     minutes = math.degrees(chord) * 60.0
     text = said("arc-to-chord of the side {minutes:+.4f}'", minutes=minutes)
     limit = MOST_ARC_TO_CHORD_ARCMIN
-    return [_check("arc_to_chord", side, abs(minutes), limit, text, unit="arcmin")]
+    return [_check("arc_to_chord", side, abs(minutes), limit, text=text, unit="arcmin")]
 
 
 def _check(
-    rule: str, subject: Subject, value: float, limit: float, text: str, *, unit: str = ""
+    rule: str, subject: Subject, value: float, limit: float, *, text: str, unit: str = ""
 ) -> Check:
     passed = value <= limit
     return Check(

@@ -54,8 +54,8 @@ def _check(
     card: InstrumentCard,
     session: str,
     value: float | None,
-    limit: float,
     *,
+    limit: float,
     passed: bool | None,
     unit: str,
     text: str,
@@ -82,7 +82,7 @@ def _temperature(session: OrientationSession, card: InstrumentCard) -> list[Chec
     readings: Sequence[float] = session_temperatures_c(session)
     if not readings:
         text = said("missing: a temperature in the book")
-        return [_check(rule, card, where, None, high, passed=None, unit="C", text=text)]
+        return [_check(rule, card, where, None, limit=high, passed=None, unit="C", text=text)]
     coldest, hottest = min(readings), max(readings)
     value, limit = (coldest, low) if coldest < low else (hottest, high)
     text = said(
@@ -93,7 +93,7 @@ def _temperature(session: OrientationSession, card: InstrumentCard) -> list[Chec
         high=high,
     )
     passed = low <= coldest and hottest <= high
-    return [_check(rule, card, where, value, limit, passed=passed, unit="C", text=text)]
+    return [_check(rule, card, where, value, limit=limit, passed=passed, unit="C", text=text)]
 
 
 def _latitude(orientation: Orientation, item: ReducedSession, card: InstrumentCard) -> list[Check]:
@@ -111,7 +111,7 @@ def _latitude(orientation: Orientation, item: ReducedSession, card: InstrumentCa
             card,
             item.session.id,
             value,
-            math.degrees(limit),
+            limit=math.degrees(limit),
             passed=None if value is None else value <= math.degrees(limit),
             unit="deg",
             text=text,
@@ -137,7 +137,7 @@ def _due(session: OrientationSession, card: InstrumentCard) -> list[Check]:
             card,
             session.id,
             value,
-            0.0,
+            limit=0.0,
             passed=None if value is None else value <= 0.0,
             unit="days",
             text=text,

@@ -73,10 +73,10 @@ def adjust(
         cleaned = without_gross(network, model, state)
         if cleaned is None:
             warnings += mirror_warning(network, found)
-            return _result(network, model, state, tuple(warnings), (family_level, relative))
+            return _result(network, model, state, tuple(warnings), options=(family_level, relative))
         warnings.append(cleaned.warning)
         result = _result(
-            network, cleaned.model, cleaned.state, tuple(warnings), (family_level, relative)
+            network, cleaned.model, cleaned.state, tuple(warnings), options=(family_level, relative)
         )
         rows = (*result.observations, *cleaned.rows)
         return replace(result, observations=rows, left_out=cleaned.left_out)
@@ -106,6 +106,7 @@ def _result(
     model: Model,
     state: Converged,
     warnings: tuple[ResultWarning, ...],
+    *,
     options: tuple[float, bool],
 ) -> AdjustmentResult:
     family_level, relative = options

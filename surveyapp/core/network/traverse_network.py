@@ -315,6 +315,7 @@ def network_of(
     traverse_name: str | None,
     lines: Sequence[OrientedLine] = (),
     constants: Sequence[GyroConstant] = (),
+    *,
     waiting: Collection[tuple[str, str]] = (),
 ) -> Network:
     """Network of one traverse of a project, or of all of them together.

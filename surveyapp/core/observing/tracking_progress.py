@@ -84,7 +84,9 @@ def tracking_progress(
     fit = _fit(values, index, sides)
     sigma = _sigma(session, card, rows, fit)
     share = period_share(latitude)
-    forecast, timing = _forecast(rows, values, index, sides, (next_index, period, share, sigma))
+    forecast, timing = _forecast(
+        rows, values, index, sides, known=(next_index, period, share, sigma)
+    )
     means, _ = schuler_means(values, index)
     north, missing, source = _north(session, card, rng, latitude)
     origin = float(readings[0])
@@ -104,14 +106,14 @@ def tracking_progress(
         schuler_means=tuple(wrap_two_pi(origin + mean) for mean in means.tolist()),
         north=None if north is None else wrap_two_pi(north.value),
         interval95=north.interval95 if north is not None and math.isfinite(north.sigma) else None,
-        interval95_two_more=_two_more(north, fit, index, sides, (next_index, sigma)),
+        interval95_two_more=_two_more(north, fit, index, sides, known=(next_index, sigma)),
         sigma_source=source,
         missing=missing,
         midpoint=residual_channel(fit, sides, 0),
         amplitude=residual_channel(fit, sides, 1),
         curve=shown_curve(fit, first_side=float(sides[0]), next_index=next_index),
         middle=None if fit is None else fit.north,
-        alert=_alert(fit, index, sides, rows, rng),
+        alert=_alert(fit, index, sides, rows, rng=rng),
     )
 
 
@@ -143,6 +145,7 @@ def _forecast(
     values: Floats,
     index: Floats,
     sides: Floats,
+    *,
     known: tuple[int, float | None, float, ReadingSigma],
 ) -> tuple[PointForecast, Timing | None]:
     next_index, period, share, sigma = known
@@ -189,6 +192,7 @@ def _two_more(
     fit: DampedFit | None,
     index: Floats,
     sides: Floats,
+    *,
     known: tuple[int, ReadingSigma],
 ) -> float | None:
     """95 % half-width of north after two more points, if the readings stay as they are.
@@ -214,6 +218,7 @@ def _alert(
     index: Floats,
     sides: Floats,
     rows: list[Reading],
+    *,
     rng: np.random.Generator,
 ) -> Alert | None:
     if fit is None:

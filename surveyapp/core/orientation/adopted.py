@@ -197,7 +197,7 @@ def effect_shifts(
         shift = Uncertain(float(rows.inside[i] @ values), parts)
         beyond = said("{source} outside its range", source=SOURCE)
         if rows.missing[i]:
-            excess = _largest(effect, adopted, columns, (i, rows), values)
+            excess = _largest(effect, adopted, columns, (i, rows), values=values)
             shift = shift.with_part(Source(beyond, session, detail=name), excess)
         else:
             # sessions on one side of the range err alike: it does not average out
@@ -330,6 +330,7 @@ def _largest(
     adopted: AdoptedEffect,
     columns: Mapping[str, Floats],
     at: tuple[int, _Rows],
+    *,
     values: Floats,
 ) -> float:
     """Largest change of the correction of one row while its missing columns run over their range.
@@ -347,8 +348,7 @@ def _largest(
     tried = np.array(list(itertools.product(*steps)))
     trial = {name: np.full(len(tried), columns[name][place]) for name in columns}
     trial |= {name: tried[:, k] for k, name in enumerate(gaps)}
-    apart = _basis(effect, adopted, trial) - rows.inside[place]
-    return float(np.max(np.abs(apart @ values)))
+    return float(np.max(np.abs((_basis(effect, adopted, trial) - rows.inside[place]) @ values)))
 
 
 def _missing_warning(

@@ -31,6 +31,7 @@ def calibrations_of(
     reduced: Sequence[ReducedSession],
     instrument: str,
     geometry: Mapping[tuple[str, str], LineGeometry],
+    *,
     scatter: RunScatter,
 ) -> tuple[list[Calibration], list[ResultWarning]]:
     """Every determination of the constant of one instrument.

@@ -144,7 +144,7 @@ def orient_project(
         reduced, found = apply_adopted(instrument, reduced, positions)
         warnings += found
     deflections = deflection_field(project, positions)
-    geometry = _geometries(reduced, stations, grid, positions, deflections)
+    geometry = _geometries(reduced, stations, grid, positions, field=deflections)
     reduced = _with_terms(project, reduced, geometry)
     warnings += latitude_warnings(project, positions)
     warnings += distance_warnings(project, positions)
@@ -194,7 +194,7 @@ def _constants(
     warnings: list[ResultWarning] = []
     for instrument in project.instruments:
         calibrations, more = calibrations_of(
-            project, reduced, instrument.id, geometry, scatters[instrument.id]
+            project, reduced, instrument.id, geometry, scatter=scatters[instrument.id]
         )
         warnings += more
         constants.append(determine(instrument, calibrations))
@@ -366,6 +366,7 @@ def _geometries(
     stations: Mapping[str, Station],
     grid: Grid | None,
     positions: Mapping[str, Position],
+    *,
     field: DeflectionField,
 ) -> dict[tuple[str, str], LineGeometry]:
     """Geometry of every sighted line by (session, target); sessions alike have the same one."""

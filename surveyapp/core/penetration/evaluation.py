@@ -133,12 +133,14 @@ def _candidates(mine: Mine, miss: MeasuredMiss) -> list[MissCandidate]:
         if abs(column) > LEAST_LEVER:
             needed = miss.longitudinal_m / column
             sigma = mine.plan.sigmas.scale_ppm
-            found.append(_candidate("distance_scale", needed, "ppm", sigma, "longitudinal"))
+            found.append(
+                _candidate("distance_scale", needed, "ppm", sigma, component="longitudinal")
+            )
     return found
 
 
 def _candidate(
-    effect: str, needed: float, unit: str, sigma: float | None, component: str
+    effect: str, needed: float, unit: str, sigma: float | None, *, component: str
 ) -> MissCandidate:
     return MissCandidate(effect, needed, unit, abs(needed) / sigma if sigma else None, component)
 
@@ -150,7 +152,9 @@ def _lateral(mine: Mine, solved: Estimator, miss: float) -> list[MissCandidate]:
         lever = float(gain[rows.instrument == i].sum())
         if abs(lever) > LEAST_LEVER:
             needed = miss / lever / ARCSEC
-            item = _candidate("gyro_constant", needed, "arcsec", float(sigma) / ARCSEC, "lateral")
+            item = _candidate(
+                "gyro_constant", needed, "arcsec", float(sigma) / ARCSEC, component="lateral"
+            )
             found.append(replace(item, subject=mine.instruments[i]))
     for number, heading in enumerate(mine.plan.headings):
         start = (rows.kind == RowKind.AZIMUTH) & (rows.heading == number)
@@ -158,10 +162,10 @@ def _lateral(mine: Mine, solved: Estimator, miss: float) -> list[MissCandidate]:
         if abs(lever) > LEAST_LEVER:
             needed = miss / lever / ARCSEC
             declared = float(np.sqrt(np.mean(rows.reading[start] ** 2))) / ARCSEC
-            item = _candidate("start_azimuth", needed, "arcsec", declared, "lateral")
+            item = _candidate("start_azimuth", needed, "arcsec", declared, component="lateral")
             found.append(replace(item, subject=heading.name))
     found += [
-        _candidate("lateral_refraction", miss / column, "K/m", declared, "lateral")
+        _candidate("lateral_refraction", miss / column, "K/m", declared, component="lateral")
         for column, declared in _walls(mine, solved)
         if abs(column) > LEAST_LEVER
     ]

@@ -66,7 +66,7 @@ def with_candidates(mine: Mine, chosen: Sequence[Candidate]) -> Mine:
 
 
 def plan_sides(
-    mine: Mine, candidates: Sequence[Candidate], sides: int, allowed: float | None, factor: float
+    mine: Mine, candidates: Sequence[Candidate], sides: int, allowed: float | None, *, factor: float
 ) -> PlacementPlan:
     """Best placements of K sides, the least programme, and other measures.
 

@@ -234,7 +234,7 @@ def _low_rank(data: Determinations, priors: Priors, d: Floats, fixed: Floats) ->
     """The base, steps and gross errors: at most one column beside the noise."""
     n, t = data.size, data.targets.shape[0]
     none, nothing = np.zeros((1, n)), np.zeros((1, t))
-    yield _rank_one(d, fixed, none, nothing, (np.zeros(1), [priors.share(BASE)], BASE, -1))
+    yield _rank_one(d, fixed, none, nothing, how=(np.zeros(1), [priors.share(BASE)], BASE, -1))
     steps = step_columns(data.columns, n)
     share = priors.share(STEP)
     if len(steps) and share > 0.0:
@@ -242,15 +242,15 @@ def _low_rank(data: Determinations, priors: Priors, d: Floats, fixed: Floats) ->
         for k, (a, size) in enumerate(zip(AMPLITUDES, priors.sizes, strict=True)):
             prior = np.full(len(steps), share * size / len(steps))
             variance = np.full(len(steps), a * a)
-            yield _rank_one(d, fixed, steps[:, :n], later, (variance, prior, STEP, k))
+            yield _rank_one(d, fixed, steps[:, :n], later, how=(variance, prior, STEP, k))
     share = priors.share(GROSS)
     if share > 0.0:
         prior, variance = np.full(n, share / n), np.full(n, GROSS_VARIANCE)
-        yield _rank_one(d, fixed, np.eye(n), np.zeros((n, t)), (variance, prior, GROSS, -1))
+        yield _rank_one(d, fixed, np.eye(n), np.zeros((n, t)), how=(variance, prior, GROSS, -1))
 
 
 def _rank_one(
-    d: Floats, fixed: Floats, x: Floats, later: Floats, how: tuple[Floats, object, str, int]
+    d: Floats, fixed: Floats, x: Floats, later: Floats, *, how: tuple[Floats, object, str, int]
 ) -> _Terms:
     """Members with K = variance x x' (Sherman & Morrison), x of shape (m, n), later (m, t)."""
     variance, prior, unit, size = how

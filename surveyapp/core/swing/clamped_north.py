@@ -90,7 +90,7 @@ def reduce_nontracking(
     coefficient = TapeZeroCoefficient(
         -constants.ratio * constants.scale, 0.0, "lambda", latitude is not None
     )
-    north = _north(session, clamp, middle, zero, constants)
+    north = _north(session, clamp, middle, zero, constants=constants)
     correction: float | None = 0.0
     if zero is not None:
         part = _tape_zero_part(session, card, zero, coefficient)
@@ -124,6 +124,7 @@ def _north(
     clamp: tuple[float, float],
     middle: Middle,
     zero: TapeZero | None,
+    *,
     constants: _Constants,
 ) -> Uncertain:
     """N' + (1 + lambda) mu B [rad]; the error of lambda counts from the tape zero."""

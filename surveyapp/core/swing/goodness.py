@@ -157,7 +157,7 @@ def goodness_of_fit(
     tests.extend(_largest_residual(residuals, jacobian, judge, sigma=spread, floor=floor))
     if dof >= 3:
         rng = judge.generator(residuals if readings is None else readings)
-        tests.extend(_serial_tests(residuals, jacobian, judge, resolution, rng))
+        tests.extend(_serial_tests(residuals, jacobian, judge, resolution, rng=rng))
     return tuple(tests)
 
 
@@ -196,6 +196,7 @@ def _serial_tests(
     jacobian: Floats,
     judge: Judge,
     resolution: float,
+    *,
     rng: np.random.Generator,
 ) -> list[FitTest]:
     count, parameters = jacobian.shape

@@ -146,15 +146,15 @@ def fit_damped_swing(values: Floats, index: Floats, sides: Floats) -> DampedFit:
     converged = False
     rows = np.empty((3, values.size))
     rows[0] = 1.0
-    step = _reduced(centred, start, sides, decrement, rows)
+    step = _reduced(centred, start, sides, decrement, rows=rows)
     for _ in range(MAX_ITERATIONS):
         change = min(max(step.change, -0.5), 0.5)
         decrement += change
         if abs(decrement) > LOG_DECREMENT_BOUND:
             decrement = math.copysign(LOG_DECREMENT_BOUND, decrement)
-            step = _reduced(centred, start, sides, decrement, rows)
+            step = _reduced(centred, start, sides, decrement, rows=rows)
             break
-        step = _reduced(centred, start, sides, decrement, rows)
+        step = _reduced(centred, start, sides, decrement, rows=rows)
         if abs(change) < 1e-13 + 1e-9 * abs(decrement):
             converged = True
             break
@@ -188,7 +188,9 @@ def _first_decrement(values: Floats, index: Floats) -> float:
     return min(max(math.log(first / last) / span, -0.5), 0.5)
 
 
-def _reduced(values: Floats, index: Floats, sides: Floats, decrement: float, rows: Floats) -> _Step:
+def _reduced(
+    values: Floats, index: Floats, sides: Floats, decrement: float, *, rows: Floats
+) -> _Step:
     """Eliminate N and A at one damping (variable projection); fills ``rows`` with 1, d, k d.
 
     Source: Golub & Pereyra (1973), SIAM J. Numer. Anal. 10, 413-432; Kaufman (1975), BIT 15.

@@ -122,7 +122,9 @@ def find_families(
             break
         cycles = np.concatenate([cycles, apart])
         sines = fit_sines(u, values, cycles)
-        families.append(_fitted(sines, fundamental, numbers, found[2], seen, u.size, length))
+        families.append(
+            _fitted(sines, fundamental, numbers, found[2], seen=seen, count=u.size, length=length)
+        )
         rest = values - sines.at(u)
     return tuple(families), fit_sines(u, values, cycles) if cycles.size else None, length
 
@@ -146,6 +148,7 @@ def _fitted(
     fundamental: float,
     numbers: tuple[int, ...],
     p: float,
+    *,
     seen: Spectrum,
     count: int,
     length: float,

@@ -126,14 +126,14 @@ def reduce_record(problem: Case) -> LongRecord:
     signal = search.signal - own
     quiet = dataclasses.replace(clean, observations=clean.observations - signal)
     reduced, blocks, tests = _until_white(quiet)
-    warnings = _warnings(clean, search, blocks, tests, missing)
+    warnings = _warnings(clean, search, blocks, tests, missing=missing)
     warnings += [ResultWarning("finer_than_blocks", FINER.format(name)) for name in fine]
     return LongRecord(
         dataclasses.replace(reduced, warnings=(*problem.warnings, *warnings)),
         search.lines,
         tests[-1].white,
         _left_out(clean, reduced),
-        _ledger(clean, search, blocks, tests, missing),
+        _ledger(clean, search, blocks, tests, missing=missing),
     )
 
 
@@ -253,6 +253,7 @@ def _warnings(
     search: LineSearch,
     blocks: Blocks,
     tests: tuple[Whiteness, ...],
+    *,
     missing: int,
 ) -> list[ResultWarning]:
     found = []
@@ -287,6 +288,7 @@ def _ledger(
     search: LineSearch,
     blocks: Blocks,
     tests: tuple[Whiteness, ...],
+    *,
     missing: int,
 ) -> dict[str, Any]:
     return {

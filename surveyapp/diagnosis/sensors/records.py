@@ -230,7 +230,9 @@ def _vector_record(log: SensorLog, matrices: Floats, effects: tuple[Effect, ...]
     candidates, missing = _catalogued(effects, columns, block, None)
     used = log.columns["time_s"][kept]
     eye = np.tile(np.eye(3), (used.size, 1, 1))
-    candidates.append(switch(used, block, eye, ("step_x", "step_y", "step_z"), base_rows[kept]))
+    candidates.append(
+        switch(used, block, eye, ("step_x", "step_y", "step_z"), base_rows=base_rows[kept])
+    )
     return SensorRecord(
         "compass", "uT", used, block, mag[kept], base_rows[kept],
         block_means(mag[kept], block), block_means(base_rows[kept], block), tuple(candidates),
@@ -263,7 +265,7 @@ def _size_record(log: SensorLog, effects: tuple[Effect, ...]) -> SensorRecord:
     time = log.columns["time_s"][kept]
     step = np.concatenate([m, one], axis=2)
     step_names = ("step_x", "step_y", "step_z", "step_size")
-    candidates.append(switch(time, block, step, step_names, one))
+    candidates.append(switch(time, block, step, step_names, base_rows=one))
     return SensorRecord(
         "compass", "uT", time, block, y, one, block_means(y, block), block_means(one, block),
         tuple(candidates), step, tuple(gross), "size", None, used, scale, tuple(missing),

@@ -40,7 +40,7 @@ def switched(time: Floats, on: float, off: float) -> Floats:
 
 
 def switch(
-    time: Floats, block: Blocks, step: Floats, names: tuple[str, ...], base_rows: Floats
+    time: Floats, block: Blocks, step: Floats, names: tuple[str, ...], *, base_rows: Floats
 ) -> Candidate:
     """Something that is switched on and off: every window of a coarse scan, then finer ones.
 

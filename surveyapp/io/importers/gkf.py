@@ -50,7 +50,9 @@ def _handler(document: GkfDocument) -> ContentHandler:
 
         def skippedEntity(self, name: str) -> None:
             line = self.locator.getLineNumber() if self.locator is not None else 0
-            document.problem("An entity that is not defined", line or 0, f"&{name};", "plain text")
+            document.problem(
+                "An entity that is not defined", line or 0, f"&{name};", expected="plain text"
+            )
 
         def characters(self, content: str) -> None:
             document.text(content)

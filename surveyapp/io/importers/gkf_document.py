@@ -156,7 +156,7 @@ class GkfDocument:
         """Place in the file for messages."""
         return f"{self.name}, line {line}"
 
-    def problem(self, what: str, line: int, found: str, expected: str, hint: str = "") -> None:
+    def problem(self, what: str, line: int, found: str, *, expected: str, hint: str = "") -> None:
         """Note a problem."""
         self.problems.append(Problem(what, self.where(line), found, expected, hint))
 
@@ -170,7 +170,7 @@ class GkfDocument:
                 "The file is no network of this size",
                 line,
                 f"{self._elements} elements, {len(self._path)} deep",
-                f"at most {MOST_ELEMENTS} elements, {DEEPEST} deep",
+                expected=f"at most {MOST_ELEMENTS} elements, {DEEPEST} deep",
             )
             raise SurveyError(self.problems)
         if len(self.problems) > MOST_PROBLEMS:
@@ -180,7 +180,9 @@ class GkfDocument:
         known = ATTRIBUTES.get(name)
         if known is None:
             hint = nearest_names(name, ATTRIBUTES)
-            self.problem("Unknown element", line, f"<{name}>", "a gama-local element", hint)
+            self.problem(
+                "Unknown element", line, f"<{name}>", expected="a gama-local element", hint=hint
+            )
             return
         if not known.issuperset(attributes):
             for attribute in attributes:
@@ -217,10 +219,10 @@ class GkfDocument:
             return value
         if math.isfinite(value):
             expected = f"{SMALLEST_NUMBER:g} to {LARGEST_NUMBER:g}, or 0"
-            self.problem(f"{what} is beyond all measures", line, repr(text[:40]), expected)
+            self.problem(f"{what} is beyond all measures", line, repr(text[:40]), expected=expected)
             return None
         hint = "Use a decimal point." if "," in text else ""
-        self.problem(f"{what} is no number", line, repr(text), "a number", hint)
+        self.problem(f"{what} is no number", line, repr(text), expected="a number", hint=hint)
         return None
 
     def angle(self, text: str, line: int) -> tuple[float, float] | None:
@@ -237,8 +239,8 @@ class GkfDocument:
                 "An angle cannot be read",
                 line,
                 repr(text),
-                "gon like 63.9347 or degrees like 57-32-28.4",
-                "Is it in another unit?",
+                expected="gon like 63.9347 or degrees like 57-32-28.4",
+                hint="Is it in another unit?",
             )
             return None
         if float(match[3]) == 60.0 or float(match[4]) == 60.0:
@@ -250,11 +252,11 @@ class GkfDocument:
         axes = attributes.get("axes-xy", "ne").strip()
         hand = attributes.get("angles", "left-handed").strip()
         if axes not in AXES:
-            self.problem("Unknown axes", self._line, axes, ", ".join(AXES))
+            self.problem("Unknown axes", self._line, axes, expected=", ".join(AXES))
             axes = "ne"
         if hand not in ("left-handed", "right-handed"):
             expected = "left-handed or right-handed"
-            self.problem("Unknown direction of angles", self._line, hand, expected)
+            self.problem("Unknown direction of angles", self._line, hand, expected=expected)
         self.axes = Axes(axes, hand != "right-handed")
 
     def _parameters(self, attributes: dict[str, str]) -> None:
@@ -272,20 +274,24 @@ class GkfDocument:
 
     def _covariance(self, attributes: dict[str, str]) -> None:
         if self._cluster is None:
-            self.problem("A covariance matrix stands alone", self._line, "<cov-mat>", "in <obs>")
+            self.problem(
+                "A covariance matrix stands alone", self._line, "<cov-mat>", expected="in <obs>"
+            )
             return
         try:
             self._cluster.dim = int(attributes["dim"])
             self._cluster.band = int(attributes["band"])
         except (KeyError, ValueError):
             found = f"dim={attributes.get('dim')}, band={attributes.get('band')}"
-            self.problem("Size of a covariance matrix", self._line, found, "two whole numbers")
+            self.problem(
+                "Size of a covariance matrix", self._line, found, expected="two whole numbers"
+            )
             self._cluster.dim = -1
 
     def _point(self, attributes: dict[str, str]) -> None:
         name = attributes.get("id", "").strip()
         if not name:
-            self.problem("A point has no id", self._line, "nothing", "an id")
+            self.problem("A point has no id", self._line, "nothing", expected="an id")
             return
         observed = self._cluster is not None and self._cluster.element == "coordinates"
         if observed and self._cluster is not None:
@@ -299,7 +305,7 @@ class GkfDocument:
                 text[:2].lower() == "xy" and text[:2] not in ("xy", "XY")
             ):
                 expected = "xy, XY, z, Z, xyz, XYZ, XYz or xyZ"
-                self.problem(f"Unknown value of {key}", self._line, text, expected)
+                self.problem(f"Unknown value of {key}", self._line, text, expected=expected)
             elif text and key == "fix":
                 entry.fix += text
             elif text:
@@ -316,8 +322,8 @@ class GkfDocument:
                     "Two points have one name",
                     self._line,
                     f"{entry.name} with {axis} = {value:g}",
-                    f"{axis} = {old:g} as in line {entry.line}, or another name",
-                    "Rename one of them.",
+                    expected=f"{axis} = {old:g} as in line {entry.line}, or another name",
+                    hint="Rename one of them.",
                 )
             elif value is not None:
                 setattr(entry, axis, value)
@@ -325,7 +331,7 @@ class GkfDocument:
     def _observation(self, name: str, attributes: dict[str, str]) -> None:
         if self._cluster is None:
             expected = "inside <obs>, <height-differences> or <vectors>"
-            self.problem("An observation stands alone", self._line, f"<{name}>", expected)
+            self.problem("An observation stands alone", self._line, f"<{name}>", expected=expected)
             return
         self._cluster.entries.append((name, attributes, self._line))
 

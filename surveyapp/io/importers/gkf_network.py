@@ -64,7 +64,7 @@ class _Builder:
         values = [self.document.number(item, 0, "distance-stdev") for item in text.split()]
         numbers = [item for item in values if item is not None]
         if not 1 <= len(numbers) <= 3:
-            self.document.problem("distance-stdev", 0, text, "one to three numbers a b c")
+            self.document.problem("distance-stdev", 0, text, expected="one to three numbers a b c")
             return None
         a, b, c = (*numbers, *(0.0, 1.0)[len(numbers) - 1 :])
         return a, b, c
@@ -96,7 +96,9 @@ class _Builder:
             self._covariance(cluster)
         elif cluster.dim is None and cluster.element in ("coordinates", "vectors"):
             expected = "a <cov-mat> with their covariances"
-            self.document.problem("Without covariances", cluster.line, cluster.element, expected)
+            self.document.problem(
+                "Without covariances", cluster.line, cluster.element, expected=expected
+            )
 
     def _single(self, cluster: Cluster, name: str, attributes: dict[str, str], line: int) -> None:
         document, kind = self.document, KINDS[name]
@@ -104,7 +106,9 @@ class _Builder:
         needed = [target, "val"] + (["bs"] if kind is ObservationKind.ANGLE else [])
         missing = [item for item in needed if item not in attributes]
         if missing:
-            document.problem(f"<{name}> is incomplete", line, "no " + ", ".join(missing), "these")
+            document.problem(
+                f"<{name}> is incomplete", line, "no " + ", ".join(missing), expected="these"
+            )
             return
         if kind in ANGLES:
             read = document.angle(attributes["val"], line)
@@ -155,7 +159,7 @@ class _Builder:
         if length is None or length > 0.0:
             return None if length is None else length * 1000.0
         found = attributes["dist"]
-        self.document.problem("A section has no length", line, found, "kilometres above 0")
+        self.document.problem("A section has no length", line, found, expected="kilometres above 0")
         return None
 
     def _sigma(
@@ -181,7 +185,7 @@ class _Builder:
                 "An observation has no standard deviation",
                 line,
                 "nothing",
-                "stdev, a default in <points-observations> or a <cov-mat>",
+                expected="stdev, a default in <points-observations> or a <cov-mat>",
             )
         return sigma
 
@@ -200,7 +204,7 @@ class _Builder:
         ]
         for axis, key in enumerate(("dx", "dy", "dz")):
             if key not in attributes:
-                document.problem("<vec> is incomplete", line, f"no {key}", "dx, dy and dz")
+                document.problem("<vec> is incomplete", line, f"no {key}", expected="dx, dy and dz")
                 continue
             value = document.number(attributes[key], line, key)
             if value is None:
@@ -257,7 +261,7 @@ class _Builder:
                 "The covariance matrix has a wrong size",
                 cluster.line,
                 f"dim {cluster.dim}",
-                f"{size}, the number of observations",
+                expected=f"{size}, the number of observations",
             )
             return
         matrix = _banded(document, cluster, size)
@@ -266,7 +270,9 @@ class _Builder:
         units = np.array(cluster.units)
         matrix = matrix * units[:, None] * units[None, :]
         if not (np.diag(matrix) > 0.0).all():
-            document.problem("A variance is not positive", cluster.line, "", "variances above 0")
+            document.problem(
+                "A variance is not positive", cluster.line, "", expected="variances above 0"
+            )
             return
         for place, variance in zip(cluster.members, np.diag(matrix).tolist(), strict=True):
             self.observations[place] = replace(self.observations[place], sigma=variance**0.5)
@@ -276,7 +282,9 @@ class _Builder:
                 self.blocks.append(CorrelatedBlock(tuple(cluster.members), rows))
             except SurveyError as refused:
                 for item in refused.problems:
-                    document.problem(item.what, cluster.line, item.found, item.expected, item.hint)
+                    document.problem(
+                        item.what, cluster.line, item.found, expected=item.expected, hint=item.hint
+                    )
 
 
 def _banded(document: GkfDocument, cluster: Cluster, size: int) -> NDArray[np.float64] | None:
@@ -289,7 +297,10 @@ def _banded(document: GkfDocument, cluster: Cluster, size: int) -> NDArray[np.fl
     expected = size * (band + 1) - band * (band + 1) // 2
     if len(numbers) != expected:
         document.problem(
-            "The covariance matrix is incomplete", cluster.line, f"{len(numbers)}", f"{expected}"
+            "The covariance matrix is incomplete",
+            cluster.line,
+            f"{len(numbers)}",
+            expected=f"{expected}",
         )
         return None
     matrix = np.zeros((size, size))
@@ -350,7 +361,7 @@ def network_from(document: GkfDocument) -> Network:
         warnings.append(ResultWarning("reductions_not_applied", text))
     actual = document.parameters.get("sigma-act", "aposteriori").strip()
     if actual not in ("aposteriori", "apriori"):
-        document.problem("Unknown sigma-act", 0, actual, "aposteriori or apriori")
+        document.problem("Unknown sigma-act", 0, actual, expected="aposteriori or apriori")
     tolerance = builder.parameter("tol-abs", 1000.0)
     probability = builder.parameter("conf-pr", 0.95)
     network = None

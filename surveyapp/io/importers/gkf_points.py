@@ -35,7 +35,11 @@ def network_point(document: GkfDocument, entry: PointEntry) -> NetworkPoint | No
     except SurveyError as refused:
         for item in refused.problems:
             document.problem(
-                item.what, entry.line, f"{item.where}: {item.found}", item.expected, item.hint
+                item.what,
+                entry.line,
+                f"{item.where}: {item.found}",
+                expected=item.expected,
+                hint=item.hint,
             )
         return None
 
@@ -66,7 +70,9 @@ def declared_only(
     if not keep:
         for name, lines in lost.items():
             hint = nearest_names(name, known)
-            document.problem("Unknown point", lines[0], name, "a point of the file", hint)
+            document.problem(
+                "Unknown point", lines[0], name, expected="a point of the file", hint=hint
+            )
     names = ", ".join(f"{name} (line {lines[0]})" for name, lines in list(lost.items())[:6])
     more = f" and {len(lost) - 6} more" if len(lost) > 6 else ""
     text = (

@@ -41,7 +41,7 @@ class Wrong:
     problems: list[Problem] = field(default_factory=list)
     count: int = 0
 
-    def add(self, line: int, what: str, found: str, expected: str, hint: str = "") -> None:
+    def add(self, line: int, what: str, found: str, *, expected: str, hint: str = "") -> None:
         """Note one."""
         self.count += 1
         if self.count <= MAX_TOLD:
@@ -226,7 +226,13 @@ def _parse_lines(
         line = first + offset
         if len(cells) != width:
             hint = _width_hint(cells, width, layout.separator)
-            wrong.add(line, "a row of another width", f"{len(cells)} cells", str(width), hint)
+            wrong.add(
+                line,
+                "a row of another width",
+                f"{len(cells)} cells",
+                expected=str(width),
+                hint=hint,
+            )
             continue
         for row, index in enumerate(numbers):
             values[row, filled] = _number(cells[index], (line, layout.names[index]), wrong)
@@ -250,5 +256,5 @@ def _number(cell: str, place: tuple[int, str], wrong: Wrong) -> float:
         return float(text)
     except ValueError:
         hint = "numbers take a decimal point" if "," in text else ""
-        wrong.add(place[0], f"{place[1]} is no number", cell, "a number", hint)
+        wrong.add(place[0], f"{place[1]} is no number", cell, expected="a number", hint=hint)
         return 0.0

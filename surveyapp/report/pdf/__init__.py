@@ -184,13 +184,13 @@ class _Canvas(Canvas):
             text = shown(said("page {number} of {total}", number=number, total=total))
             right = MARGIN + WIDTH - self._faces.width(text, SMALL)
             self.setFillColor(QUIET)
-            _draw_text(self, self._faces, text, (right, _BOTTOM - 3.5 * mm), SMALL)
+            _draw_text(self, self._faces, text, (right, _BOTTOM - 3.5 * mm), size=SMALL)
             self.endForm()
         super().save()
 
 
 def _draw_text(
-    canvas: Canvas, faces: Faces, text: str, at: tuple[float, float], size: float
+    canvas: Canvas, faces: Faces, text: str, at: tuple[float, float], *, size: float
 ) -> None:
     x, y = at
     for name, run in faces.split(text):
@@ -222,7 +222,7 @@ def _draw_furniture(canvas: Canvas, document: Document, faces: Faces) -> None:
     canvas.setLineWidth(0.4)
     top, bottom = A4[1] - 14.0 * mm, _BOTTOM
     head = _fitted(faces, document.running_head, SMALL + 0.5, WIDTH)
-    _draw_text(canvas, faces, head, (MARGIN, top), SMALL + 0.5)
+    _draw_text(canvas, faces, head, (MARGIN, top), size=SMALL + 0.5)
     canvas.line(MARGIN, top - 1.5 * mm, MARGIN + WIDTH, top - 1.5 * mm)
     canvas.line(MARGIN, bottom, MARGIN + WIDTH, bottom)
     canvas.doForm(_NUMBER.format(canvas.getPageNumber()))
@@ -230,7 +230,7 @@ def _draw_furniture(canvas: Canvas, document: Document, faces: Faces) -> None:
     for index, line in enumerate(document.foot):
         text = _fitted(faces, line, SMALL - 0.5, WIDTH - right - 4.0 * mm)
         at = (MARGIN, bottom - (3.5 + 2.8 * index) * mm)
-        _draw_text(canvas, faces, text, at, SMALL - 0.5)
+        _draw_text(canvas, faces, text, at, size=SMALL - 0.5)
     canvas.restoreState()
 
 

@@ -120,21 +120,32 @@ def solve_north(
     estimate = np.array([approximate_north, 0.0, 0.0, 0.0])
     prior = None if constant is None else max(constant_sigma, 1e-9)
     noise = rate_sigma if rate_sigma is not None and rate_sigma > 0.0 else 1e-9
-    basis = _determined(positions, estimate, scale, latitude, offsets, prior)
+    basis = _determined(positions, estimate, scale, latitude, offsets=offsets, prior=prior)
     design = np.zeros((0, 4))
     for _ in range(30):
         at = [
             predicted(p, estimate, latitude=latitude, offset=o)
             for p, o in _both(positions, offsets)
         ]
-        design, rest = _rows(positions, estimate, scale, latitude, offsets, prior, noise)
+        design, rest = _rows(
+            positions, estimate, scale, latitude, offsets=offsets, prior=prior, noise=noise
+        )
         rest[: measured.size] += (measured - at) / noise
         step, *_ = np.linalg.lstsq(design @ basis, rest, rcond=None)
         estimate = estimate + basis @ step * scale
         if float(np.abs(step).max(initial=0.0)) < 1e-13:
             break
     at = [predicted(p, estimate, latitude=latitude, offset=o) for p, o in _both(positions, offsets)]
-    return _result(measured - at, estimate, scale, design, basis, noise, rate_sigma, prior)
+    return _result(
+        measured - at,
+        estimate,
+        scale,
+        design,
+        basis=basis,
+        noise=noise,
+        rate_sigma=rate_sigma,
+        prior=prior,
+    )
 
 
 def _both(positions: Sequence[Position], offsets: Floats) -> zip[tuple[Position, float]]:
@@ -166,6 +177,7 @@ def _rows(
     estimate: Floats,
     scale: Floats,
     latitude: float,
+    *,
     offsets: Floats,
     prior: float | None,
     noise: float,
@@ -194,11 +206,14 @@ def _determined(
     estimate: Floats,
     scale: Floats,
     latitude: float,
+    *,
     offsets: Floats,
     prior: float | None,
 ) -> Floats:
     """Directions of the four unknowns that the rows tell, shape (4, k)."""
-    design, _ = _rows(positions, estimate, scale, latitude, offsets, None, EARTH_RATE)
+    design, _ = _rows(
+        positions, estimate, scale, latitude, offsets=offsets, prior=None, noise=EARTH_RATE
+    )
     if prior is not None:
         design = np.vstack([design, [0.0, 0.0, 0.0, 1.0]])
     _, size, right = np.linalg.svd(design, full_matrices=False)
@@ -210,6 +225,7 @@ def _result(
     estimate: Floats,
     scale: Floats,
     design: Floats,
+    *,
     basis: Floats,
     noise: float,
     rate_sigma: float | None,

@@ -197,7 +197,7 @@ def combine(sets: Sequence[BothWays], *, rule: Rule, relative_rate_sigma: float)
     )
     sine, sigma_sine = zip(*(_mean_sine(g, rule, relative_rate_sigma) for g in groups), strict=True)
     readings = [_mean_reading(group) for group in groups]
-    return _solved(sine, sigma_sine, readings, rule, scatter)
+    return _solved(sine, sigma_sine, readings, rule, scatter=scatter)
 
 
 def _corrected(group: Sequence[BothWays], rule: Rule) -> np.ndarray:
@@ -244,6 +244,7 @@ def _solved(
     sigma: Sequence[float],
     readings: Sequence[float | None],
     rule: Rule,
+    *,
     scatter: Scatter,
 ) -> Constant:
     """From one pass directly; from several the constant and the scale factor together."""
@@ -257,7 +258,7 @@ def _solved(
         constant = wrap_two_pi(first + sign * elevation)
         return Constant(elevation, sigma_elevation, constant, sigma_elevation, None, None, scatter)
     offsets = np.array([wrap_two_pi((r or 0.0) - first + math.pi) - math.pi for r in readings])
-    return _two_passes(np.array(sine), np.array(sigma), offsets, first, sign, scatter)
+    return _two_passes(np.array(sine), np.array(sigma), offsets, first, sign=sign, scatter=scatter)
 
 
 def _two_passes(
@@ -265,6 +266,7 @@ def _two_passes(
     sigma: np.ndarray,
     offsets: np.ndarray,
     first: float,
+    *,
     sign: float,
     scatter: Scatter,
 ) -> Constant:

@@ -71,7 +71,7 @@ def calibrate_fog_station(
     found = combine(sets, rule=rule, relative_rate_sigma=relative_rate_sigma or 0.0)
     if found.scale is not None and abs(found.scale) > NO_SCALE_ERROR:
         raise SurveyError(_against_rule(log, rule))
-    return _calibration(log, sets, found, rule, relative_rate_sigma, warnings)
+    return _calibration(log, sets, found, rule, relative=relative_rate_sigma, warnings=warnings)
 
 
 def turned_sets(
@@ -206,6 +206,7 @@ def _calibration(
     sets: list[BothWays],
     found: Constant,
     rule: Rule,
+    *,
     relative: float | None,
     warnings: list[ResultWarning],
 ) -> Calibration:

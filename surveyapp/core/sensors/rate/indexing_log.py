@@ -176,7 +176,7 @@ def find_heading(log: SensorLog, options: IndexingOptions) -> NorthResult:
         found, used = solve_indexing(stops, options.setting), len(stops)
     if not found.roots:
         raise SurveyError(Problem("no attitude fits the log", log.path))
-    return _result(log, options, found, tracking, warnings, stops=used)
+    return _result(log, options, found, tracking, warnings=warnings, stops=used)
 
 
 def _groups(
@@ -197,8 +197,8 @@ def _result(
     options: IndexingOptions,
     found: Indexed,
     tracking: Sequence[Tracked],
-    warnings: list[ResultWarning],
     *,
+    warnings: list[ResultWarning],
     stops: int,
 ) -> NorthResult:
     setting = options.setting

@@ -104,7 +104,7 @@ def judge_motion(log: SensorLog, options: MotionOptions) -> Motion:
     still = bridged(values <= gate.threshold, rate_hz=1.0 / interval)
     forward, turn = forward_and_turn(force, rate, still, noise, interval_s=interval)
     limits = thresholds_of(force, rate, still, interval_s=interval, false_alarm=options.false_alarm)
-    segments = segments_of(time, still, forward, turn, limits)
+    segments = segments_of(time, still, forward, turn, limits=limits)
     other = bridged(
         norm_and_rate(force, rate, noise, false_alarm=options.false_alarm), rate_hz=1.0 / interval
     )

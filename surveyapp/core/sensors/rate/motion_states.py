@@ -122,7 +122,7 @@ def thresholds_of(
 
 
 def segments_of(
-    time_s: Floats, still: Mask, forward: Floats, turn: Floats, limits: Thresholds
+    time_s: Floats, still: Mask, forward: Floats, turn: Floats, *, limits: Thresholds
 ) -> list[MotionSegment]:
     """States one after the other; what is shorter than half a second joins its neighbour."""
     state = np.zeros(still.size, dtype=np.int8)

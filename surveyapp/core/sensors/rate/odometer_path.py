@@ -142,15 +142,17 @@ def snap(
             continue
         miss = wrap_pi(float(driven.known[row]) - float(heading[row]))
         if row > 0:
-            found += _laid_back(driven, heading, before, row, miss, power_cycle)
+            found += _laid_back(driven, heading, before, row, miss=miss, power_cycle=power_cycle)
         heading[row + 1 :] += miss
         if row == 0:
             heading[0] += miss
         before = row
     if not has_known and end is not None:
         before = _last_stop(driven, bounds)
-        miss = _miss_to_end(driven, heading, before, end, start, power_cycle)
-        found += _laid_back(driven, heading, before, heading.size - 1, miss, power_cycle)
+        miss = _miss_to_end(driven, heading, before, end, start=start, power_cycle=power_cycle)
+        found += _laid_back(
+            driven, heading, before, heading.size - 1, miss=miss, power_cycle=power_cycle
+        )
     changed = Driven(driven.distance, heading, driven.known, driven.cycle, driven.still)
     return changed, found, heading - driven.heading
 
@@ -184,7 +186,7 @@ def _weights(driven: Driven, first: int, last: int, power_cycle: str) -> tuple[F
 
 
 def _laid_back(
-    driven: Driven, heading: Floats, first: int, last: int, miss: float, power_cycle: str
+    driven: Driven, heading: Floats, first: int, last: int, *, miss: float, power_cycle: str
 ) -> list[Snapped]:
     share, kind = _weights(driven, first, last, power_cycle)
     heading[first : last + 1] += miss * share
@@ -209,6 +211,7 @@ def _miss_to_end(
     heading: Floats,
     first: int,
     end: tuple[float, float],
+    *,
     start: tuple[float, float],
     power_cycle: str,
 ) -> float:

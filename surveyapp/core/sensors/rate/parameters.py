@@ -23,7 +23,9 @@ PPM = 1e-6
 AXES = "xyz"
 
 
-def _parameter(name: str, value: float, sigma: float, scale: float, unit: str) -> SensorParameter:
+def _parameter(
+    name: str, value: float, sigma: float, scale: float, *, unit: str
+) -> SensorParameter:
     if not math.isfinite(value):
         return SensorParameter(name, None, None, unit)
     return SensorParameter(
@@ -36,12 +38,12 @@ def gyro_parameters(triad: GyroTriad) -> tuple[SensorParameter, ...]:
     tilt, sigma_tilt = triad.misalignment()
     scale, sigma_scale = triad.scale, triad.sigma_scale
     found = [
-        _parameter(f"scale_factor_{a}", scale[i], sigma_scale[i], PPM, "ppm")
+        _parameter(f"scale_factor_{a}", scale[i], sigma_scale[i], PPM, unit="ppm")
         for i, a in enumerate(AXES)
     ]
     found += _off_diagonal("misalignment", tilt, sigma_tilt)
     found += [
-        _parameter(f"bias_{a}", triad.bias[i], triad.sigma_bias[i], DEG_H, "deg/h")
+        _parameter(f"bias_{a}", triad.bias[i], triad.sigma_bias[i], DEG_H, unit="deg/h")
         for i, a in enumerate(AXES)
     ]
     return tuple(found)
@@ -51,14 +53,14 @@ def _off_diagonal(name: str, value: Floats, sigma: Floats) -> Iterator[SensorPar
     for i, a in enumerate(AXES):
         for j, b in enumerate(AXES):
             if i != j:
-                yield _parameter(f"{name}_{a}{b}", value[i, j], sigma[i, j], ARCSEC, "arcsec")
+                yield _parameter(f"{name}_{a}{b}", value[i, j], sigma[i, j], ARCSEC, unit="arcsec")
 
 
 def accelerometer_parameters(triad: AccelerometerTriad) -> tuple[SensorParameter, ...]:
     """The twelve parameters of an accelerometer triad."""
     found = [
         _parameter(
-            f"accelerometer_scale_factor_{a}", triad.scale[i], triad.sigma_scale[i], PPM, "ppm"
+            f"accelerometer_scale_factor_{a}", triad.scale[i], triad.sigma_scale[i], PPM, unit="ppm"
         )
         for i, a in enumerate(AXES)
     ]
@@ -66,7 +68,7 @@ def accelerometer_parameters(triad: AccelerometerTriad) -> tuple[SensorParameter
         "accelerometer_misalignment", triad.misalignment, triad.sigma_misalignment
     )
     found += [
-        _parameter(f"accelerometer_bias_{a}", triad.bias[i], triad.sigma_bias[i], 1.0, "m/s2")
+        _parameter(f"accelerometer_bias_{a}", triad.bias[i], triad.sigma_bias[i], 1.0, unit="m/s2")
         for i, a in enumerate(AXES)
     ]
     return tuple(found)

@@ -111,12 +111,14 @@ def find_heading(log: SensorLog, options: RotationOptions) -> NorthResult:
     rest, rest_sigma, gained = _filtered(rates[rest_rows])
     levelling = _levelling(forces[phases == "level"])
     run_rows = np.flatnonzero(phases == "run")
-    carried = _carried(rates[run_rows] - rest, forces, levelling, options, run_rows, interval)
+    carried = _carried(
+        rates[run_rows] - rest, forces, levelling, options, rows=run_rows, interval=interval
+    )
     sigma = rest_sigma[2] * run_rows.size * interval
     noise = float(np.std(np.diff(rates[rest_rows, 2]))) / math.sqrt(2.0)
     sigma = math.hypot(sigma, noise * interval * math.sqrt(run_rows.size))
     sigma = math.hypot(sigma, options.declination_sigma or 0.0)
-    return _result(log, options, carried, sigma, (warm, levelling, rest, gained))
+    return _result(log, options, carried, sigma, found=(warm, levelling, rest, gained))
 
 
 def _phase_problems(phases: np.ndarray, where: str) -> list[Problem]:
@@ -240,6 +242,7 @@ def _carried(
     forces: Floats,
     levelling: Levelling,
     options: RotationOptions,
+    *,
     rows: np.ndarray,
     interval: float,
 ) -> Carried:
@@ -271,6 +274,7 @@ def _result(
     options: RotationOptions,
     carried: Carried,
     sigma: float,
+    *,
     found: tuple[WarmUp, Levelling, Floats, dict[str, float]],
 ) -> NorthResult:
     warm, levelling, rest, gained = found
@@ -319,7 +323,7 @@ def _result(
                     for axis, angle in levelling.rotations
                 ],
             },
-            "steps": _steps(log, options, warm, gained, levelling),
+            "steps": _steps(log, options, warm, gained, levelling=levelling),
             "turned_deg": math.degrees(carried.heading - options.heading) % 360.0,
         },
         direction_extra={"axis": "z" if carried.vertical else "y"},
@@ -331,6 +335,7 @@ def _steps(
     options: RotationOptions,
     warm: WarmUp,
     gained: Mapping[str, float],
+    *,
     levelling: Levelling,
 ) -> list[dict[str, Any]]:
     """Steps 101 to 113 with what this record says of each."""

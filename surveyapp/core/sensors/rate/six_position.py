@@ -160,12 +160,12 @@ def solve_six_positions(
         count = len(here)
         matrix[:, axis] = np.mean([m.column() for m in here], axis=0)
         noise = np.sqrt(np.sum([m.sigma_slope**2 for m in here], axis=0)) / count
-        sigma[:, axis] = _with_flips(noise, axis, count, flip_sigma, relative_rate_sigma)
+        sigma[:, axis] = _with_flips(noise, axis, count, flip_sigma, relative=relative_rate_sigma)
         bias[axis], sigma_bias[axis] = _own_bias(here, axis, matrix[axis, axis], vertical_rate)
     return GyroTriad(matrix, bias, sigma, sigma_bias)
 
 
-def _with_flips(noise: Floats, axis: int, count: int, flip: float, relative: float) -> Floats:
+def _with_flips(noise: Floats, axis: int, count: int, flip: float, *, relative: float) -> Floats:
     """Add what seating and table do to a column.
 
     A flip error f about each axis turns the column by f / sqrt(positions) each way and shortens it

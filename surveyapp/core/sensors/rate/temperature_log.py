@@ -144,7 +144,7 @@ def calibrate_temperature(log: SensorLog, options: TemperatureOptions) -> Calibr
         problems += _room_problems(room)
         if problems:
             raise SurveyError(problems)
-    nodes = _nodes(levels, means, resting, room, options)
+    nodes = _nodes(levels, means, resting, room, options=options)
     return _calibration(log, nodes, options, [*sense_warnings(motion), *warnings])
 
 
@@ -181,6 +181,7 @@ def _nodes(
     means: Sequence[PositionMeans],
     resting: Sequence[tuple[int, Resting]],
     room: AccelerometerTriad | None,
+    *,
     options: TemperatureOptions,
 ) -> list[Node]:
     nodes = []
@@ -298,7 +299,7 @@ def _calibration(
         sha256=log.sha256,
         temperature_c=(low, high),
         constants={"reference_temperature_c": at},
-        extra=_extra(log, nodes, options, comparison, model),
+        extra=_extra(log, nodes, options, comparison, model=model),
     )
 
 
@@ -307,6 +308,7 @@ def _extra(
     nodes: Sequence[Node],
     options: TemperatureOptions,
     comparison: Sequence[Compensation],
+    *,
     model: ModelName,
 ) -> dict[str, Any]:
     """The keys that only this programme has."""
