@@ -116,16 +116,8 @@ def test_a_full_disk_leaves_both_as_they_were(
     assert settled(folder) == (True, True)
 
 
-def observed(folder: Path) -> Path:
-    """A project whose session r1 has the turning points that a closing needs."""
-    turns = (f"{k},reversal,{180 + k % 2 * 2}-00-{10 + k}\n" for k in range(1, 6))
-    make_project(folder)
-    (folder / "observations/r1.csv").write_text("seq,kind,value\n" + "".join(turns))
-    return folder
-
-
 def test_a_closing_that_is_killed_is_there_or_not(tmp_path: Path) -> None:
-    base = observed(tmp_path / "base")
+    base = make_project(tmp_path / "base")
     trial = shutil.copytree(base, tmp_path / "trial")
     seen = set()
     for at in moments_of(lambda: api.close(trial, session="r1"), 6):
@@ -209,7 +201,7 @@ def test_the_screens_need_a_terminal(tmp_path: Path, capsys: pytest.CaptureFixtu
 def test_nothing_is_adopted_in_a_closed_session(tmp_path: Path) -> None:
     from surveyapp.workflows.adopting import _need_unchanged
 
-    folder = observed(tmp_path / "p")
+    folder = make_project(tmp_path / "p")
     project = api.open_project(folder)
     _need_unchanged(project, ("orientation", "r1"))
     api.close(folder, session="r1")

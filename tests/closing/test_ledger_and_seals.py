@@ -222,18 +222,6 @@ def test_a_session_is_closed_by_itself(folder: Path) -> None:
     assert "run" in caught.value.problems[0].hint
 
 
-@pytest.mark.parametrize("points", [0, 1, 2])
-def test_an_unfinished_session_is_not_closed(folder: Path, points: int) -> None:
-    book = folder / "observations/run.csv"
-    book.write_text("".join(BOOK.splitlines(keepends=True)[: 1 + points]), encoding="utf-8")
-    with pytest.raises(SurveyError) as caught:
-        api.close(folder, session="run", now=now)
-    assert f"{points} turning points, 3 are the least" in caught.value.problems[0].found
-    assert not read_ledger(folder).entries
-    book.write_text(BOOK, encoding="utf-8")
-    assert api.close(folder, session="run", now=now).scope == "session"
-
-
 CRASH = """
 import os, sys
 from pathlib import Path

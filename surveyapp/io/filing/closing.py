@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from surveyapp.core.orientation.unfinished import lacking
 from surveyapp.domain.filing import ClosingResult
 from surveyapp.domain.project import Project
 from surveyapp.errors import Problem, SurveyError, nearest_names
@@ -151,14 +150,3 @@ def _known(project: Project, session: str | None) -> None:
                 nearest_names(session, names),
             )
         )
-    for item in project.sessions:
-        if item.id == session and (missing := lacking(item)):
-            raise SurveyError(
-                Problem(
-                    "an unfinished session is not closed: nothing more could be added to it",
-                    _where(session),
-                    missing,
-                    "a session from which its method gives north",
-                    "observe the rest first, or leave it open: it is left out with a warning",
-                )
-            )
