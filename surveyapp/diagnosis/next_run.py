@@ -194,7 +194,7 @@ def _north_now(
         weights.append(w)
     mean, w = np.concatenate(means), np.concatenate(weights)
     mixture = Mixture(w, mean - float(w @ mean), np.concatenate(spreads), nu).main()
-    rivals = {unit: v for unit, v in share.items() if unit not in SLIPS}
+    rivals = {unit: v for unit, v in share.items() if unit not in SLIPS} or share
     return max(rivals.values()) / sum(rivals.values()), mixture.half_width()
 
 
@@ -217,7 +217,7 @@ def _worth(
     log = np.concatenate(logs)
     w = np.exp(log - log.max(axis=0))
     w /= w.sum(axis=0)
-    names = sorted(set(units) - SLIPS)
+    names = sorted(set(units) - SLIPS) or sorted(set(units))  # slips alone where they are sure
     classes = np.array([[float(u == name) for name in names] for u in units])
     before = _shares(np.concatenate(state.weights)[None, :] @ classes)
     after = _shares(w.T @ classes)

@@ -238,7 +238,7 @@ def test_tables_speak_the_unit_of_the_project(tmp_path: Path, unit: str) -> None
     assert true * 3600.0 == pytest.approx(-9.7, abs=1e-6)
     text = run("orient", folder).out
     written = {"dms": "39-59-", "gon": "44.44", "deg": "39.99"}[unit]
-    row = next(row for row in text.splitlines() if row.startswith("gyro azimuth"))
+    row = next(row for row in text.splitlines() if row.strip().startswith("gyro azimuth"))
     assert written in row, text
 
 

@@ -24,6 +24,16 @@ from surveyapp.io.filing.ledger import LEDGER_FILE, append_entry
 from tests.tui.helpers_tui import make_project
 
 LONGEST_S, LARGEST_MB = 5.0, 300.0
+OWN_PEAK = """
+import re, sys
+from pathlib import Path
+from surveyapp.cli.main import main
+try:
+    sys.exit(main(sys.argv[2:]))
+finally:  # its own peak: the one that the system accounts holds that of the process it came from
+    peak = re.search(r"VmHWM:\\s+(\\d+) kB", Path("/proc/self/status").read_text())
+    Path(sys.argv[1]).write_text(str(int(peak[1]) / 1024.0))
+"""
 WATCHED = (
     "open", "os.listdir", "os.scandir", "os.rename", "os.remove", "os.mkdir", "os.rmdir", "os.link",
     "os.symlink", "os.truncate", "os.chmod", "shutil.copyfile", "shutil.rmtree",
@@ -186,7 +196,7 @@ def test_no_answer_takes_five_seconds_or_300_mb(
     arguments = make(make_project(tmp_path / "p"))
     child = os.posix_spawn(
         sys.executable,
-        [sys.executable, "-m", "surveyapp", *arguments],
+        [sys.executable, "-c", OWN_PEAK, str(tmp_path / "peak"), *arguments],
         os.environ,
         file_actions=[
             (os.POSIX_SPAWN_OPEN, fd, str(tmp_path / f"said{fd}"), os.O_WRONLY | os.O_CREAT, 0o600)
@@ -198,7 +208,7 @@ def test_no_answer_takes_five_seconds_or_300_mb(
     assert os.waitstatus_to_exitcode(status) == 2, said
     assert "Traceback" not in said
     assert used.ru_utime + used.ru_stime < LONGEST_S
-    assert used.ru_maxrss / 1024.0 < LARGEST_MB
+    assert float((tmp_path / "peak").read_text("utf-8")) < LARGEST_MB
 
 
 def test_a_log_outside_is_packed_only_where_it_is_asked_for_and_pinned(

@@ -19,7 +19,11 @@ ALONE = ("start_position", "distance_scale", "height_transfer", "deflection")
 
 
 def one_end(tmp_path: Path, letter: str) -> Path:
-    """The sample with one heading and without what an adjustment does not know."""
+    """The sample with one heading and without what an adjustment does not know.
+
+    It has no deflections: an adjustment shares them by the field of the project, a prediction by
+    [penetration.deflection], which it lacks here.
+    """
     folder = Path(shutil.copytree(SAMPLE, tmp_path / letter))
     text = (folder / "project.toml").read_text(encoding="utf-8")
     head, tail = text.split("[penetration]\n", 1)
@@ -32,6 +36,7 @@ def one_end(tmp_path: Path, letter: str) -> Path:
         if not line.startswith(("case", "sigma_scale"))
     )
     table = f'[penetration]\ncase = "one_end"\n{plain}\n{own}'
+    head = head.replace("format = 1\n", "format = 1\ndeflection = { sigma_arcsec = 0.001 }\n", 1)
     (folder / "project.toml").write_text(head + table, encoding="utf-8")
     return folder
 
@@ -52,7 +57,11 @@ def test_prediction_and_adjustment_agree(tmp_path: Path, letter: str) -> None:
     assert not {row.source for row in predicted.budget} & set(ALONE)
     adjusted = api.adjust(folder, traverse=letter)
     across, along = lateral_and_along(adjusted, f"{letter}20")
-    assert predicted.sigma.lateral_m == pytest.approx(across, rel=5e-3)
+    # an adjustment knows what the sides share besides the constant, a prediction counts it as own:
+    # it may promise a little less, never more
+    lateral = predicted.sigma.lateral_m
+    assert lateral is not None
+    assert 0.995 * across <= lateral <= 1.03 * across
     assert predicted.sigma.longitudinal_m == pytest.approx(along, rel=2e-2)
     assert predicted.sigma.vertical_m == pytest.approx(
         adjusted.point(f"{letter}20").sigma_h, rel=1e-6

@@ -155,6 +155,7 @@ def test_the_same_input_gives_the_same_bytes_in_another_process(
         "sha256",
         "missing_glyphs",
         "sheets",
+        "signature",
         "without_sheet",
         "warnings",
     }

@@ -1,9 +1,7 @@
 """Oriented lines and known azimuths against coordinates, scaled by the sigma of both.
 
 Confirmed where both ends are fixed: then a difference beyond chance is a blunder of the one or the
-other. The coordinates of an old plan only warn, unless they are those of another line: by degrees
-and by tens of metres no plan is wrong, and a sight to another target, exchanged books or a mistyped
-coordinate are.
+other. The coordinates of an old plan, or those that merely hold a place, only warn.
 """
 
 from __future__ import annotations
@@ -26,10 +24,6 @@ from surveyapp_models.angles import RHO_ARCSEC, wrap_pi
 
 PLAN_SIGMA_M: Final = 0.1
 """Of each coordinate of a station that is not fixed and states no sigma: read from a plan."""
-ANOTHER_LINE: Final = math.radians(5.0)
-ANOTHER_LINE_M: Final = 20.0
-"""An azimuth that misses its target by both is not that of the line in the plan. Bounds of reason:
-the width of a crosscut, seen from a sight of 200 m."""
 _CLAUSE: Final = said("difference against its own sigma, level shared over the project")
 
 
@@ -77,17 +71,9 @@ def _line_pairs(orientation: Orientation) -> list[Pair]:
             difference = line.grid - Uncertain(bearing, error.parts)
             fixed = geometry.start.fixed and geometry.end.fixed
             text = said("grid azimuth minus that of the coordinates")
-            sure = fixed or _another_line(difference, geometry.distance_m)
-            pairs.append(("coordinates.line", result.subject, difference, sure, text))
+            pairs.append(("coordinates.line", result.subject, difference, fixed, text))
         pairs += _stated_pairs(orientation, line, geometry)
     return pairs
-
-
-def _another_line(difference: Uncertain, distance_m: float | None) -> bool:
-    """Whether an azimuth misses the target of its line by degrees and by tens of metres."""
-    apart = abs(wrap_pi(difference.value))
-    miss = (distance_m or 0.0) * math.sin(min(apart, 0.5 * math.pi))
-    return apart > ANOTHER_LINE and miss > ANOTHER_LINE_M
 
 
 def _stated_pairs(

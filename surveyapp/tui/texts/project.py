@@ -30,7 +30,6 @@ NO_WARNINGS: Final = "No warnings."
 CONSTANT_DAYS: Final = "days (UTC)"
 CONSTANT_ORDER: Final = "in order"
 CONSTANT_AXIS: Final = 'constant ", bars ±1 sigma; {axis}'
-STABLE: Final = "stable"
 PURPOSES: Final = {"survey": "survey", "calibration": "calibration"}
 
 # diagnosis screen

@@ -6,7 +6,6 @@ from typing import Final
 
 # result screen
 RESULT_TITLE: Final = "{project}  {session}  result"
-R_POINTS: Final = "Readings and their residuals"
 R_NO_LINE: Final = "no gyro north from this session"
 R_TRUE: Final = "true azimuth, {reference}"
 KEY_PDF: Final = "PDF"
