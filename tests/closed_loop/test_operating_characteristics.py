@@ -53,9 +53,9 @@ LINES = [
 def test_effects_are_found_named_and_the_result_is_covered(
     truth: Truth, detected: float, right: float
 ) -> None:
-    runs = 24
+    runs = 16
     line = evaluate(truth, runs, 77, DRAWS)
-    # 1.00 of 24 runs in the reference is taken for 0.96 or more: its own 24 runs say no better.
+    # 1.00 of the 24 runs of the reference is taken for 0.96 or more: they say no better.
     assert at_least(line.detected, min(detected, 0.96), runs)
     assert at_least(line.right, min(right, 0.96), runs)
     assert at_most(line.wrong, 0.06, runs)

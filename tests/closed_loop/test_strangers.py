@@ -134,7 +134,7 @@ def test_an_effect_that_cannot_be_tested_keeps_its_likeness_from_being_named() -
 @pytest.mark.statistical
 def test_every_name_has_passed_the_gate_by_itself() -> None:
     for truth in (Truth("walk", 20, walk=9.0), Truth("none", 20), Truth("step", 20, step=25.0)):
-        for problem in problems(truth, 20, 12)[0]:
+        for problem in problems(truth, 12, 12)[0]:
             result = diagnose(problem, draws=DRAWS)
             own = {item.effect: item.p for item in result.candidates}
             for item in result.adopted:
@@ -215,7 +215,7 @@ def test_the_kick_of_a_pulse_is_no_part_of_north() -> None:
 
 
 def test_the_best_set_is_one_of_those_that_are_told() -> None:
-    for problem in problems(Truth("drift", 20, drift=1.0), 25, 260)[0]:
+    for problem in problems(Truth("drift", 20, drift=1.0), 15, 260)[0]:
         result = diagnose(problem, draws=DRAWS)
         if result.ambiguous:
             open_names = [n for n in result.after_best.effects if n not in result.after.effects]
