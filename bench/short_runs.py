@@ -1,8 +1,9 @@
 """Whether north of short runs lies in its interval where the diagnosis saw something.
 
 For 6 to 12 turning points: how often the gate fires, how often the averaged north of those runs
-holds the true mean over the run, and its interval against that of the base model.
-SURVEYAPP_BENCH_RUNS is the number of runs a line (four times as many clean ones: they seldom fire).
+holds the true mean over the run, and its interval against that of the base model. Asked: at least
+.93 of all that fired. SURVEYAPP_BENCH_RUNS is the number of runs a line (four times as many clean
+ones: they seldom fire); SURVEYAPP_BENCH_STORE a folder in which finished lines are kept.
 """
 
 from __future__ import annotations

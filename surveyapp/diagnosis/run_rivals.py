@@ -16,7 +16,14 @@ from numpy.typing import NDArray
 from surveyapp.diagnosis.candidates import Candidate, swing_columns
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.fits import Fit
-from surveyapp.diagnosis.run_average import BASE_PRIOR, GROSS_SIZES, OTHER_SHARE, SHARES, SIZES
+from surveyapp.diagnosis.run_average import (
+    BASE_PRIOR,
+    GROSS_SIZES,
+    OTHER_SHARE,
+    SHARES,
+    SIZES,
+    correlated_roots,
+)
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Columns, Effect
 
@@ -136,6 +143,7 @@ def rivals_of(
         found.append(_of_effect(candidate, design, action))
     found += _shifts(case, size, action)
     found.append(_wandering(case, size, action))
+    found.append(_correlated(case, size, action))
     total = sum(SHARES.get(unit, OTHER_SHARE) for unit, _, _ in found)
     nothing = np.zeros((1, 0))
     rivals = [Rival("base", math.log(BASE_PRIOR), np.zeros((1, size, 0)), nothing, nothing)]
@@ -241,3 +249,20 @@ def _wandering(case: Case, size: int, action: RunAction) -> Moves:
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     root = root[:, values > 1e-9 * values[-1]]
     return "wandering", root[None], root[None]
+
+
+def _correlated(case: Case, size: int, action: RunAction) -> Moves:
+    """Readings that err alike from one to the next; those of a new run know nothing of the first.
+
+    Two more points go on where the run ended; north does not move.
+    """
+    n = case.size
+    spacing = float(np.median(np.diff(np.sort(case.position))))
+    more = case.position[-1] + spacing * np.arange(1.0, size - n + 1.0)
+    if not action.anew:
+        roots = correlated_roots(np.concatenate([case.position, more]))
+    else:
+        own, other = correlated_roots(case.position), correlated_roots(more)
+        roots = np.zeros((len(own), size, size))
+        roots[:, :n, :n], roots[:, n:, n:] = own, other
+    return "correlated", roots, np.zeros_like(roots)

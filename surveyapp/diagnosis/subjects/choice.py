@@ -14,6 +14,7 @@ import numpy as np
 
 from surveyapp.core.checks.adopted_checks import occurrences
 from surveyapp.core.orientation.adopted import SOURCE
+from surveyapp.core.orientation.adopted_course import courses_of
 from surveyapp.core.orientation.campaign_columns import Name
 from surveyapp.core.orientation.circumstances import Circumstances, facts_of
 from surveyapp.core.orientation.whole_project import Orientation
@@ -70,7 +71,7 @@ def run_problem(
     twist : TripodTwist or None
         Turning of the tripod that the sights tell: known and taken out as well.
     extra : tuple of Effect
-        The user's own.
+        The user's own; the courses that the session has adopted are tried in any case.
 
     Raises
     ------
@@ -95,6 +96,8 @@ def run_problem(
         math.nan if row.temperature_c is None else row.temperature_c for row in points.rows
     ]
     known = not all(math.isnan(value) for value in temperature)
+    own = {effect.id for effect in extra}
+    carried = tuple(item for item in courses_of(session.effects) if item.id not in own)
     return reversal_run(
         TurningPoints(
             readings=(points.origin + points.values).tolist(),
@@ -108,7 +111,7 @@ def run_problem(
             instrument=session.instrument,
             identity=session.id,
         ),
-        extra,
+        (*extra, *carried),
     )
 
 
