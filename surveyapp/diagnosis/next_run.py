@@ -156,10 +156,10 @@ def _solved(x: Floats, q: Floats, y: Floats, nu0: float) -> _Solved:
     inverse = np.linalg.inv(gram)
     free = y - (y @ q) @ q.T
     score = free @ left
-    b = score @ inverse  # the inverse is symmetric
+    b = np.asarray(score @ inverse)  # the inverse is symmetric
     squares = np.einsum("dn,dn->d", free, free)
     rest = np.maximum(nu0 + squares[None, :] - np.einsum("mdr,mdr->md", b, score), 1e-12)
-    return _Solved(np.linalg.slogdet(gram)[1], b, rest, inverse, left)
+    return _Solved(np.linalg.slogdet(gram)[1], b, rest, np.asarray(inverse), left)
 
 
 def _north(

@@ -5,8 +5,9 @@ whatever it looks for, and the model that it finds narrows the sigma for nothing
 Gaussian: each effect of the catalogue at each of its grid points in two sizes, one and two slips,
 one and two shifts, a wandering north; constant, amplitude and damping are flat beneath them.
 Noise that is correlated from reading to reading moves no north and is a member too, by its
-likelihood with constant, amplitude and damping integrated out, and averaged over the correlation: a dozen such readings look like a drift, a
-step or nothing, and their mean is known far less well than their scatter says.
+likelihood with constant, amplitude and damping integrated out, averaged over the correlation: a
+dozen such readings look like a drift, a step or nothing, and their mean is known far less well
+than their scatter says.
 
 Source: prediction.md B; O'Hagan & Forster (2004), Bayesian Inference, 11.11.
 """
@@ -51,10 +52,10 @@ SHARES = {
 OTHER_SHARE = 0.02
 """Prior of every other effect, before all are scaled to 1 - BASE_PRIOR. A slip of the pen is the
 commonest cause: it counts three times as much here as well (``candidates.GROSS_WEIGHT``), and two
-of them look like a step. Correlated readings count as
-much as both together: what errs in one reading may err in its neighbour."""
+of them look like a step. Correlated readings count as much as both together: what errs in one
+reading may err in its neighbour."""
 CORRELATIONS = (0.3, 0.5, 0.7, 0.85)
-"""Of neighbouring readings: those of ``stochastic`` that a dozen points can tell from a constant."""
+"""Of neighbouring readings: those of ``stochastic`` that a dozen points tell from a constant."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,9 +39,7 @@ def course_faults(course: Course) -> str:
     return ""
 
 
-def recurrent_course(
-    identity: str, course: Course, *, run: str, told: str = ""
-) -> Effect:
+def recurrent_course(identity: str, course: Course, *, run: str, told: str = "") -> Effect:
     """The effect of a saved course.
 
     Parameters

@@ -34,7 +34,8 @@ def check_adopted(project: Project) -> list[ResultWarning]:
     Returns
     -------
     list of ResultWarning
-        ``adopted_data_changed``, ``course_not_explained``, ``adopted_without_reference``, ``effect_range_unknown``,
+        ``adopted_data_changed``, ``course_not_explained``,
+        ``adopted_without_reference``, ``effect_range_unknown``,
         ``known_constant_at_reference``.
 
     Raises
