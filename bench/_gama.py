@@ -76,6 +76,8 @@ def refused(out: Path, expected: Expected) -> str:
         root = parse(out).getroot()
     except (OSError, ParseError) as failure:
         return f"its answer cannot be read ({failure})"
+    if root is None:
+        return "its answer is empty"
     error = root.find(f".//{SPACE}error")
     if error is not None:
         words = " ".join("".join(error.itertext()).split())

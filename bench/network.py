@@ -192,8 +192,8 @@ def run() -> list[str]:
     with tempfile.TemporaryDirectory() as folder:
         for shape in ("closed", "branched"):
             for count in sorted({*SIZES, *(GAMA_SIZES if _gama.there() else ())}):
-                for near in (False, True):
-                    lines.append(line(count, shape, Path(folder), near=near))
+                both = (False, True)
+                lines += [line(count, shape, Path(folder), near=near) for near in both]
     if not _gama.there():
         lines.append(f"{_gama.PROGRAM} is not on the PATH: no ratio")
     return lines
