@@ -19,7 +19,12 @@ import numpy as np
 from surveyapp.core.network.centring import angle_centring, direction_centring
 from surveyapp.core.network.setups import Lengths, as_blocks, setup_blocks
 from surveyapp.core.network.touched import touched
-from surveyapp.domain.observations import CorrelatedBlock, Observation, ObservationKind
+from surveyapp.domain.observations import (
+    CorrelatedBlock,
+    EstimatedSigma,
+    Observation,
+    ObservationKind,
+)
 from surveyapp.domain.project import Project, ResultWarning, Station
 from surveyapp.domain.station_line import StationLine
 from surveyapp.domain.subject import Subject
@@ -88,6 +93,27 @@ def _sigma(row: TraverseRow, header: Traverse, lengths: Lengths) -> float | None
     return math.sqrt(own**2 + extra)
 
 
+def _estimated(row: TraverseRow, header: Traverse) -> EstimatedSigma | None:
+    """What of a row's variance the header's sigma brings, where that one was estimated."""
+    if row.sigma is not None or not header.sigma_dof:
+        return None
+    known = dict(header.sigma_dof)
+    if row.kind in _LENGTHS:
+        name, sigma = "distance", header.sigma_mm
+        sigma = None if sigma is None else sigma * MM
+    elif row.kind is K.ZENITH and header.sigma_zenith is not None:
+        name, sigma = "zenith", header.sigma_zenith
+    else:
+        name, sigma = "angle", header.sigma_angle
+        if row.kind is K.DIRECTION and sigma is not None:
+            sigma /= math.sqrt(2.0)
+    if name not in known and name != "distance":
+        name = "circles"
+    if sigma is None or not sigma or name not in known:
+        return None
+    return EstimatedSigma(f"{header.name}: {name}", sigma**2, known[name])
+
+
 def _observation(
     row: TraverseRow, header: Traverse, sigma: float, problems: list[Problem]
 ) -> Observation | None:
@@ -105,6 +131,7 @@ def _observation(
             note=row.note,
             line=row.line,
             length_m=row.length_m,
+            estimated=_estimated(row, header),
         )
     except SurveyError as refused:
         problems += [

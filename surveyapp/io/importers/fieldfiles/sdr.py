@@ -23,6 +23,7 @@ from surveyapp.io.importers.fieldfiles.gathering import (
 from surveyapp.io.importers.fieldfiles.lines import look_through
 from surveyapp.io.importers.fieldfiles.sdr_layout import (
     KINDS,
+    TEXT,
     RecordError,
     Shape,
     header_digits,
@@ -39,6 +40,7 @@ _FRAME: Final = "\x02\x03\x1a\x00"
 _MARK: Final = "\xef\xbb\xbf"
 _TWO_PI: Final = 2.0 * math.pi
 _SHOWN: Final = 6
+_LEAST_RECORD: Final = 4
 _NEGATIVE: Final = 3
 """So many negative zenith angles are no damage but a convention that record 01 does not tell."""
 
@@ -89,10 +91,16 @@ def read_sdr(path: Path, options: ReadOptions) -> FieldFile:
     text = look_through(path, single_byte=True)
     shape = shape_of((_bare(line) for _, line in text.lines()), path.name)
     state = _State(gathering(path, options), shape)
+    blank = 0
     for number, line in state.gathered.lines(text):
         record = _bare(line)
-        if record.strip():
-            _record(state, number, record)
+        if not record.strip():
+            blank = number if len(record) >= _LEAST_RECORD else blank
+            continue
+        if blank:
+            _blanked(state, blank)
+            blank = 0
+        _record(state, number, record)
     if text.encoding != "ascii":
         state.gathered.warn("code_page", "names that are no ASCII were read as Latin-1")
     _keep_means(state)
@@ -161,12 +169,28 @@ def _record(state: _State, number: int, line: str) -> None:
     try:
         if kind in KINDS:
             state.shape.check(kind, line)
+        elif kind == "07" and len(line.rstrip()) > state.shape.full(kind):
+            raise RecordError("the record 07 is too long")
         elif line[:4] != "13NM":
             state.shape.alone(kind, line)
         action(state, number, line)
     except RecordError as error:
         state.gathered.damaged(number, str(error), line)
-        _lose(state, number, may_have_been(line) | {kind})
+        taken = _swallowed(state, line, kind) if kind in (*KINDS, "07") else frozenset()
+        _lose(state, number, may_have_been(line) | {kind} | taken)
+
+
+def _blanked(state: _State, number: int) -> None:
+    """A line of blanks between records: no instrument writes it, a record was wiped out."""
+    state.gathered.damaged(number, "the record is blank", "blanks", "two digits, two letters")
+    _lose(state, number, frozenset(("01", "03")))
+    state.doubt = number
+
+
+def _swallowed(state: _State, line: str, kind: str) -> frozenset[str]:
+    """What a damaged record that is longer than its kind took in with the end of its line."""
+    longest = state.shape.lengths.get(kind, state.shape.full(kind) + TEXT)
+    return frozenset(("03",)) if len(line) > longest else frozenset()
 
 
 def _other(state: _State, number: int, line: str) -> None:
@@ -309,8 +333,8 @@ def _observation(state: _State, number: int, line: str) -> None:
         state.shape.number(line, "09", i, what)
         for i, what in enumerate(("the distance", "the vertical reading", "the circle reading"))
     )
-    if hz is None and v is None:
-        raise RecordError("the sight has neither a circle nor a vertical reading")
+    if hz is None:
+        raise RecordError("the sight has no circle reading")
     if sd is not None and sd < 0.0:
         raise RecordError(f"a distance is negative: {sd:g}")
     horizontal, zenith = _circle(state, hz, "the circle reading"), _zenith(state, number, v)
