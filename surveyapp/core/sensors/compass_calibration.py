@@ -31,6 +31,7 @@ from surveyapp.domain.calibration import (
 )
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.arrays import Floats
 from surveyapp_models.compass.heading import DEFAULT_DIP, dip_of
 
@@ -39,6 +40,9 @@ UNDERSTATED: Final = 2.0
 
 OFFSET_LIMIT_UT: Final = 2.0
 """Sigma of a hard iron up to which it counts as determined (levelling.md)."""
+
+MOST_UNEQUAL: Final = 4.0
+"""Scales of the axes that differ by more are units: one axis in mG beside uT is 10."""
 
 FEWEST_ROWS: Final = 20
 AZIMUTHS, BANDS = 12, 6
@@ -69,7 +73,30 @@ def calibrate_ellipsoid(log: SensorLog, *, limit: float) -> Calibration:
     sigmas = [_judged(trial, dip) for trial in trials]
     chosen, sigma = _gate(trials, chosen, (sigmas, dip, limit))
     verdict, known = _verdict(trials[chosen], sigma, limit)
+    if verdict != "refused":
+        _refuse_other_units(trials[chosen].fit, log.path)
     return _result(log, points, (trials, chosen, sigmas), (verdict, known, sigma, dip))
+
+
+def _refuse_other_units(fit: Ellipsoid, where: str) -> None:
+    """Axes whose scales differ by more than iron can make them.
+
+    Raises
+    ------
+    SurveyError
+    """
+    scales = np.diag(fit.soft)
+    if float(scales.max()) <= MOST_UNEQUAL * float(scales.min()):
+        return
+    raise SurveyError(
+        Problem(
+            "mag_x/y/z are in different units",
+            where,
+            "scales " + ", ".join(f"{a} {1.0 / s:.3g}" for a, s in zip("xyz", scales, strict=True)),
+            f"scales within a factor of {MOST_UNEQUAL:g}: iron makes no more",
+            "give each its own: --unit COLUMN=... or --scale COLUMN=VALUE",
+        )
+    )
 
 
 def _gate(
@@ -308,6 +335,12 @@ def _warnings(
     if log.vector("acc") is None:
         text = "no specific force: the dip is taken as 65 degrees"
         found.append(ResultWarning("dip_assumed", text))
+    elif trials[chosen].fit.converged and record_dip(log, trials[chosen].fit) < 0.0:
+        text = (
+            "the field points upwards, as it does south of the magnetic equator: elsewhere acc_* "
+            "is gravity and not specific force (+g on the axis that is up); --scale COLUMN=-1"
+        )
+        found.append(ResultWarning("field_points_up", text))
     return found
 
 
