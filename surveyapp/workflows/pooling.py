@@ -106,7 +106,7 @@ def part_of(path: str, orientation: Orientation, wanted: Wanted) -> Part:
 def _campaign(orientation: Orientation, instrument: str) -> Evidence | None:
     """What the determinations of a project say of the causes; None where they are too few."""
     constant = next(c for c in orientation.constants if c.instrument.id == instrument)
-    if len(constant.calibrations) < LEAST_CAMPAIGN or constant.instrument.effects:
+    if constant.set_ups < LEAST_CAMPAIGN or constant.instrument.effects:
         return None
     try:
         case = campaign(determinations(orientation, instrument), instrument=instrument)

@@ -89,9 +89,7 @@ def test_rounds_of_an_angle_share_the_centring_too(tmp_path: Path, rounds: int) 
 
 def test_two_angles_of_a_set_up_share_what_centring_does_to_both(tmp_path: Path) -> None:
     """Full covariance by hand: rows d angle / d (instrument e n, B e n, C e n, D e n)."""
-    network = api.network(
-        _folder(tmp_path, "angle,A,B,C,90.0,deg,1/1\nangle,A,C,D,90.0,deg,1/1\n")
-    )
+    network = api.network(_folder(tmp_path, "angle,A,B,C,90.0,deg,1/1\nangle,A,C,D,90.0,deg,1/1\n"))
     (block,) = network.blocks
     # B 100 m north, C 50 m east, D 80 m south of A: an azimuth changes by (cos de - sin dn) / s
     b, c, d = (np.array([1 / 100, 0.0]), np.array([0.0, -1 / 50]), np.array([-1 / 80, 0.0]))

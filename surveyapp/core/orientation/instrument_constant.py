@@ -104,6 +104,11 @@ class InstrumentConstant:
     average: Uncertain | None = None
 
     @property
+    def set_ups(self) -> int:
+        """Independent determinations: several lines sighted from one set-up are one."""
+        return len({item.session for item in self.calibrations})
+
+    @property
     def choice(self) -> ConstantChoice:
         """What its sessions use if they say nothing else."""
         if self.instrument.constant_choice is not None:
@@ -259,13 +264,13 @@ def choose(
         return _interpolated(constant, moment, where, block=block)
     if choice.kind == "nearest":
         return _nearest(constant, distance_to, where)
-    if constant.instrument.constant_choice is None and len(constant.calibrations) < LEAST_PREDICTED:
+    if constant.instrument.constant_choice is None and constant.set_ups < LEAST_PREDICTED:
         return Chosen(with_archive(constant), "pooled")
     return Chosen(constant.pooled, "pooled")
 
 
 def _not_predicted(constant: InstrumentConstant, where: str) -> Chosen:
-    count = len(constant.calibrations)
+    count = constant.set_ups
     if not count:
         return Chosen(None, None)
     text = counted(
@@ -293,7 +298,7 @@ def with_archive(constant: InstrumentConstant) -> Uncertain | None:
     priors = constant.instrument.priors
     if constant.pooled is None or priors is None or not priors.scatter:
         return constant.pooled
-    n = len(constant.calibrations)
+    n = constant.set_ups
     # of the mean of n and of the line itself
     part = priors.scatter * math.sqrt(1.0 + 1.0 / n)
     dof = float(max(priors.sessions - 1, 1))

@@ -17,6 +17,7 @@ from surveyapp.core.orientation.adopted import SOURCE
 from surveyapp.core.orientation.adopted_course import courses_of
 from surveyapp.core.orientation.campaign_columns import Name
 from surveyapp.core.orientation.circumstances import Circumstances, facts_of
+from surveyapp.core.orientation.set_ups import one_a_set_up
 from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.core.statistics.repeated import SHARED
 from surveyapp.core.swing.run_model import ModelledNorth
@@ -186,16 +187,19 @@ def determinations(orientation: Orientation, instrument: str) -> tuple[Determina
 
     The sigma is that of what belongs to one determination alone: centring, deflection and the
     known azimuth are the line's own, and whether a line stands off is to be found, not assumed.
+    Several lines sighted from one set-up are one determination.
     """
     by_key = facts_of(orientation.sessions, instrument, orientation.positions)
     constant = next(c for c in orientation.constants if c.instrument.id == instrument)
     found = []
+    lines: dict[str, list[str]] = {}
     for calibration in constant.calibrations:
-        facts = by_key[calibration.session, calibration.target]
+        lines.setdefault(calibration.session, []).append(str(calibration.line))
+    for calibration, facts in one_a_set_up(constant.calibrations, by_key):
         own = calibration.value.without(
             *SHARED, said("run-to-run scatter"), said("{source} outside its range", source=SOURCE)
         )
-        label = f"{calibration.session} ({calibration.line})"
+        label = f"{calibration.session} ({' + '.join(lines[calibration.session])})"
         subject = Subject.session(calibration.session, calibration.target)
         found.append(_determination(calibration.value.value, own, facts, subject, label=label))
     return _in_time(found if found else _azimuths(orientation, instrument, by_key))
