@@ -2,8 +2,8 @@
 
 A set ``S/R`` is round R of set-up S. Between its rounds nobody centred anew: the same millimetre is
 in all of them, so that ten rounds do not make it smaller. Directions, angles, distances and zenith
-angles of a set-up with the traverse's own sigmas get one covariance matrix; a row with a sigma of its own
-is taken as it stands.
+angles of a set-up with the traverse's own sigmas get one covariance matrix; a row with a sigma of
+its own is taken as it stands.
 
 Source: direction t of length s: d alpha = (cos alpha de - sin alpha dn) / s, an angle is the
 difference of two of them; distance: ds =
@@ -124,7 +124,7 @@ def _sighted(obs: Observation) -> tuple[str, ...]:
 
 
 def _by_angles(found: Sequence[Observation], azimuths: dict[str, float]) -> None:
-    """Directions of the targets that angles tie to known ones; the first angle begins where none is.
+    """Directions of the targets that angles tie to known ones; where none is, the first begins.
 
     Of angles that hang together with no other the common frame is unknown: they stay out.
     """
