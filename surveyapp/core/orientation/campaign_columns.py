@@ -213,8 +213,8 @@ def hours_since_transport(places: Sequence[Place]) -> list[Told]:
             first.append(len(found))
         found.append(24.0 * (day - max(elsewhere)) if elsewhere else None)
     if any(value is not None for value in found):
-        for place in first:
-            found[place] = SETTLED_H
+        for row in first:
+            found[row] = SETTLED_H
     return found
 
 
