@@ -13,10 +13,10 @@ from surveyapp.core.sensors.rate.hand_held import (
     fit_rates,
     turn_rows,
 )
+from surveyapp.core.sensors.rate.hand_parameters import LEAST_TURNS
 from surveyapp.core.sensors.rate.held_turns import ACCELEROMETERS, rest_rates, turns_between
 from surveyapp.core.sensors.rate.multi_position_log import (
     LEAST_STOPS,
-    LEAST_TURNS,
     MultiPositionOptions,
     force_model,
     held_stops,

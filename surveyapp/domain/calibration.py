@@ -6,8 +6,8 @@ does not determine has no value, and its name stands in the geometry.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any, Final, Literal
 
 from surveyapp.domain.project import ResultWarning
@@ -29,16 +29,44 @@ class SensorParameter:
     sigma : float or None
         Standard deviation; None where it is not determined or nothing was estimated.
     unit : str
+    reason : str
+        Why there is no value; empty where there is one.
     """
 
     name: str
     value: float | None
     sigma: float | None
     unit: str
+    reason: str = ""
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""
-        return {"name": self.name, "value": self.value, "sigma": self.sigma, "unit": self.unit}
+        return {
+            "name": self.name,
+            "value": self.value,
+            "sigma": self.sigma,
+            "unit": self.unit,
+            "reason": self.reason or None,
+        }
+
+
+def with_reasons(
+    parameters: Iterable[SensorParameter], why: Callable[[str], str]
+) -> tuple[SensorParameter, ...]:
+    """The parameters; one without a value and without a reason gets the one of its name."""
+    return tuple(
+        p if p.value is not None or p.reason else replace(p, reason=str(why(p.name)))
+        for p in parameters
+    )
+
+
+def names_by_reason(parameters: Iterable[SensorParameter]) -> dict[str, tuple[str, ...]]:
+    """Reason to the names of the parameters that have no value for it."""
+    found: dict[str, tuple[str, ...]] = {}
+    for item in parameters:
+        if item.value is None and item.reason:
+            found[item.reason] = (*found.get(item.reason, ()), item.name)
+    return found
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,6 +15,7 @@ from surveyapp.languages import joined, said, said_each, term
 from surveyapp.report.blocks import Block, Figure, Heading, KeyValues, Paragraph, Table
 from surveyapp.report.numbers import NOTHING, four_digits
 from surveyapp.report.plots import Axis, Frame
+from surveyapp.report.sections.undetermined import undetermined_blocks
 
 DIGEST_SHOWN = 16
 """Hexadecimal digits of a sha256 that the record shows."""
@@ -39,9 +40,7 @@ def calibration_body(result: Calibration) -> tuple[Block, ...]:
     if not result.met:
         text = said("Not determined, refused or inconsistent: no sensor card comes of this log.")
         found.append(Paragraph(text, "warning"))
-    if result.geometry.undetermined:
-        names = ", ".join(result.geometry.undetermined)
-        found.append(Paragraph(said("Not determined: {names}.", names=names), "warning"))
+    found += undetermined_blocks(result.parameters, result.geometry.undetermined)
     return (*found, *_warnings(result.warnings))
 
 

@@ -25,9 +25,9 @@ from surveyapp.core.sensors.rate.six_position_log import (
 )
 from surveyapp.core.sensors.rate.temperature_log import (
     CHAMBER,
-    TemperatureOptions,
     calibrate_temperature,
 )
+from surveyapp.core.sensors.rate.temperature_nodes import TemperatureOptions
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2
 from surveyapp.errors import Problem, SurveyError, nearest_names

@@ -14,6 +14,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from surveyapp.core.sensors.rate.needed import (
+    CROSS_TOLERANCE,
+    NORMAL_95,
+    SCALE_TOLERANCE,
+    ZERO_TOLERANCE,
+    covariance_of,
+)
 from surveyapp_models.arrays import Floats
 from surveyapp_models.rate import quaternions
 
@@ -21,6 +28,10 @@ LEVELS = ("bias_scale", "three_scales", "misalignment")
 """Accelerometer models, each with more parameters: 4, 6, 9."""
 PARAMETERS = {"bias_scale": 4, "three_scales": 6, "misalignment": 9}
 _ITERATIONS = 40
+_STOP_NOISE = 0.005
+"""Of the size of gravity at a stop where its residuals do not tell a smaller one [m/s2]."""
+_CONVERGED = 1e-7
+"""Of the residuals: a step that moves them by less ends the fit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,10 +100,17 @@ def _parts(level: str, vector: Floats) -> tuple[Floats, Floats]:
     return bias, out
 
 
-def shifted_forces(model: ForceModel) -> list[ForceModel]:
-    """The model with each parameter off by its standard deviation, in turn."""
+def shifted_forces(model: ForceModel, covariance: Floats) -> list[ForceModel]:
+    """The model with each parameter off by its standard deviation, in turn.
+
+    Parameters
+    ----------
+    model : ForceModel
+    covariance : ndarray, shape (p, p)
+        Of its parameters.
+    """
     found = []
-    for k, sigma in enumerate(np.sqrt(np.maximum(np.diag(model.covariance), 0.0))):
+    for k, sigma in enumerate(np.sqrt(np.maximum(np.diag(covariance), 0.0))):
         vector = model.vector.copy()
         vector[k] += sigma
         bias, out = _parts(model.level, vector)
@@ -117,29 +135,91 @@ def fit_forces(
         Parameters to begin with.
     """
     vector = _first_guess(forces, level, gravity) if start is None else start
+    dof = forces.shape[0] - PARAMETERS[level]
+    if start is None:
+        vector = _fitted(forces, level, vector, gravity, noise=_STOP_NOISE)
+    rest, _ = _misfit(forces, level, vector, gravity)
+    noise = math.sqrt(float(rest @ rest) / max(dof, 1))
+    vector = _fitted(forces, level, vector, gravity, noise=min(noise, _STOP_NOISE))
+    rest, jacobian = _misfit(forces, level, vector, gravity)
+    bias, out = _parts(level, vector)
+    scale = float(rest @ rest) / max(dof, 1)
+    covariance = covariance_of(jacobian) * scale
+    rms = math.sqrt(float(np.mean(rest**2)))
+    inverse = np.asarray(np.linalg.inv(out), dtype=np.float64)
+    return ForceModel(level, bias, inverse, vector, covariance, rms, dof)
+
+
+def _fitted(forces: Floats, level: str, vector: Floats, gravity: float, *, noise: float) -> Floats:
+    """Parameters by Levenberg and Marquardt.
+
+    What the stops do not tell stays at its nominal value: each parameter counts as observed with
+    the tolerance of any unit, beside stops of that noise [m/s2].
+    """
     count = PARAMETERS[level]
     damping = 1e-6
-    rest, jacobian = _misfit(forces, level, vector, gravity)
+    weight = noise / _tolerances(level)
+    nominal = np.array([0.0] * 3 + [1.0] * 3 + [0.0] * 3)[:count]
+
+    def held(at: Floats) -> tuple[Floats, Floats]:
+        rest, jacobian = _misfit(forces, level, at, gravity)
+        own = weight * (at - nominal)
+        return np.append(rest, own), np.vstack([jacobian, np.diag(weight)])
+
+    rest, jacobian = held(vector)
     for _ in range(_ITERATIONS):
         size = np.maximum(np.linalg.norm(jacobian, axis=0), 1e-12)
         rows = np.vstack([jacobian / size, math.sqrt(damping) * np.eye(count)])
         step = np.linalg.lstsq(rows, np.append(-rest, np.zeros(count)), rcond=None)[0] / size
-        after, slope = _misfit(forces, level, vector + step, gravity)
+        after, slope = held(vector + step)
         if float(after @ after) <= float(rest @ rest) + 1e-18:
-            done = float(np.abs(step).max()) < 1e-12
+            moved = float(np.linalg.norm(jacobian @ step))
+            small = moved < _CONVERGED * float(np.linalg.norm(rest))
+            done = small or float(np.abs(step).max()) < 1e-12
             vector, rest, jacobian = vector + step, after, slope
             damping = max(damping * 0.1, 1e-12)
             if done:
                 break
         else:
             damping = min(damping * 10.0, 1e3)
-    bias, out = _parts(level, vector)
-    dof = forces.shape[0] - count
-    scale = float(rest @ rest) / max(dof, 1)
-    covariance = np.linalg.pinv(jacobian.T @ jacobian) * scale
-    rms = math.sqrt(float(np.mean(rest**2)))
-    inverse = np.asarray(np.linalg.inv(out), dtype=np.float64)
-    return ForceModel(level, bias, inverse, vector, covariance, rms, dof)
+    return vector
+
+
+def _tolerances(level: str) -> Floats:
+    """What any unit may have, as standard deviations of the parameters of a level."""
+    half = [ZERO_TOLERANCE] * 3 + [SCALE_TOLERANCE] * 3 + [CROSS_TOLERANCE] * 3
+    return np.array(half[: PARAMETERS[level]]) / NORMAL_95
+
+
+def covariance_with_omitted(forces: Floats, model: ForceModel, *, gravity: float) -> Floats:
+    """Covariance of bias, three scales and misalignments beside a model that lacks some of them.
+
+    What the model has not is not known to be zero: it may be what makers leave open, or what these
+    stops still allow of that. A model with everything has its own covariance.
+
+    Parameters
+    ----------
+    forces : ndarray, shape (n, 3)
+        [m/s2]
+    model : ForceModel
+    gravity : float
+        [m/s2]
+
+    Returns
+    -------
+    ndarray, shape (9, 9)
+    """
+    if model.level == "misalignment":
+        return model.covariance
+    scales = model.vector[3:6] if model.level == "three_scales" else np.full(3, model.vector[3])
+    vector = np.concatenate([model.bias, scales, np.zeros(3)])
+    rest, jacobian = _misfit(forces, "misalignment", vector, gravity)
+    noise = math.sqrt(max(float(rest @ rest) / max(model.dof, 1), 1e-20))
+    prior = np.zeros((6, 9))
+    prior[:3, 3:6] = np.eye(3) * (NORMAL_95 / SCALE_TOLERANCE)
+    prior[3:, 6:] = np.eye(3) * (NORMAL_95 / CROSS_TOLERANCE)
+    omitted = prior[3:] if model.level == "three_scales" else prior
+    return covariance_of(np.vstack([jacobian / noise, omitted]))
 
 
 def _misfit(forces: Floats, level: str, vector: Floats, gravity: float) -> tuple[Floats, Floats]:
@@ -331,18 +411,24 @@ def fit_rates(turns: Sequence[Turn]) -> RateModel:
     inverse = np.eye(3)
     before = direction_errors(turns, inverse)
     times = np.repeat([t.rates.shape[0] * t.interval_s for t in turns], 2)
+    own = np.where(np.eye(3) > 0.0, SCALE_TOLERANCE, CROSS_TOLERANCE)
+    tolerances = own.ravel() / NORMAL_95
     for _ in range(12):
         rows = [turn_rows(turn, inverse) for turn in turns]
         angles = times * np.concatenate([r.error for r in rows])
         jacobian = times[:, None] * np.concatenate([r.rate.reshape(2, 9) for r in rows])
-        change = np.linalg.lstsq(jacobian, -angles, rcond=1e-10)[0].reshape(3, 3)
+        # what the turns do not tell stays nominal: any unit's tolerance beside their noise
+        weight = math.sqrt(float(np.mean(angles**2))) / tolerances
+        held = np.vstack([jacobian, np.diag(weight)])
+        target = np.append(-angles, -weight * (inverse - np.eye(3)).ravel())
+        change = np.linalg.lstsq(held, target, rcond=None)[0].reshape(3, 3)
         inverse = inverse + change @ inverse
         if float(np.abs(change).max()) < 1e-10:
             break
     rest = direction_errors(turns, inverse)
     dof = 2 * len(turns) - 9
     scale = float(np.sum(rest**2)) / max(dof, 1)
-    of_change = np.linalg.pinv(jacobian.T @ jacobian) * scale
+    of_change = covariance_of(jacobian) * scale
     output = np.asarray(np.linalg.inv(inverse), dtype=np.float64)
     chain = -np.kron(output, np.eye(3))  # d(output) = -output change
     return RateModel(
@@ -353,36 +439,6 @@ def fit_rates(turns: Sequence[Turn]) -> RateModel:
         _rms(rest),
         dof,
     )
-
-
-def with_frame(
-    gyro: RateModel, turns: Sequence[Turn], shifted: Sequence[Sequence[Turn]], covariance: Floats
-) -> RateModel:
-    """The gyros' model with the uncertainty of the accelerometers, whose triad is their frame.
-
-    Parameters
-    ----------
-    gyro : RateModel
-        From the turns.
-    turns : sequence of Turn
-    shifted : sequence of sequence of Turn, length p
-        The same turns with one parameter of the accelerometers off by its standard deviation.
-    covariance : ndarray, shape (p, p)
-        Of these parameters in units of their standard deviations.
-    """
-    rows = [turn_rows(turn, gyro.matrix) for turn in turns]
-    times = np.repeat([t.rates.shape[0] * t.interval_s for t in turns], 2)
-    jacobian = times[:, None] * np.concatenate([r.rate.reshape(2, 9) for r in rows])
-    base = np.concatenate([r.error for r in rows])
-    moved = np.column_stack(
-        [
-            times * (np.concatenate([turn_rows(t, gyro.matrix).error for t in one]) - base)
-            for one in shifted
-        ]
-    )
-    # change = - J+ error, d(output) = -output change
-    slope = np.kron(gyro.output, np.eye(3)) @ np.linalg.lstsq(jacobian, moved, rcond=1e-10)[0]
-    return replace(gyro, covariance=gyro.covariance + slope @ covariance @ slope.T)
 
 
 def _rms(errors: Floats) -> float:
