@@ -1,7 +1,9 @@
 """The loop on hand-held stops: detected, rightly named, wrongly named at 12, 18 and 30 stops.
 
 The table of docs/explanation/sensors.md; ``SURVEYAPP_BENCH_RUNS`` records a cell (200), and
-``SURVEYAPP_BENCH_STORE`` a folder in which finished parts are kept. Noise .05 deg/s a sample at 50 Hz and .006 deg/s from stop to stop; a walk of a given size a
+``SURVEYAPP_BENCH_STORE`` a folder in which finished parts are kept.
+
+Noise .05 deg/s a sample at 50 Hz and .006 deg/s from stop to stop; a walk of a given size a
 stop on every gyro, which is in no catalogue.
 """
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 from surveyapp.cli.numbers import finite
 from surveyapp.cli.output import heading, number, paragraph, print_json, table
-from surveyapp.domain.calibration import names_by_reason
 from surveyapp.errors import Problem, SurveyError
 
 if TYPE_CHECKING:
@@ -174,13 +173,8 @@ def _print_geometry(result: Calibration) -> None:
     if geometry.condition is not None:
         parts.append(f"condition {geometry.condition:.3g}")
     print(paragraph(", ".join(parts)))
-    told: set[str] = set()
-    for reason, names in names_by_reason(result.parameters).items():
-        told |= set(names)
-        print(paragraph(f"not determined: {', '.join(names)}: {reason}"))
-    others = [name for name in geometry.undetermined if name not in told]
-    if others:
-        print(paragraph(f"not determined: {', '.join(others)}"))
+    for why, names in result.empty.items():
+        print(paragraph(f"no value, {why}: {', '.join(names)}"))
 
 
 def shown(value: Any) -> str:

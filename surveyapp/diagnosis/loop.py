@@ -30,7 +30,7 @@ from surveyapp.diagnosis.fits import Fit, fit_members, with_noise
 from surveyapp.diagnosis.gate import GATE, Gate, open_gate
 from surveyapp.diagnosis.held_out import confirm_rms, flagged, leave_one_out, unforetold
 from surveyapp.diagnosis.run_value import plausible
-from surveyapp.diagnosis.wandering import refuted, rest_is_white
+from surveyapp.diagnosis.wandering import imitates, refuted
 from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
@@ -363,19 +363,13 @@ def along(fit: Fit, column: Floats) -> tuple[float, float] | None:
 
 def imitating_noise(problem: Case, after: Fit, without: Fit) -> str | None:
     """Kind of noise that explains the record without an effect nearly as well, else None."""
-    rivals = [fit for fit in with_noise(problem, without) if imitates(problem, after, fit)]
+    rivals = [
+        fit
+        for fit in with_noise(problem, without)
+        if imitates(problem, after, fit, margin=NOISE_MARGIN)
+    ]
     best = min(rivals, key=lambda fit: fit.bic, default=None)
     return None if best is None or best.noise is None else best.noise.kind
-
-
-def imitates(problem: Case, after: Fit, rival: Fit) -> bool:
-    """Whether noise is a rival to an effect; of channels, what the effect leaves decides."""
-    close = rival.bic < after.bic + NOISE_MARGIN
-    if problem.series is None or rival.noise is None:
-        return close
-    if close:
-        return not refuted(problem, after, rival)
-    return not rest_is_white(problem, after, rival.noise.kind, by=0.0)
 
 
 def rivals_delta(level: Level, identity: str) -> float | None:

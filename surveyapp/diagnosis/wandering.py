@@ -12,9 +12,9 @@ from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.fits import Fit, with_noise
 
 WHITE = 2.0
-"""BIC by which noise beside an effect must be worse for the rest to count as white. By simulation of
-ramps and walks of three gyros at 12 and 18 stops: with 2 beside a rival that is no better, .41 of the
-ramps of .008 deg/s per minute pass at 18 stops and .09 of the walks; with 1, .58 and .18."""
+"""BIC by which noise beside an effect must be worse for the rest to count as white. By simulation
+of ramps and walks of three gyros: with 2, beside a rival no better, .41 of the ramps of .008
+deg/s per minute pass at 18 stops and .09 of the walks; with 1, .58 and .18."""
 
 
 def rest_is_white(problem: Case, fit: Fit, kind: str, *, by: float = WHITE) -> bool:
@@ -34,3 +34,29 @@ def refuted(problem: Case, fit: Fit, rival: Fit) -> bool:
     if not (fewer and named) or rival.bic < fit.bic:
         return False
     return rest_is_white(problem, fit, rival.noise.kind)
+
+
+FAR = 3.0
+"""Margins beyond which noise is no rival, whatever is left."""
+
+
+def imitates(problem: Case, after: Fit, rival: Fit, *, margin: float) -> bool:
+    """Whether noise is a rival to an effect; of channels, what the effect leaves decides.
+
+    Parameters
+    ----------
+    problem : Case
+    after : Fit
+        With the effect.
+    rival : Fit
+        With noise instead.
+    margin : float
+        BIC by which the noise must be worse.
+    """
+    close = rival.bic < after.bic + margin
+    if problem.series is None or rival.noise is None:
+        return close
+    if close:
+        return not refuted(problem, after, rival)
+    far = rival.bic >= after.bic + FAR * margin
+    return not far and not rest_is_white(problem, after, rival.noise.kind, by=0.0)

@@ -59,6 +59,25 @@ SINGLE_POINT = frozenset(
 
 
 @dataclass(frozen=True, slots=True)
+class EstimatedSigma:
+    """That part of an observation's variance which somebody estimated from a few readings.
+
+    Parameters
+    ----------
+    name : str
+        Observations of one name share the estimate, and so its error.
+    variance : float
+        [rad^2] or [m^2].
+    dof : float
+        Degrees of freedom of the estimate, above 0.
+    """
+
+    name: str
+    variance: float
+    dof: float
+
+
+@dataclass(frozen=True, slots=True)
 class Observation:
     """One observation.
 
@@ -91,6 +110,8 @@ class Observation:
         Length of the levelled section of a height difference [m]; None where nobody says.
     line : int
         Line of the file, 0 = unknown.
+    estimated : EstimatedSigma or None
+        What of its variance is an estimate; None where the sigma is known beforehand.
 
     Raises
     ------
@@ -114,6 +135,7 @@ class Observation:
     extern: str = ""
     line: int = 0
     length_m: float | None = None
+    estimated: EstimatedSigma | None = None
 
     def __post_init__(self) -> None:
         if (

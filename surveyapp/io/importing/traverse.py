@@ -134,12 +134,14 @@ def _sigmas(
     """Sigmas of the header: told, from the file itself, or assumed and told as such."""
     faces, zeniths = face_precision(sets), zenith_precision(sets)
     both = circle_precision(sets) if faces is None or zeniths is None else None
+    lengths = distance_precision(sets)
+    dof = _degrees(options, (faces, zeniths, both), lengths)
     if both is not None:
         faces = faces or both
         zeniths = zeniths or (both.direction, both.dof)
     angle, first = _angle_sigma(options.sigma_angle_arcsec, faces)
     zenith, more = _zenith_sigma(options.sigma_angle_arcsec, zeniths)
-    distance, second = _distance_sigma(options.sigma_distance, distance_precision(sets))
+    distance, second = _distance_sigma(options.sigma_distance, lengths)
     centring = (
         f"{ASSUMED_CENTRING_MM:g} mm are assumed for centring and for the height of instrument and "
         "target, each once for a set-up"
@@ -148,10 +150,30 @@ def _sigmas(
         "sigma_angle_arcsec": float(angle),
         **({} if zenith is None else {"sigma_zenith_arcsec": zenith}),
         "sigma_distance": {"mm": float(distance[0]), "ppm": float(distance[1])},
+        **({"sigma_dof": dof} if dof else {}),
         "centring_mm": {"instrument": ASSUMED_CENTRING_MM, "target": ASSUMED_CENTRING_MM},
         "sigma_height_mm": {"instrument": ASSUMED_CENTRING_MM, "target": ASSUMED_CENTRING_MM},
     }
     return table, [*first, *more, *second, ResultWarning("sigma_assumed", centring)]
+
+
+def _degrees(
+    options: ImportOptions,
+    circles: tuple[FacePrecision | None, tuple[float, int] | None, FacePrecision | None],
+    lengths: tuple[float, int] | None,
+) -> dict[str, int]:
+    """Degrees of freedom of the sigmas that the file itself gives, for the global test."""
+    faces, zeniths, both = circles
+    found: dict[str, int] = {}
+    if options.sigma_angle_arcsec is None and both is not None:
+        alone = [x for x in (faces and faces.dof, zeniths and zeniths[1]) if x]
+        found["circles"] = min([both.dof, *alone])
+    elif options.sigma_angle_arcsec is None:
+        found |= {} if faces is None else {"angle": faces.dof}
+        found |= {} if zeniths is None else {"zenith": zeniths[1]}
+    if options.sigma_distance is None and lengths is not None:
+        found["distance"] = lengths[1]
+    return found
 
 
 def _two_digits(value: float) -> float:

@@ -12,10 +12,9 @@ from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.noise import AllanChannel, AllanResult
 from surveyapp.domain.project import ResultWarning
 from surveyapp.languages import joined, said, said_each, term
-from surveyapp.report.blocks import Block, Figure, Heading, KeyValues, Paragraph, Table
+from surveyapp.report.blocks import Block, Figure, Heading, KeyValues, Paragraph, Table, Tone
 from surveyapp.report.numbers import NOTHING, four_digits
 from surveyapp.report.plots import Axis, Frame
-from surveyapp.report.sections.undetermined import undetermined_blocks
 
 DIGEST_SHOWN = 16
 """Hexadecimal digits of a sha256 that the record shows."""
@@ -40,7 +39,10 @@ def calibration_body(result: Calibration) -> tuple[Block, ...]:
     if not result.met:
         text = said("Not determined, refused or inconsistent: no sensor card comes of this log.")
         found.append(Paragraph(text, "warning"))
-    found += undetermined_blocks(result.parameters, result.geometry.undetermined)
+    for why, names in result.empty.items():
+        tone: Tone = "warning" if set(names) & set(result.geometry.undetermined) else "body"
+        text = said("No value, {why}: {names}.", why=why, names=", ".join(names))
+        found.append(Paragraph(text, tone))
     return (*found, *_warnings(result.warnings))
 
 

@@ -16,7 +16,7 @@ def undetermined_blocks(
     found, told = [], set()
     for reason, own in names_by_reason(parameters).items():
         told |= set(own)
-        text = said("Not determined: {names}: {reason}.", names=", ".join(own), reason=reason)
+        text = said("No value, {why}: {names}.", why=reason, names=", ".join(own))
         found.append(Paragraph(text, "warning"))
     others = [name for name in names if name not in told]
     if others:
