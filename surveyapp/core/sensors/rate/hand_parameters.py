@@ -8,7 +8,8 @@ from typing import Literal
 
 import numpy as np
 
-from surveyapp.core.sensors.rate.hand_held import LEVELS, PARAMETERS, ForceModel, RateModel
+from surveyapp.core.sensors.rate.hand_forces import LEVELS, PARAMETERS, ForceModel
+from surveyapp.core.sensors.rate.hand_held import RateModel
 from surveyapp.core.sensors.rate.needed import NORMAL_95, tolerance_of
 from surveyapp.core.sensors.rate.parameters import DEG_H, PPM
 from surveyapp.core.statistics.distributions import student_quantile

@@ -9,13 +9,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from surveyapp.core.sensors.rate.hand_held import (
-    ForceModel,
-    HeldStop,
-    RateModel,
-    Turn,
-    turn_rows,
-)
+from surveyapp.core.sensors.rate.hand_forces import ForceModel
+from surveyapp.core.sensors.rate.hand_held import HeldStop, RateModel, Turn, turn_rows
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp_models.arrays import Floats
 from surveyapp_models.constants import EARTH_RATE

@@ -10,19 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from surveyapp.core.sensors.rate.hand_held import (
+from surveyapp.core.sensors.rate.hand_forces import (
     LEVELS,
     PARAMETERS,
     ForceModel,
-    HeldStop,
-    RateModel,
-    Turn,
     covariance_with_omitted,
     fit_forces,
-    fit_rates,
     left_out,
     shifted_forces,
 )
+from surveyapp.core.sensors.rate.hand_held import HeldStop, RateModel, Turn, fit_rates
 from surveyapp.core.sensors.rate.hand_parameters import (
     LEAST_TURNS,
     force_parameters,
