@@ -194,7 +194,7 @@ def _zero_velocity(found: InertialPath) -> dict[str, Any]:
 
 
 def _inertial(found: InertialPath, still: Mask, options: MotionOptions) -> Path:
-    place = found.position
+    place, level = found.position, found.covariance[:2, :2]
     if options.begin is not None:
         e, n, azimuth = options.begin
         c, s = math.cos(azimuth), math.sin(azimuth)
@@ -202,6 +202,8 @@ def _inertial(found: InertialPath, still: Mask, options: MotionOptions) -> Path:
         turned[:, 0] = e + c * place[:, 0] + s * place[:, 1]
         turned[:, 1] = n - s * place[:, 0] + c * place[:, 1]
         place = turned
+        axes = np.array([[c, s], [-s, c]])
+        level = axes @ level @ axes.T
     stops = _stop_places(place, still)
     target = place[0].copy()
     if options.end is not None:
@@ -213,10 +215,11 @@ def _inertial(found: InertialPath, still: Mask, options: MotionOptions) -> Path:
         [[0.0], np.cumsum(np.linalg.norm(np.diff(place[:, :2], axis=0), axis=1))]
     )
     rows = np.unique(np.searchsorted(along, np.arange(0.0, along[-1], 0.05)))
+    spread = np.sqrt(np.maximum(np.diag(level), 0.0))
     share = rows / max(place.shape[0] - 1, 1)
     points = tuple(
         (float(along[k]), float(place[k, 0]), float(place[k, 1]),
-         float(found.sigma[0] * math.sqrt(r)), float(found.sigma[1] * math.sqrt(r)))
+         float(spread[0] * math.sqrt(r)), float(spread[1] * math.sqrt(r)), float(level[0, 1] * r))
         for k, r in zip(rows.tolist(), share.tolist(), strict=True)
     )  # fmt: skip
     return Path(
@@ -292,8 +295,8 @@ def _odometer_path(found: Reckoned, driven: Driven, closure: float) -> Path:
             stops.append(here)
     sigma = np.sqrt(np.maximum(np.diagonal(found.covariance, axis1=1, axis2=2), 0.0))
     points = tuple(
-        (float(d), float(p[0]), float(p[1]), float(s[0]), float(s[1]))
-        for d, p, s in zip(found.distance, found.place, sigma, strict=True)
+        (float(d), float(p[0]), float(p[1]), float(s[0]), float(s[1]), float(c[0, 1]))
+        for d, p, s, c in zip(found.distance, found.place, sigma, found.covariance, strict=True)
     )
     end = (float(found.place[-1, 0]), float(found.place[-1, 1]), 0.0)
     return Path("odometer", closure, end, _sides(stops), points, float(found.distance[-1]))
