@@ -217,7 +217,8 @@ def _undetermined(
     found: Calibration, why: str | None, *, attitude: Mapping[str, object] | None = None
 ) -> Calibration:
     """The calibration with a turn that is not known."""
-    rows = tuple(SensorParameter(name, None, None, "deg") for name in NAMES)
+    reason = "refused" if found.geometry.verdict == "refused" else "attitude"
+    rows = tuple(SensorParameter(name, None, None, "deg", reason) for name in NAMES)
     geometry = replace(found.geometry, undetermined=(*found.geometry.undetermined, *NAMES))
     warnings = found.warnings
     if why is not None:

@@ -189,7 +189,7 @@ NAMES: Final = (
 UNITS: Final = ("uT", "uT", "uT", *("1",) * 6, "uT")
 
 
-def _parameters(fit: Ellipsoid, known: list[bool]) -> tuple[SensorParameter, ...]:
+def _parameters(fit: Ellipsoid, known: list[bool], *, refused: bool) -> tuple[SensorParameter, ...]:
     w, b = fit.soft, fit.offset
     values = [*b, w[0, 0], w[1, 1], w[2, 2], w[0, 1], w[0, 2], w[1, 2], fit.field]
     covariance = _derived_covariance(fit)
@@ -197,7 +197,8 @@ def _parameters(fit: Ellipsoid, known: list[bool]) -> tuple[SensorParameter, ...
     found = []
     for index, (name, unit) in enumerate(zip(NAMES, UNITS, strict=True)):
         if not known[index]:
-            found.append(SensorParameter(name, None, None, unit))
+            why = "refused" if refused else "sigma_above_2_uT"
+            found.append(SensorParameter(name, None, None, unit, why))
         elif absent[index]:
             found.append(SensorParameter(name, round(float(values[index]), 12), None, unit))
         else:
@@ -221,7 +222,7 @@ def _result(
     trials, chosen, sigmas = found
     verdict, known, sigma, dip = judged
     fit, plain = trials[chosen].fit, trials[0]
-    parameters = _parameters(fit, known)
+    parameters = _parameters(fit, known, refused=verdict == "refused")
     undetermined = tuple(p.name for p in parameters if p.value is None)
     models = tuple(
         CalibrationModel(t.fit.model, t.fit.rms, t.held_rms, i == chosen and verdict != "refused")

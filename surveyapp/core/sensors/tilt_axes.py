@@ -178,7 +178,10 @@ def _result(
             if term in item.terms:
                 index = item.terms.index(term)
                 value, sigma = float(item.fit.x[index]), float(item.fit.sigma[index])
-            parameters.append(SensorParameter(f"{term}_{item.axis}", value, sigma, UNITS[term]))
+            why = "no_temperature" if value is None else None
+            parameters.append(
+                SensorParameter(f"{term}_{item.axis}", value, sigma, UNITS[term], why)
+            )
     undetermined = tuple(p.name for p in parameters if p.value is None)
     raw = np.concatenate(
         [log.columns[f"tilt_{a}_arcsec"] - log.columns[f"ref_{a}_arcsec"] for a in AXES]
