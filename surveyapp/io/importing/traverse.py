@@ -19,9 +19,9 @@ from surveyapp.core.fieldfile.reduction import reduce_file
 from surveyapp.core.network.collector import paused_collection
 from surveyapp.domain.fieldfile import FieldFile, ImportResult, KnownPoint, ReducedSet
 from surveyapp.domain.project import Project, ResultWarning
-from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import shown
-from surveyapp.io.importers.fieldfiles.catalogue import IMPORTERS
+from surveyapp.io.importers.fieldfiles.catalogue import importer_of
 from surveyapp.io.importers.fieldfiles.gathering import ReadOptions
 from surveyapp.io.importers.fieldfiles.lines import field_digest
 from surveyapp.io.importing.stations import check_names, match_stations
@@ -117,15 +117,12 @@ def read_traverse_file(form: str, file: Path, options: ReadOptions) -> FieldFile
     SurveyError
         For an unknown format and whatever is wrong with the file.
     """
-    found = next((item for item in IMPORTERS if item.id == form), None)
-    if found is None:
-        known = [*(item.id for item in IMPORTERS), "gyro-csv"]
+    read = importer_of(form).pointings
+    if read is None:
         raise SurveyError(
-            Problem(
-                "there is no such format", "import", shown(form), "", nearest_names(form, known)
-            )
+            Problem("this format holds no pointings", "import", shown(form), "a traverse file")
         )
-    return _composed(found.read(file, options))
+    return _composed(read(file, options))
 
 
 def _sigmas(
@@ -288,7 +285,7 @@ def plan_traverse(project: Project, form: str, file: Path, options: ImportOption
     ----------
     project : Project
     form : str
-        ``gsi`` | ``sdr`` | ``jobxml`` | ``csv``.
+        Id of an importer of pointings.
     file : Path
     options : ImportOptions
 
