@@ -76,7 +76,7 @@ def test_what_has_a_name_or_nothing_is_not_saved() -> None:
 
 def with_course(book: Path, size: float) -> float:
     """Add the course to a simulated book; its mean over the run [arcsec]."""
-    rows = list(csv.reader(book.open(encoding="utf-8")))
+    rows = list(csv.reader(book.read_text(encoding="utf-8").splitlines()))
     places = [i for i, row in enumerate(rows) if row[3] == "reversal"]
     x = 2.0 * np.arange(len(places)) / (len(places) - 1) - 1.0
     course = size * (60.0 * x**3 - 38.0 * x + 12.0 * x**2)

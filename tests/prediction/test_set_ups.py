@@ -10,9 +10,11 @@ import pytest
 from surveyapp.core.orientation.circumstances import Circumstances
 from surveyapp.core.orientation.instrument_constant import Calibration, InstrumentConstant
 from surveyapp.core.orientation.predicted_constant import predict_constants, predictable
+from surveyapp.core.orientation.prediction_notes import Wanted
 from surveyapp.core.orientation.set_ups import one_a_set_up
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import Instrument, InstrumentCard
+from surveyapp.domain.station_line import StationLine
 from surveyapp_models.angles import ARCSEC
 
 SESSIONS, SWING, SIGHT = 8, 5.0 * ARCSEC, 1.0 * ARCSEC
@@ -72,3 +74,22 @@ def test_two_set_ups_with_three_lines_each_predict_nothing() -> None:
     )
     assert few.set_ups == 2
     assert not predictable(few)
+
+
+def test_beyond_the_temperatures_of_the_determinations_the_interval_widens() -> None:
+    found, facts = calibrations(1)
+    halves = {}
+    for degrees in (13.0, 19.0, 28.0, 36.0):
+        told: dict[str, float | str] = {
+            "elapsed_days": 25.0,
+            "line": "L",
+            "line_reading": 1.0,
+            "temperature_c": degrees,
+        }
+        line = Wanted(StationLine("U", "V"), ((1.0, Circumstances.of(told)),))
+        halves[degrees] = predict_constants(found, facts, [line]).lines[0].interval95
+    # 10 to 17 C were seen; 19 lies nearby, 28 and 36 are 8 and 16 K and more beyond
+    assert halves[19.0] < 1.6 * halves[13.0]
+    unseen = 1.5 * SWING
+    assert halves[28.0] > np.hypot(halves[13.0], 1.96 * unseen * (11.0 - 3.0) / 8.0)
+    assert halves[36.0] > np.hypot(halves[13.0], 1.96 * unseen * (19.0 - 3.0) / 8.0)

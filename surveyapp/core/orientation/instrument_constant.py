@@ -270,8 +270,7 @@ def choose(
 
 
 def _not_predicted(constant: InstrumentConstant, where: str) -> Chosen:
-    count = constant.set_ups
-    if not count:
+    if not (count := constant.set_ups):
         return Chosen(None, None)
     text = counted(
         "{where}: the constant of {id} cannot be predicted from {count} determination: all are "
