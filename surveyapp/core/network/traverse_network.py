@@ -26,7 +26,7 @@ from surveyapp.domain.subject import Subject
 from surveyapp.domain.traverse import GyroConstant, Network, NetworkPoint, OrientedLine, Status
 from surveyapp.domain.traverse_book import Traverse, TraverseRow
 from surveyapp.errors import Problem, SurveyError, nearest_names
-from surveyapp.languages import said
+from surveyapp.languages import joined, said
 
 K = ObservationKind
 MM: Final = 1e-3
@@ -108,7 +108,7 @@ def _observation(
         )
     except SurveyError as refused:
         problems += [
-            Problem(p.what, f"{header.book}, {p.where}", p.found, p.expected, p.hint)
+            Problem(p.what, joined(", ", (header.book, p.where)), p.found, p.expected, p.hint)
             for p in refused.problems
         ]
         return None
@@ -214,7 +214,7 @@ def _collect(
 def _not_oriented(row: TraverseRow, traverse: Traverse, lines: Sequence[OrientedLine]) -> Problem:
     return Problem(
         "a gyro side that no session has oriented",
-        f"{traverse.book}, line {row.line}",
+        said("{book}, line {line}", book=traverse.book, line=row.line),
         f"{row.at}-{row.to}",
         ", ".join(f"{x.station}-{x.target}" for x in lines) or "an oriented line",
         "Its station and target must be those of survey sessions with a sight.",

@@ -23,6 +23,7 @@ from surveyapp.domain.calibration import (
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 
 AXES: Final = ("along", "across")
 TERMS: Final = ("zero", "scale", "cross", "temperature")
@@ -92,9 +93,9 @@ def _fit_axis(log: SensorLog, axis: str, theta: Array | None) -> AxisFit:
     if fit is None or plain is None:
         raise SurveyError(
             Problem(
-                f"the references do not determine the axis {axis}",
+                said("the references do not determine the axis {axis}", axis=axis),
                 log.path,
-                f"{log.size} rows; the references follow one line or stand still",
+                said("{size} rows; the references follow one line or stand still", size=log.size),
                 "tilts along and across that vary independently, five rows or more",
             )
         )
@@ -213,19 +214,26 @@ def _warnings(
         found.append(ResultWarning("no_temperature", text))
     for item in fits:
         if item.fit.x[1] < 0.0:
-            text = f"the axis {item.axis} reads against its reference: its sign is reversed"
+            text = said(
+                "the axis {axis} reads against its reference: its sign is reversed", axis=item.axis
+            )
             found.append(ResultWarning("reversed_axis", text))
         if item.fit.inflation > 1.0:
-            text = (
-                f"neighbouring residuals of the axis {item.axis} resemble each other; its sigmas "
-                f"are widened {item.fit.inflation:.2f} times"
+            text = said(
+                "neighbouring residuals of the axis {axis} resemble each other; its "
+                "sigmas are widened {inflation:.2f} times",
+                axis=item.axis,
+                inflation=item.fit.inflation,
             )
             found.append(ResultWarning("correlated", text))
         gross = int(np.count_nonzero(np.abs(item.fit.residual) > GROSS * item.fit.sigma0))
         if gross:
-            text = (
-                f"{gross} residuals of the axis {item.axis} are larger than {GROSS:g} sigma: "
-                "diagnose the log"
+            text = said(
+                "{gross} residuals of the axis {axis} are larger than {gross2:g} "
+                "sigma: diagnose the log",
+                gross=gross,
+                axis=item.axis,
+                gross2=GROSS,
             )
             found.append(ResultWarning("gross_errors", text))
     del log

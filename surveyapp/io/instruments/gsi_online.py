@@ -12,6 +12,7 @@ from surveyapp.domain.instrument_reading import InstrumentReading
 from surveyapp.io.importers.fieldfiles.gsi_words import Word, WordError, words
 from surveyapp.io.importers.fieldfiles.units import FOOT
 from surveyapp.io.instruments.cable import Cable, cable_problem
+from surveyapp.languages import said
 
 _MEASURE_S = 15.0
 
@@ -26,7 +27,7 @@ def _words(cable: Cable, request: str, timeout_s: float | None = None) -> dict[s
     except WordError as error:
         hint = "is the instrument in GSI online mode?"
         raise cable_problem(
-            f"this is no answer of GSI: {error}", cable.port, answer, hint
+            said("this is no answer of GSI: {error}", error=error), cable.port, answer, hint
         ) from None
 
 

@@ -24,6 +24,7 @@ from surveyapp.io.importers.fieldfiles.units import (
     TEMPERATURES,
     celsius,
 )
+from surveyapp.languages import said
 from surveyapp_models.angles import AngleError, AngleUnit, parse_angle
 
 _LEAST_ROWS: Final = 5
@@ -173,11 +174,13 @@ def check_map(
         allowed = _allowed(quantities, name)
         unit = units.get(name)
         if unit is None and name in quantities.angles | quantities.lengths:
-            expected = f"--unit {name}= {' | '.join(allowed)}"
+            expected = said("--unit {name}= {names}", name=name, names=" | ".join(allowed))
             problems.append(Problem("a unit is not told", "--unit", name, expected))
         elif unit is not None and unit not in allowed:
             expected = " | ".join(allowed) or "no unit"
-            problems.append(Problem(f"{name} in an impossible unit", "--unit", unit, expected))
+            problems.append(
+                Problem(said("{name} in an impossible unit", name=name), "--unit", unit, expected)
+            )
     return problems
 
 
@@ -222,7 +225,7 @@ def find_columns(
             cells = _split(line, separator)
             if not wanted.issubset(cells):
                 continue
-            _refuse_twice(cells, wanted, f"{where}, line {number}")
+            _refuse_twice(cells, wanted, said("{where}, line {number}", where=where, number=number))
             places = {name: cells.index(column) for name, column in columns.items()}
             sample = [_split(row, separator) for row in lines[number : number + _SAMPLE]]
             comma = separator != "," and _comma(sample, places, quantities)

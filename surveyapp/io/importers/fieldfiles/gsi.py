@@ -39,6 +39,7 @@ from surveyapp.io.importers.fieldfiles.gsi_words import (
     words,
 )
 from surveyapp.io.importers.fieldfiles.lines import FieldText, look_through
+from surveyapp.languages import said
 
 _READINGS: Final = ("21", "22", "31", "32")
 _STATION: Final = frozenset({"84", "85", "86", "88"})
@@ -84,9 +85,12 @@ def read_gsi(path: Path, options: ReadOptions) -> FieldFile:
     check_heights(state)
     if state.gaps:
         places = ", ".join(str(line) for line in state.gaps[:_SHOWN])
-        told = (
-            f"the running block numbers leap {len(state.gaps)} times (line {places}): were blocks "
-            "deleted? If one named a station, what follows stands on the wrong one"
+        told = said(
+            "the running block numbers leap {size} times (line {places}): were "
+            "blocks deleted? If one named a station, what follows stands on the "
+            "wrong one",
+            size=len(state.gaps),
+            places=places,
         )
         state.gathered.warn("block_numbers", told)
     widths = "/".join(str(width) for width in sorted(state.widths))

@@ -21,6 +21,7 @@ from surveyapp.io.importers.fieldfiles.gathering import (
     gathering,
 )
 from surveyapp.io.importers.fieldfiles.jobxml_records import Record, read_records
+from surveyapp.languages import said
 
 _FACES: Final[dict[str, Face]] = {"Face1": "L", "Face2": "R", "FaceNull": "", "": ""}
 _KNOWN_COORDINATES: Final = ("Coordinates", "KeyedIn", "Import", "Copied")
@@ -85,7 +86,7 @@ def read_jobxml(path: Path, options: ReadOptions) -> FieldFile:
         state.gathered.ignore(kind, count)
     if records.torn is not None:
         line, why = records.torn
-        state.gathered.damaged(line, f"the XML is torn: {why}", f"line {line}")
+        state.gathered.damaged(line, said("the XML is torn: {why}", why=why), f"line {line}")
     _tell_corrections(state)
     every_ppm = state.raw > 0 and not state.without_ppm
     every_prism = state.raw > 0 and not state.without_prism
@@ -112,10 +113,16 @@ def _tell_corrections(state: _State) -> None:
         text = "distances are stored raw: prism constant and ppm of the file were added"
         state.gathered.warn("raw_distances", text)
     if state.without_ppm:
-        text = f"{state.without_ppm} distances have no ppm in the file: no atmosphere was applied"
+        text = said(
+            "{without_ppm} distances have no ppm in the file: no atmosphere was applied",
+            without_ppm=state.without_ppm,
+        )
         state.gathered.warn("ppm_missing", text)
     if state.without_prism:
-        text = f"{state.without_prism} distances have no prism constant in the file: none was added"
+        text = said(
+            "{without_prism} distances have no prism constant in the file: none was added",
+            without_prism=state.without_prism,
+        )
         state.gathered.warn("prism_missing", text)
 
 

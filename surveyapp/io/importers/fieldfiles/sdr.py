@@ -30,6 +30,7 @@ from surveyapp.io.importers.fieldfiles.sdr_layout import (
     shape_of,
 )
 from surveyapp.io.importers.fieldfiles.units import DEGREE, GON, MIL
+from surveyapp.languages import said
 
 _ANGLES: Final = {"1": DEGREE, "2": GON, "4": MIL}
 _LENGTHS: Final = {"1": 1.0, "2": None}
@@ -127,7 +128,7 @@ def _constant(state: _State) -> bool | None:
             "constant_unknown",
             "no note says whether the prism constant is in the distances",
         )
-    state.gathered.warn(code, f"{why}: enter it in [[traverse]]")
+    state.gathered.warn(code, said("{why}: enter it in [[traverse]]", why=why))
     return None
 
 
@@ -135,7 +136,7 @@ def _from_horizon(state: _State) -> Problem:
     lines = ", ".join(str(line) for line in state.negative[:_SHOWN])
     return Problem(
         "vertical readings are negative, and zenith angles never are",
-        f"{state.gathered.name}, lines {lines}",
+        said("{name}, lines {lines}", name=state.gathered.name, lines=lines),
         "no record 01 that says so",
         "a 2 in column 51 of record 01 for angles from the horizon",
         "Is the record 01 damaged?",
@@ -199,8 +200,8 @@ def _header(state: _State, number: int, line: str) -> None:
         if digit not in known:
             raise SurveyError(
                 Problem(
-                    f"the header names no unit of {what}",
-                    f"{state.gathered.name}, line {number}",
+                    said("the header names no unit of {what}", what=what),
+                    said("{name}, line {number}", name=state.gathered.name, number=number),
                     digit.strip() or "nothing",
                     ", ".join(known),
                 )
@@ -209,7 +210,7 @@ def _header(state: _State, number: int, line: str) -> None:
         raise SurveyError(
             Problem(
                 "the header names no order of coordinates",
-                f"{state.gathered.name}, line {number}",
+                said("{name}, line {number}", name=state.gathered.name, number=number),
                 digits[4].strip() or "nothing",
                 "1 (north, east) or 2 (east, north) in column 45",
             )
@@ -387,8 +388,9 @@ def _tell_places(state: _State) -> None:
     if state.differs:
         state.gathered.warn("station_differs", "; ".join(state.differs))
     if state.mean_only:
-        text = (
-            f"only the mean of a sight is stored, its faces are gone: {', '.join(state.mean_only)}"
+        text = said(
+            "only the mean of a sight is stored, its faces are gone: {names}",
+            names=", ".join(state.mean_only),
         )
         state.gathered.warn("mean_only", text)
         state.gathered.pointings.sort(key=lambda p: p.line)

@@ -79,10 +79,11 @@ def read_csv(path: Path, options: ReadOptions) -> FieldFile:
     gathered.warn("table_layout", columns.told)
     if table.encoding == "latin-1":
         gathered.warn("code_page", "the table is no UTF-8: names were read as Latin-1")
-    text = "a table does not say whether distances hold prism constant and ppm: enter "
-    gathered.warn(
-        "corrections_unknown", text + "atmosphere_applied and constant_applied in [[traverse]]"
+    text = (
+        "a table does not say whether distances hold prism constant and ppm: enter "
+        "atmosphere_applied and constant_applied in [[traverse]]"
     )
+    gathered.warn("corrections_unknown", text)
     variant = f"table, {columns.told}"
     return gathered.finish(form=("csv", variant), applied=(None, None))
 
