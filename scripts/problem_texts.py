@@ -20,6 +20,8 @@ FIELDS: Final = ("what", "where", "found", "expected", "hint")
 TEXTS: Final = ("what", "expected", "hint")
 HANDED: Final = (*TEXTS, "needed", "message", "text")
 """Names of arguments that hand a text on; others (a kind, a column) are no texts."""
+ERRORS: Final = ("CellError", "FormulaError", "RecordError", "WordError")
+"""Errors within a reader whose message becomes the ``what`` of a problem."""
 Sinks = dict[str, dict[str, int]]
 """By the name of a function: its arguments that become texts, with their places."""
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
@@ -39,6 +41,7 @@ def texts_of(trees: dict[Path, ast.Module]) -> dict[Path, Found]:
     sinks: Sinks = {
         "Problem": {name: place for place, name in enumerate(FIELDS) if name in TEXTS},
         "ResultWarning": {"text": 1},
+        **{name: {"message": 0} for name in ERRORS},
     }
     while True:
         found = {path: _of_module(tree, sinks) for path, tree in trees.items()}
@@ -69,6 +72,8 @@ def _of_module(tree: ast.Module, sinks: Sinks) -> Found:
     found = Found()
     for function, call in _calls(tree, None):
         name = getattr(call.func, "id", getattr(call.func, "attr", ""))
+        if name == "add" and len(call.args) + len(call.keywords) == 1:
+            continue  # that of a set
         for argument, place in sinks.get(name, {}).items():
             for expression in _given(call, argument, place):
                 _take(found, expression, (tree, function), set())

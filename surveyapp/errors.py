@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 
 from surveyapp.languages.said import Said, counted, either, joined, said, term
 
@@ -43,6 +43,10 @@ class Problem:
             text = getattr(self, name)
             if not isinstance(text, Said):
                 object.__setattr__(self, name, term(text))
+
+    def within(self, place: str) -> Problem:
+        """The same problem, with the file or table that holds its place before it."""
+        return replace(self, where=joined(", ", (place, self.where)))
 
     def to_dict(self) -> dict[str, str]:
         """The five keys of the JSON error, in English."""
@@ -92,9 +96,19 @@ def _listed(problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
     """The first problems; of a file of another kind every line would be one."""
     if len(problems) <= _MOST_PROBLEMS:
         return problems
-    rest = len(problems) - _MOST_PROBLEMS
-    more = counted("{count} further problem", "{count} further problems", count=rest)
-    return (*problems[:_MOST_PROBLEMS], Problem(more))
+    rest = sum(_stands_for(problem) for problem in problems[_MOST_PROBLEMS:])
+    return (*problems[:_MOST_PROBLEMS], Problem(_further(rest)))
+
+
+def _further(count: int) -> str:
+    return counted("{count} further problem", "{count} further problems", count=count)
+
+
+def _stands_for(problem: Problem) -> int:
+    """How many a problem is: one, or as many as an earlier listing has counted."""
+    what = problem.what
+    count = what.fields.get("count") if isinstance(what, Said) else None
+    return count if isinstance(count, int) and what == _further(count) else 1
 
 
 def nearest_names(name: str, known: Iterable[str]) -> str:

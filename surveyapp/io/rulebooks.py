@@ -156,7 +156,7 @@ def _formula(table: Table, key: str) -> str | None:
         parse(text)
     except FormulaError as error:
         table.problem(
-            said("{key} is no formula: {error}", key=key, error=error),
+            said("{key} is no formula: {error}", key=key, error=error.args[0]),
             text,
             'arithmetic like "14 * sqrt(n)"',
         )

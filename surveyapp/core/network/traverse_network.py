@@ -26,7 +26,7 @@ from surveyapp.domain.subject import Subject
 from surveyapp.domain.traverse import GyroConstant, Network, NetworkPoint, OrientedLine, Status
 from surveyapp.domain.traverse_book import Traverse, TraverseRow
 from surveyapp.errors import Problem, SurveyError, nearest_names
-from surveyapp.languages import joined, said
+from surveyapp.languages import said
 
 K = ObservationKind
 MM: Final = 1e-3
@@ -107,10 +107,7 @@ def _observation(
             length_m=row.length_m,
         )
     except SurveyError as refused:
-        problems += [
-            Problem(p.what, joined(", ", (header.book, p.where)), p.found, p.expected, p.hint)
-            for p in refused.problems
-        ]
+        problems += [problem.within(header.book) for problem in refused.problems]
         return None
 
 

@@ -165,16 +165,7 @@ def _joined(shaft: Shaft, known: Mapping[str, Place]) -> _Join:
         return _Join(shaft, upper, solve_plane(below, {}, shaft.orient))
     except SurveyError as refused:
         raise SurveyError(
-            [
-                Problem(
-                    p.what,
-                    said("{place}, {where}", place=f"[[shaft]] {shaft.id}", where=p.where),
-                    p.found,
-                    p.expected,
-                    p.hint,
-                )
-                for p in refused.problems
-            ]
+            [problem.within(f"[[shaft]] {shaft.id}") for problem in refused.problems]
         ) from None
 
 

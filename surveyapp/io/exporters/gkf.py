@@ -244,12 +244,9 @@ def _check_sets(network: Network, gathered: dict[tuple[object, ...], list[int]])
                     "",
                 )
             )
+    text = "A .gkf file needs one covariance matrix for a whole set"
     problems += [
-        Problem(
-            "A .gkf file needs one covariance matrix for a whole set",
-            said("station {at}", at=at),
-            name,
-        )
+        Problem(text, said("station {at}", at=at), name)
         for (at, name), keys in homes.items()
         if len(keys) > 1
     ]

@@ -208,9 +208,8 @@ class _Builder:
         ]
         for axis, key in enumerate(("dx", "dy", "dz")):
             if key not in attributes:
-                document.problem(
-                    "<vec> is incomplete", line, said("no {key}", key=key), expected="dx, dy and dz"
-                )
+                absent = said("no {key}", key=key)
+                document.problem("<vec> is incomplete", line, absent, expected="dx, dy and dz")
                 continue
             value = document.number(attributes[key], line, key)
             if value is None:
@@ -365,7 +364,7 @@ def network_from(document: GkfDocument) -> Network:
     warnings += [
         ResultWarning(
             "unknown_attribute",
-            said("{value}: {name} was not understood", value=document.where(line), name=name),
+            said("{place}: {name} was not understood", place=document.where(line), name=name),
         )
         for name, line in document.unknown_attributes.items()
     ]

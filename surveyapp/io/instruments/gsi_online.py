@@ -41,7 +41,7 @@ def _reading(cable: Cable, found: dict[str, Word]) -> InstrumentReading:
         if "31" in found and not found["31"].empty:
             length = found["31"].length(FOOT)[0] or None
     except WordError as error:
-        raise cable_problem(str(error), cable.port) from None
+        raise cable_problem(error.args[0], cable.port) from None
     if not (0.0 <= hz <= 2.0 * math.pi and (v is None or 0.0 <= v <= 2.0 * math.pi)):
         raise cable_problem("the angles are beyond the circle", cable.port)
     return InstrumentReading(math.fmod(hz, 2.0 * math.pi), v, length, f"GSI Online on {cable.port}")

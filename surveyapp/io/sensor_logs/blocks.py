@@ -238,7 +238,7 @@ def _parse_lines(
             wrong.add(
                 line,
                 "a row of another width",
-                f"{len(cells)} cells",
+                said("{size} cells", size=len(cells)),
                 expected=str(width),
                 hint=hint,
             )

@@ -172,9 +172,9 @@ class LogFile:
         for name in dict.fromkeys(wanted):
             if name in self.places:
                 continue
-            hint = (
-                said("--map {name}=COLUMN names it", name=name) if name not in need.others else ""
-            )
+            hint = ""
+            if name not in need.others:
+                hint = said("--map {name}=COLUMN names it", name=name)
             if name == "time_s":
                 hint += said("; --rate-hz replaces it")
             listing = ", ".join(shown(n) for n in self.layout.names)
@@ -376,16 +376,8 @@ def _place(
             name=name,
             number_columns=NUMBER_COLUMNS[canonical],
         )
-        expected = "the value of one count"
-        problems.append(
-            Problem(
-                said("{canonical} is counts without a scale", canonical=canonical),
-                where,
-                "LSB",
-                expected,
-                hint,
-            )
-        )
+        what = said("{name} is counts without a scale", name=canonical)
+        problems.append(Problem(what, where, "LSB", "the value of one count", hint))
     held = unit if canonical == "output" and unit is not None else NUMBER_COLUMNS[canonical]
     return Place(index, name, held, factor * (scale or 1.0), stated, scale is not None)
 

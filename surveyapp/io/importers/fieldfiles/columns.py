@@ -97,10 +97,14 @@ class Columns:
         if not text:
             return None
         if _NUMBER.fullmatch(text) is None or ("." if self.comma else ",") in text:
-            raise CellError(f"{quantity} is no number: {text[:40]}")
+            raise CellError(
+                said("{quantity} is no number: {text}", quantity=quantity, text=text[:40])
+            )
         value = float(text.replace(",", ".").replace("−", "-"))
         if not math.isfinite(value):
-            raise CellError(f"{quantity} is no number: {text[:40]}")
+            raise CellError(
+                said("{quantity} is no number: {text}", quantity=quantity, text=text[:40])
+            )
         return value
 
     def angle(self, cells: Sequence[str], quantity: str) -> float | None:
@@ -119,7 +123,14 @@ class Columns:
                 return parse_angle(f"{sixty[1]}0{sixty[2]}", AngleUnit.DMS) + ANGLES["deg"] / 60.0
             return parse_angle(plain, AngleUnit.DMS)
         except AngleError as error:
-            raise CellError(f"{quantity} is no angle: {text[:40]}, {error.expected}") from None
+            raise CellError(
+                said(
+                    "{quantity} is no angle: {text}, {expected}",
+                    quantity=quantity,
+                    text=text[:40],
+                    expected=error.expected,
+                )
+            ) from None
 
     def carries(self, cells: Sequence[str], quantity: str) -> bool:
         """Whether an angle has 60 seconds."""
@@ -278,9 +289,11 @@ def cells_of(line: str, columns: Columns) -> list[str]:
     try:
         cells = next(csv.reader([line], delimiter=columns.separator, strict=True), [])
     except csv.Error as error:
-        raise CellError(f"the line is no row of a table ({error})") from None
+        raise CellError(said("the line is no row of a table ({error})", error=error)) from None
     if len(cells) != columns.width:
-        raise CellError(f"{len(cells)} cells instead of {columns.width}")
+        raise CellError(
+            said("{size} cells instead of {width}", size=len(cells), width=columns.width)
+        )
     return cells
 
 
@@ -365,7 +378,14 @@ def check_style(cells: Sequence[str], style: Style, columns: Columns) -> None:
         if columns.is_number(place, text):
             found = decimals_of(text, comma=columns.comma)
             if found != decimals:
-                raise CellError(f"{text[:40]} has {found} decimals, its column {decimals}")
+                raise CellError(
+                    said(
+                        "{text} has {found} decimals, its column {decimals}",
+                        text=text[:40],
+                        found=found,
+                        decimals=decimals,
+                    )
+                )
     for place in style.filled:
         if not cells[place].strip():
             raise CellError("a height is missing that nearly every other row has")

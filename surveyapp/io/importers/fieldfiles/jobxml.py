@@ -104,7 +104,7 @@ def _record(state: _State, record: Record) -> None:
     try:
         action(state, record)
     except RecordError as error:
-        state.gathered.damaged(record.line, str(error), record.kind)
+        state.gathered.damaged(record.line, error.args[0], record.kind)
         state.broken[record.attributes.get("ID", "")] = f"line {record.line}: {error}"
 
 
@@ -135,14 +135,14 @@ def _number(record: Record, path: str) -> float | None:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise RecordError(f"{path} is no number: {text[:40]}")
+        raise RecordError(said("{path} is no number: {text}", path=path, text=text[:40]))
     return value
 
 
 def _deleted(record: Record) -> bool:
     text = record.text("Deleted").lower()
     if text not in ("", "true", "false"):
-        raise RecordError(f"Deleted is neither true nor false: {text[:40]}")
+        raise RecordError(said("Deleted is neither true nor false: {text}", text=text[:40]))
     return text == "true"
 
 
@@ -206,9 +206,11 @@ def _owner(state: _State, record: Record) -> tuple[_Station, _Target] | None:
             return None
     station = state.stations.get(station_id)
     if station is None:
-        raise RecordError(f"there is no station record {station_id or 'before it'}")
+        raise RecordError(
+            said("there is no station record {station_id}", station_id=station_id or "before it")
+        )
     if target_id and target_id not in state.targets:
-        raise RecordError(f"there is no target record {target_id}")
+        raise RecordError(said("there is no target record {target_id}", target_id=target_id))
     return station, state.targets.get(target_id, _Target(None, None))
 
 
@@ -217,14 +219,16 @@ def _circle(record: Record, path: str) -> float | None:
     if value is None:
         return None
     if not 0.0 <= value <= 360.0:
-        raise RecordError(f"{path} is beyond the circle: {value:g} degrees")
+        raise RecordError(
+            said("{path} is beyond the circle: {value:g} degrees", path=path, value=value)
+        )
     return math.radians(value % 360.0)
 
 
 def _pointing(state: _State, record: Record, name: str) -> None:
     face = record.text("Circle/Face")
     if face not in _FACES:
-        raise RecordError(f"the face is not known: {face[:20]}")
+        raise RecordError(said("the face is not known: {face}", face=face[:20]))
     hz, v = _circle(record, "Circle/HorizontalCircle"), _circle(record, "Circle/VerticalCircle")
     sd = _number(record, "Circle/EDMDistance")
     if not name:
@@ -232,13 +236,13 @@ def _pointing(state: _State, record: Record, name: str) -> None:
     if hz is None and v is None:
         raise RecordError("a pointing has neither a circle nor a vertical reading")
     if sd is not None and sd < 0.0:
-        raise RecordError(f"a distance is negative: {sd:g}")
+        raise RecordError(said("a distance is negative: {sd:g}", sd=sd))
     owner = _owner(state, record)
     if owner is None:
         return
     station, target = owner
     if name == station.name:
-        raise RecordError(f"point {name} is sighted from itself")
+        raise RecordError(said("point {name} is sighted from itself", name=name))
     air = state.atmospheres.get(station.atmosphere, _Atmosphere())
     if sd:
         state.raw += 1

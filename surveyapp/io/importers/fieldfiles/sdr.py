@@ -166,7 +166,7 @@ def _record(state: _State, number: int, line: str) -> None:
             state.shape.alone(kind, line)
         action(state, number, line)
     except RecordError as error:
-        state.gathered.damaged(number, str(error), line)
+        state.gathered.damaged(number, error.args[0], line)
         _lose(state, number, may_have_been(line) | {kind})
 
 
@@ -270,7 +270,8 @@ def _note(state: _State, number: int, line: str) -> None:
         try:
             state.prism = float(tail) * 1e-3 if sign else None
         except ValueError:
-            raise RecordError(f"the prism constant is no number: {tail.strip()}") from None
+            text = said("the prism constant is no number: {value}", value=tail.strip())
+            raise RecordError(text) from None
     elif origin == "TS":
         state.time = text
     else:
@@ -282,7 +283,7 @@ def _circle(state: _State, value: float | None, what: str) -> float | None:
         return None
     reading = value * state.angle
     if not -1e-9 <= reading <= _TWO_PI + 1e-9:
-        raise RecordError(f"{what} is beyond the circle: {value:g}")
+        raise RecordError(said("{what} is beyond the circle: {value:g}", what=what, value=value))
     return 0.0 if reading >= _TWO_PI else max(reading, 0.0)
 
 
@@ -300,12 +301,13 @@ def _observation(state: _State, number: int, line: str) -> None:
     origin = line[2:4]
     if origin not in ("F1", "F2", "MC"):
         if origin[0] == "F" or origin[1] in "12" or not origin.strip():
-            raise RecordError(f"the record 09 has no face: {origin!r}")
+            raise RecordError(said("the record 09 has no face: {origin!r}", origin=origin))
         state.gathered.ignore(f"record 09{origin.strip()}")
         return
     at, to = state.shape.names(line, 2)
     if not at or not to or at == to:
-        raise RecordError(f"a sight needs a station and another point: {at!r} to {to!r}")
+        text = said("a sight needs a station and another point: {at!r} to {to!r}", at=at, to=to)
+        raise RecordError(text)
     sd, v, hz = (
         state.shape.number(line, "09", i, what)
         for i, what in enumerate(("the distance", "the vertical reading", "the circle reading"))
@@ -313,7 +315,7 @@ def _observation(state: _State, number: int, line: str) -> None:
     if hz is None and v is None:
         raise RecordError("the sight has neither a circle nor a vertical reading")
     if sd is not None and sd < 0.0:
-        raise RecordError(f"a distance is negative: {sd:g}")
+        raise RecordError(said("a distance is negative: {sd:g}", sd=sd))
     horizontal, zenith = _circle(state, hz, "the circle reading"), _zenith(state, number, v)
     state.begun = True
     lost = (state.lost if state.station is None else "") or state.ht_lost or state.circle_lost
@@ -351,7 +353,8 @@ def _stands(state: _State, number: int, at: str) -> bool:
         return False
     if state.station is not None:
         if state.shape.stations[at] == 1:
-            raise RecordError(f"station {at} has no record: {state.station} is occupied")
+            text = said("station {at} has no record: {now} is occupied", at=at, now=state.station)
+            raise RecordError(text)
         state.differs.append(f"line {number} names {at}, the record before it {state.station}")
         del state.differs[_SHOWN:]
     state.setup += 1
