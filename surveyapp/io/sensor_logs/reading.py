@@ -178,17 +178,15 @@ class LogFile:
             if name == "time_s":
                 hint += said("; --rate-hz replaces it")
             listing = ", ".join(shown(n) for n in self.layout.names)
-            problems.append(
-                Problem(said("the column {name} is missing", name=name), where, listing, name, hint)
-            )
+            what = said("the column {name} is missing", name=name)
+            problems.append(Problem(what, where, listing, name, hint))
         for name in need.unit_stated:
             if name in self.places and not self.places[name].stated:
                 column = self.places[name].name
                 hint = said("--unit {column}=LSB for counts", column=column)
                 expected = "a unit for this column"
-                problems.append(
-                    Problem(said("{name} has no unit", name=name), where, column, expected, hint)
-                )
+                what = said("{name} has no unit", name=name)
+                problems.append(Problem(what, where, column, expected, hint))
         return problems
 
     def _wanted(self, need: Need) -> tuple[list[str], list[str]]:
@@ -222,7 +220,8 @@ class LogFile:
         problems += checks.mixed_units(columns, where=where)
         if not need.biased or not stated:
             problems += checks.implausible(columns, stated=stated, where=where)
-        problems += checks.unstated_counts(columns, stated=stated, where=where)
+        named = [name for name in columns if self.places[name].name.endswith(_suffix(name))]
+        problems += checks.unstated_counts(columns, stated=stated, named=named, where=where)
         return problems
 
     def _log(
@@ -331,6 +330,14 @@ def _places(request: LogRequest, layout: Layout, problems: list[Problem]) -> dic
         if index not in taken and names.count(name) == 1 and name not in places:
             places[name] = _place(request, name, (name, index), problems)
     return places
+
+
+def _suffix(canonical: str) -> str:
+    """The end of a canonical name that tells its unit: ``_uT``, ``_m_s2``, ``_arcsec``."""
+    for end in ("_uT", "_m_s2", "_rad_s", "_arcsec"):
+        if canonical.endswith(end):
+            return end
+    return canonical
 
 
 def _no_column(column: str, names: Sequence[str], where: str) -> Problem:
