@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import argparse
+from typing import TYPE_CHECKING
 
 from surveyapp.cli.output import heading, paragraph, print_json, table
 from surveyapp.cli.sensor_options import add_log_arguments, log_options, progress_bar, shown
 from surveyapp.errors import Problem, SurveyError
+
+if TYPE_CHECKING:
+    from surveyapp.domain.north import NorthResult
 
 NUMBERS = (
     ("--latitude", "DEG", "of the place"),
@@ -75,6 +79,12 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print_json(result.to_dict())
         return 0 if result.met else 1
+    print_north(result)
+    return 0 if result.met else 1
+
+
+def print_north(result: NorthResult) -> None:
+    """The direction with its interval, the parameters and the warnings."""
     print(heading(f"{result.source}: north by {result.method}, {result.n} rows"))
     direction = result.direction
     what = "circle reading of north" if result.key == "gyro_north" else "heading"
@@ -90,7 +100,6 @@ def run(options: argparse.Namespace) -> int:
         print(paragraph(f"not determined: {', '.join(result.undetermined)}"))
     for warning in result.warnings:
         print(paragraph(f"{warning.code}: {warning.text}"))
-    return 0 if result.met else 1
 
 
 def _plan(options: argparse.Namespace) -> int:

@@ -7,12 +7,25 @@ does not determine has no value, and its name stands in the geometry.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Final, Literal
 
 from surveyapp.domain.project import ResultWarning
+from surveyapp.languages import said
 
 CALIBRATE_SCHEMA: Final = "surveyapp.calibrate/1"
+
+REASONS: Final[dict[str, str]] = {
+    "refused": said("the record does not determine the result"),
+    "not_determined": said("the record does not determine it"),
+    "sigma_above_2_uT": said("its sigma is more than 2 uT"),
+    "test_absent": said("its test is not in the log"),
+    "no_scale": said("the static test over +-90 degrees, which gives the scale, is not in the log"),
+    "too_few_rows": said("its test has too few rows"),
+    "no_temperature": said("the temperature is not recorded or does not vary"),
+    "attitude": said("the attitudes do not determine it"),
+}
+"""Why a parameter has no value."""
 
 GeometryVerdict = Literal["good", "restricted", "refused"]
 
@@ -29,16 +42,25 @@ class SensorParameter:
     sigma : float or None
         Standard deviation; None where it is not determined or nothing was estimated.
     unit : str
+    reason : str or None
+        Why there is no value: a key of ``REASONS``.
     """
 
     name: str
     value: float | None
     sigma: float | None
     unit: str
+    reason: str | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""
-        return {"name": self.name, "value": self.value, "sigma": self.sigma, "unit": self.unit}
+        return {
+            "name": self.name,
+            "value": self.value,
+            "sigma": self.sigma,
+            "unit": self.unit,
+            "reason": self.reason,
+        }
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,6 +210,24 @@ class Calibration:
     temperature_c: tuple[float, float] | None = None
     constants: Mapping[str, float] = field(default_factory=dict)
     notes: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """No parameter without a value is without a reason."""
+        usual = "refused" if self.geometry.verdict == "refused" else "not_determined"
+        told = tuple(
+            replace(item, reason=usual) if item.value is None and item.reason is None else item
+            for item in self.parameters
+        )
+        object.__setattr__(self, "parameters", told)
+
+    @property
+    def empty(self) -> dict[str, tuple[str, ...]]:
+        """Parameters without a value, by the reason in words."""
+        found: dict[str, list[str]] = {}
+        for item in self.parameters:
+            if item.value is None and item.reason is not None:
+                found.setdefault(REASONS[item.reason], []).append(item.name)
+        return {why: tuple(names) for why, names in found.items()}
 
     def value(self, name: str) -> float | None:
         """Value of a parameter, None if it is not determined.

@@ -81,7 +81,7 @@ class Removal:
 
 @dataclass(frozen=True, slots=True)
 class GlobalTest:
-    """Chi-square test of the a-priori sigma0, two-sided.
+    """Test of the a-priori sigma0, two-sided: chi-square, or F where sigmas were estimated.
 
     Parameters
     ----------
@@ -94,6 +94,8 @@ class GlobalTest:
         Bounds of the ratio.
     probability : float
     passed : bool or None
+    sigma_dof : float or None
+        Degrees of freedom of the sigmas themselves; None where they are known beforehand.
     """
 
     sum_of_squares: float
@@ -103,6 +105,7 @@ class GlobalTest:
     upper: float | None
     probability: float
     passed: bool | None
+    sigma_dof: float | None = None
 
     def to_dict(self) -> dict[str, object]:
         """Keys of the JSON."""

@@ -20,19 +20,21 @@ from operator import mul
 from surveyapp.core.statistics.distributions import chi_square_quantile, f_tail
 from surveyapp.core.uncertain import Source, Uncertain, combine
 
-SHARED = (
-    "centring",
-    "deflection",
-    "known azimuth",
-    "torsion ratio",
-    "known constant",
-    "adopted effect",
-    "lateral refraction",
-    "observer",
-    "temperature of the constant",
-    "latitude of the constant",
-    "printed convergence",
-    "rotation of the mine grid",
+SHARED = frozenset(
+    {
+        "centring",
+        "deflection",
+        "known azimuth",
+        "torsion ratio",
+        "known constant",
+        "adopted effect",
+        "lateral refraction",
+        "observer",
+        "temperature of the constant",
+        "latitude of the constant",
+        "printed convergence",
+        "rotation of the mine grid",
+    }
 )
 """Sources that repeated determinations of one line share: they do not average down."""
 
@@ -44,8 +46,11 @@ LEAST_REPETITIONS = 2
 
 def own_variance(item: Uncertain) -> float:
     """Variance [rad^2] of what belongs to one determination alone, as weights are made of it."""
-    own = item.without(*SHARED)
-    return math.fsum((part * source.weight_ratio) ** 2 for source, part in own.parts.items())
+    return math.fsum(
+        (part * source.weight_ratio) ** 2
+        for source, part in item.parts.items()
+        if source.name not in SHARED
+    )
 
 
 def weights_of(items: Sequence[Uncertain]) -> list[float]:
@@ -136,15 +141,16 @@ def between_variance(groups: Sequence[Sequence[Uncertain]], *, probability: floa
         if len(group) >= 2 and all(0.0 < v < math.inf for v in variances)
     ]
 
-    def statistic(extra: float) -> float:
-        total = 0.0
+    def statistic(extra: float) -> tuple[float, float]:
+        """Sum of squares beside a further variance, and its derivative."""
+        total = slope = 0.0
         for variances, values in usable:
             weights = [1.0 / (v + extra) for v in variances]
             mean = math.fsum(map(mul, weights, values)) / math.fsum(weights)
-            total += math.fsum(
-                w * (value - mean) ** 2 for w, value in zip(weights, values, strict=True)
-            )
-        return total
+            squares = [w * (value - mean) ** 2 for w, value in zip(weights, values, strict=True)]
+            total += math.fsum(squares)
+            slope -= math.fsum(map(mul, weights, squares))
+        return total, slope
 
     dof = sum(len(values) - 1 for _, values in usable)
     if dof == 0:
@@ -152,17 +158,17 @@ def between_variance(groups: Sequence[Sequence[Uncertain]], *, probability: floa
     middle = float(dof)
     if dof >= LEAST_REPETITIONS:
         middle -= (dof - chi_square_quantile(0.5, dof)) * min(1.0, 2.0 * probability)
-    if statistic(0.0) <= middle:
-        return 0.0
-    low, high = 0.0, max(v for variances, _ in usable for v in variances)
-    while statistic(high) > middle:
-        high *= 4.0
+    # the sum is convex and falls: from below every step of Newton stays below
+    extra = 0.0
     for _ in range(200):
-        half = 0.5 * (low + high)
-        low, high = (half, high) if statistic(half) > middle else (low, half)
-        if high - low <= 1e-12 * high:
+        total, slope = statistic(extra)
+        if total <= middle:
             break
-    return high
+        step = (middle - total) / slope
+        extra += step
+        if step <= 1e-13 * extra:
+            break
+    return extra
 
 
 @dataclass(frozen=True, slots=True)

@@ -55,6 +55,7 @@ def adopted_of(
     grid = [
         {"name": name, "value": value if math.isfinite(value) else None, "unit": "s"}
         for name, value in chosen.grid.items()
+        if name not in candidate.names
     ]
     if candidate.id == "interference_step":
         coefficients += [{**g, "sigma": None} for g in grid]

@@ -146,6 +146,11 @@ def _facts(result: AdjustmentResult) -> tuple[tuple[str, str], ...]:
                 ),
             )
         )
+        if test.sigma_dof is not None:
+            text = said(
+                "with {dof:.0f} degrees of freedom: bounds of an F test", dof=test.sigma_dof
+            )
+            facts.append((said("sigmas estimated"), text))
     else:
         facts.append((said("global test"), said("nothing controls this traverse")))
     return (*facts, *_snooping(result))
