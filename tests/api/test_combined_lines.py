@@ -101,7 +101,8 @@ def test_what_disagrees_is_not_combined(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("sigmas", "rounds"), [((4.0, 8.0), (6, 6)), ((4.0, 8.0), (4, 30)), ((4.0, 8.0, 6.0), (8, 8, 8))]
+    ("sigmas", "rounds"),
+    [((4.0, 8.0), (6, 6)), ((4.0, 8.0), (4, 30)), ((4.0, 8.0, 6.0), (8, 8, 8))],
 )
 def test_lines_that_agree_are_called_so_in_19_of_20_cases(
     sigmas: tuple[float, ...], rounds: tuple[int, ...]
