@@ -34,7 +34,8 @@ TERMS: Final[dict[str, str]] = {
     "temperature of the constant": "sigma.temperature_arcsec_per_c of the card",
     "latitude of the constant": "sigma.latitude_arcsec of the card, times sec(latitude)",
     "adopted effect": "covariance of the adopted effect",
-    "deflection": 'deflection of the stations or the region (assumed 5" and 20 km, values of reason)',
+    "deflection": 'deflection of the stations or the region (assumed 5" and 20 km, values of '
+    "reason)",
     "printed convergence": "convergence_sigma_arcsec, else the last printed digit",
     "rotation of the mine grid": "grid.rotation_sigma_arcsec",
 }
