@@ -5,9 +5,9 @@ deflection, the rotation of the grid, a known azimuth behind every constant, the
 instrument) does not average down, and does not count in the test of their agreement.
 
 Source: Koch, K.-R. (1999), Parameter Estimation and Hypothesis Testing in Linear Models, 3.2.3
-(best linear unbiased estimate) and 4.2 (quadratic form of the residuals). Fai, A. H.-T. & Cornelius,
-P. L. (1996), Approximate F-tests of multiple degree of freedom hypotheses in generalized least
-squares analyses, J. Statist. Comput. Simul. 54, 363-378 (degrees of freedom of the test).
+(best linear unbiased estimate) and 4.2 (quadratic form of the residuals). Fai, A. H.-T. &
+Cornelius, P. L. (1996), Approximate F-tests of multiple degree of freedom hypotheses in generalized
+least squares analyses, J. Statist. Comput. Simul. 54, 363-378 (degrees of freedom of the test).
 """
 
 from __future__ import annotations
