@@ -204,11 +204,11 @@ class InstrumentDiagnosis:
         else:
             said += _pooled_words(self.pooled)
         if self.priors is not None:
+            campaigns = "1 campaign" if self.campaigns == 1 else f"{self.campaigns} campaigns"
             said.append(
-                f"{self.campaigns} campaigns with {self.priors.sessions} determinations: in "
-                f"{self.priors.share(BASE):.0%} of them nothing but noise is taken for likely; "
-                "where something is at work it is mostly "
-                f"{_likeliest(self.priors)}."
+                f"{campaigns} with {self.priors.sessions} determinations: nothing but noise is "
+                f"taken for likely in {self.priors.share(BASE):.0%} of the next ones; where "
+                f"something is at work it is mostly {_likeliest(self.priors)}."
             )
         said += [f"{w.text[0].upper()}{w.text[1:].rstrip('.')}." for w in self.warnings]
         if self.written:
