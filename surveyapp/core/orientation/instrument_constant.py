@@ -281,8 +281,7 @@ def _not_predicted(constant: InstrumentConstant, where: str) -> Chosen:
         where=where,
         id=constant.instrument.id,
     )
-    warning = ResultWarning("prediction_impossible", text)
-    return Chosen(with_archive(constant), "pooled", (warning,))
+    return Chosen(with_archive(constant), "pooled", (ResultWarning("prediction_impossible", text),))
 
 
 ARCHIVE_SOURCE = said("constant: scatter in the archive")
@@ -297,9 +296,8 @@ def with_archive(constant: InstrumentConstant) -> Uncertain | None:
     priors = constant.instrument.priors
     if constant.pooled is None or priors is None or not priors.scatter:
         return constant.pooled
-    n = constant.set_ups
-    # of the mean of n and of the line itself
-    part = priors.scatter * math.sqrt(1.0 + 1.0 / n)
+    # of the mean of all set-ups and of the line itself
+    part = priors.scatter * math.sqrt(1.0 + 1.0 / constant.set_ups)
     dof = float(max(priors.sessions - 1, 1))
     return constant.pooled.with_part(Source(ARCHIVE_SOURCE, constant.instrument.id, dof), part)
 
