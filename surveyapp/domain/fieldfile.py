@@ -41,6 +41,8 @@ class Pointing:
         Atmospheric correction and prism constant that belong to the distance.
     temperature_c, pressure_hpa : float or None
     time, code, note : str
+    raw : bool
+        Whether the distance lacks its prism constant, as the file says of this one.
     """
 
     line: int
@@ -62,6 +64,7 @@ class Pointing:
     time: str = ""
     code: str = ""
     note: str = ""
+    raw: bool = False
 
 
 @dataclass(frozen=True, slots=True)

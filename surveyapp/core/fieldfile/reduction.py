@@ -25,7 +25,7 @@ _SHOWN: Final = 6
 
 def corrected_slope(pointing: Pointing, *, corrected: bool) -> float | None:
     """Slope distance with prism constant and ppm where the file stores it raw [m]."""
-    if pointing.sd is None or not corrected:
+    if pointing.sd is None or not (corrected or pointing.raw):
         return pointing.sd
     ppm = pointing.ppm or 0.0
     return pointing.sd + (pointing.prism_m or 0.0) + pointing.sd * ppm * 1e-6
