@@ -146,6 +146,35 @@ def _corrected_field(points: Floats, card: SensorCard, where: str) -> Floats:
     return turned_back(field, np.radians(turn)) if any(turn) else np.asarray(field)
 
 
+FIELD_DIFFERS: Final = 0.05
+"""Share of the field by which its corrected size may differ or scatter: places of one country
+differ by less, and a foreign card leaves iron of several microtesla."""
+
+
+def field_doubt(log: SensorLog, card: SensorCard, *, where: str) -> str | None:
+    """What speaks against the card being of this compass; None if nothing does.
+
+    The corrected field has one size in every attitude, and about that of the calibration.
+    """
+    expected = card.constants.get("used_field")
+    if expected is None:
+        return None
+    part = log.rows(slice(None, None, max(log.size // 2000, 1)))
+    points = np.column_stack([part.columns[f"mag_{axis}_uT"] for axis in BODY])
+    size = np.linalg.norm(_corrected_field(points, card, where), axis=1)
+    low, middle, high = np.quantile(size, (0.16, 0.5, 0.84))
+    scatter = 0.5 * float(high - low)
+    noise = card.constants.get("reading_sigma_uT", 0.0)
+    if abs(float(middle) - expected) <= FIELD_DIFFERS * expected and scatter <= max(
+        FIELD_DIFFERS * expected, 3.0 * noise
+    ):
+        return None
+    return (
+        f"the corrected field is {middle:.1f} uT +- {scatter:.1f}, that of the calibration "
+        f"{expected:.1f}: a log of another compass or mounting, iron near, or another country"
+    )
+
+
 def _ellipsoid_sigma(card: SensorCard, field: Floats, up: Floats | None) -> Floats:
     """Sigma of each heading: of the calibration, and of one reading [rad]."""
     unit = np.tile([0.0, 0.0, 1.0], (len(field), 1))
