@@ -19,6 +19,7 @@ from surveyapp.core.sensors.compass_attitude import turned_back
 from surveyapp.domain.sensor_card import SensorCard
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 from surveyapp_models.compass.deviation import COEFFICIENTS, deviation_basis, undeviated
 from surveyapp_models.compass.heading import heading_of
@@ -169,9 +170,12 @@ def field_doubt(log: SensorLog, card: SensorCard, *, where: str) -> str | None:
         FIELD_DIFFERS * expected, 3.0 * noise
     ):
         return None
-    return (
-        f"the corrected field is {middle:.1f} uT +- {scatter:.1f}, that of the calibration "
-        f"{expected:.1f}: a log of another compass or mounting, iron near, or another country"
+    return said(
+        "the corrected field is {middle:.1f} uT +- {scatter:.1f}, that of the calibration "
+        "{expected:.1f}: a log of another compass or mounting, iron near, or another country",
+        middle=float(middle),
+        scatter=scatter,
+        expected=expected,
     )
 
 

@@ -28,6 +28,7 @@ from surveyapp.domain.calibration import (
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 ARCSEC_PER_RAD: Final = 3600.0 * 180.0 / math.pi
@@ -154,9 +155,11 @@ def _zero(
     p = _trend_p(fit)
     if p < TREND_P:
         drift = 2.0 * float(fit.x[1]) * to_arcsec
-        text = (
-            f"the zero drifts by {drift:+.1f} arcsec over the record (p = {p:.1e}): let the sensor "
-            "warm up, or use the detrended figure"
+        text = said(
+            "the zero drifts by {drift:+.1f} arcsec over the record (p = {p:.1e}): "
+            "let the sensor warm up, or use the detrended figure",
+            drift=drift,
+            p=p,
         )
         warnings.append(ResultWarning("warm_up", text))
     return found

@@ -9,6 +9,7 @@ import numpy as np
 
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 TESTS: Final = ("static", "transverse", "reversal", "zero", "capacitance", "dynamic")
@@ -50,16 +51,18 @@ def check_rows(log: SensorLog) -> None:
         for column in columns:
             values = log.columns.get(column)
             if values is None:
-                hint = f"--map {column}=COLUMN names it"
-                problems.append(
-                    Problem(
-                        f"the test {test} needs the column {column}", log.path, "", column, hint
-                    )
-                )
+                hint = said("--map {column}=COLUMN names it", column=column)
+                what = said("the test {test} needs the column {column}", test=test, column=column)
+                problems.append(Problem(what, log.path, "", column, hint))
                 continue
             bad = int(np.count_nonzero(~np.isfinite(values[rows])))
             if bad:
-                what = f"{column} is not a number in {bad} rows of the test {test}"
+                what = said(
+                    "{column} is not a number in {bad} rows of the test {test}",
+                    column=column,
+                    bad=bad,
+                    test=test,
+                )
                 problems.append(Problem(what, log.path, "NaN or an empty cell", "a number"))
             elif column == "output" and test in ("static", "transverse"):
                 problems += _constant(test, values[rows], log.path)
@@ -87,7 +90,8 @@ def _unknown_codes(cell: tuple[str, str], values: Floats, where: str) -> list[Pr
         return []
     expected = " or ".join(f"{value:g}" for value in known)
     found = ", ".join(f"{value:g}" for value in strange)
-    return [Problem(f"{column} of the test {test} is unknown", where, found, expected)]
+    what = said("{column} of the test {test} is unknown", column=column, test=test)
+    return [Problem(what, where, found, expected)]
 
 
 def _strange_angles(log: SensorLog) -> list[Problem]:
@@ -100,7 +104,9 @@ def _strange_angles(log: SensorLog) -> list[Problem]:
         rows = rows_of(log, "static") & (number == code)
         size = float(np.max(np.abs(angle[rows]))) if np.any(rows) else span
         if math.isfinite(size) and not 0.1 * span <= size <= 1.1 * span:
-            what = f"the angles of set {code} are not those of +-{span} degrees"
+            what = said(
+                "the angles of set {code} are not those of +-{span} degrees", code=code, span=span
+            )
             found, hint = f"up to {size:g}", "are they in degrees? --unit COLUMN=rad"
             problems.append(Problem(what, log.path, found, f"up to {span}", hint))
     return problems
@@ -110,4 +116,5 @@ def _constant(test: str, values: Floats, where: str) -> list[Problem]:
     if values.size < 2 or float(np.ptp(values)) > 0.0:
         return []
     found, hint = f"{values[0]:g}", "is the sensor connected?"
-    return [Problem(f"output is constant in the test {test}", where, found, "it varies", hint)]
+    what = said("output is constant in the test {test}", test=test)
+    return [Problem(what, where, found, "it varies", hint)]
