@@ -3,9 +3,16 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Final, cast
 
+from surveyapp.core.sensors.rate.card_temperature import (
+    CHAMBER,
+    OWN,
+    TemperatureModel,
+    model_of,
+)
 from surveyapp.core.sensors.rate.rotation import (
     NEEDED,
     RotationOptions,
@@ -13,10 +20,12 @@ from surveyapp.core.sensors.rate.rotation import (
     find_heading,
 )
 from surveyapp.domain.north import NorthResult, Reference
+from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_cards import read_sensor_card
 from surveyapp.io.sensor_logs.reading import Need
 from surveyapp.workflows.north.request import NorthRequest
+from surveyapp_models.arrays import Floats
 
 REFERENCES: Final = ("MAGNETIC", "ASTRONOMIC", "GRID")
 
@@ -43,12 +52,19 @@ def find(request: NorthRequest) -> NorthResult:
     latitude = request.latitude(problems, required=False)
     matrix, name = card_matrix({}), ""
     card = request.option("card")
+    model: TemperatureModel | None = None
+    biases: Floats | None = None
+    column = ""
     try:
         if card is not None:
             found = read_sensor_card(Path(str(card)))
             matrix, name = card_matrix({p.name: p.value for p in found.parameters}), found.id
-        log = request.read(Need(columns=NEEDED, optional=("temperature_c",)))
+        log = request.read(Need(columns=NEEDED, optional=(OWN, CHAMBER)))
         if card is not None:
+            model = model_of(found.extra)
+        if model is not None:
+            biases, column = model.at(log.columns, where=str(card))
+        if card is not None and not column:
             span = log.columns.get("temperature_c")
             low_high = None if span is None else (float(span.min()), float(span.max()))
             problems += found.refusals(on=None, temperature_c=low_high, where=str(card))
@@ -63,10 +79,19 @@ def find(request: NorthRequest) -> NorthResult:
         declination_sigma=sigma,
         latitude=latitude,
         matrix=matrix[0],
-        bias=matrix[1],
+        bias=matrix[1] if biases is None else biases,
         card=name,
+        temperature_model=model.model if model is not None and column else "",
     )
-    return find_heading(log, options)
+    result = find_heading(log, options)
+    if model is None or column:
+        return result
+    text = (
+        "the card holds biases over temperature, and the log no temperature to which they belong: "
+        "the biases are those of the card's reference temperature"
+    )
+    told = ResultWarning("no_temperature", text)
+    return replace(result, warnings=(*result.warnings, told))
 
 
 def _declination(
