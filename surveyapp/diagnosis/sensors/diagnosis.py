@@ -13,6 +13,7 @@ from typing import Any, Final
 import numpy as np
 
 from surveyapp.core.sensors.linear import alternate_blocks
+from surveyapp.diagnosis.result import Verdict
 from surveyapp.diagnosis.sensors.confirming import confirmed
 from surveyapp.diagnosis.sensors.document import (
     adopted_of,
@@ -35,6 +36,7 @@ from surveyapp.diagnosis.sensors.records import SensorRecord
 from surveyapp.diagnosis.sensors.windows import block_means, switched
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.domain.project import ResultWarning
+from surveyapp.languages import joined
 from surveyapp_models.arrays import Floats
 
 ROOM_GRADIENT_UT: Final = 3.0
@@ -126,10 +128,10 @@ def diagnose_sensor(
     notes = list(warnings)
     if proof is not None:
         after = proof.fit
-        notes += [ResultWarning("not_adopted", f"{n}: {why}") for n, why in proof.refused]
+        notes += [ResultWarning("not_adopted", joined(": ", (n, why))) for n, why in proof.refused]
     best = _refined(record, found.best) if found.ambiguous else after
     fits = {"before": found.before, "after": after, "after_best": best}
-    verdict = _verdict(record, found)
+    verdict: Verdict = _verdict(record, found)
     if proof is not None and proof.refused and not found.ambiguous:
         verdict = "unattributed"
     adopted = [adopted_of(record, found, after, c) for c in after.chosen]
@@ -318,7 +320,7 @@ def _edges(record: SensorRecord, fit: LoopFit, chosen: Chosen) -> tuple[float, f
     return float(record.time[first]), off
 
 
-def _verdict(record: SensorRecord, found: LoopResult) -> str:
+def _verdict(record: SensorRecord, found: LoopResult) -> Verdict:
     if found.ambiguous:
         return "not_separable"
     if found.after.chosen or record.gross:
