@@ -22,7 +22,6 @@ from surveyapp.io.files import read_text, shown_path
 from surveyapp.io.tables import Findings, Table, as_number, parse_toml
 from surveyapp.io.tomltext import atomic_write, toml_key, toml_value
 
-CARD_FORMAT: Final = 1
 _ASYMMETRY: Final = 1e-9
 
 

@@ -9,6 +9,7 @@ import pytest
 
 from surveyapp.core.network.spheres import three_spheres
 from surveyapp.core.observing.by_method import progress_of
+from surveyapp.core.statistics import levels
 from surveyapp.core.swing.card_physics import card_at
 from surveyapp.core.swing.clamped import circle_resolution
 from surveyapp.core.swing.goodness import Judge
@@ -147,3 +148,9 @@ def test_blocks_share_each_stretch_in_equal_times() -> None:
         number = [min(int((v - values[0]) / length), parts - 1) for v in values]
         expected += [start + number.index(k) for k in range(parts)]
     assert blocks.first.tolist() == expected
+
+
+def test_the_shares_of_the_level_sum_to_no_more_than_the_whole() -> None:
+    """Four kinds of fit, the constants, nine other families: the docstrings of ``levels``."""
+    whole = 4 * levels.FIT_KIND + levels.CONSTANT_SHARE + 9 * levels.FAMILY_SHARE
+    assert whole <= levels.PROJECT_LEVEL

@@ -75,10 +75,6 @@ class Azimuth:
         """GEODETIC to GRID: subtract convergence and arc-to-chord [rad]."""
         return self._moved("GEODETIC", "GRID", -convergence - arc_to_chord)
 
-    def with_declination(self, declination: float) -> Azimuth:
-        """MAGNETIC to GEODETIC: add the declination, positive east [rad]."""
-        return self._moved("MAGNETIC", "GEODETIC", declination)
-
     def minus(self, other: Azimuth) -> float:
         """Difference [rad] in (-pi, pi] of two azimuths of one reference."""
         if other.reference != self.reference:

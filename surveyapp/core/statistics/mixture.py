@@ -120,11 +120,6 @@ def half_widths(weights: Floats, means: Floats, variance: Floats, dof: float) ->
     return np.asarray(0.5 * (low + high))
 
 
-def normal_cdf(z: Floats) -> Floats:
-    """Normal distribution function, error below 1e-7."""
-    return _normal(z)[0]
-
-
 def _normal(z: Floats) -> tuple[Floats, Floats]:
     """Normal distribution function and density."""
     x = np.abs(z) * math.sqrt(0.5)
