@@ -97,7 +97,9 @@ def _removals(result: AdjustmentResult) -> tuple[Block, ...]:
     if not rows:
         return ()
     head = said_each("without", "v'Pv", "ratio", "global test", "suspects")
-    title = said("The adjustment without one observation, the removal that helps most first")
+    title = said(
+        "The adjustment without one observation or those of one cause, the best removal first"
+    )
     return (Heading(title, 2), Table(head, rows, "lrrlr"))
 
 
