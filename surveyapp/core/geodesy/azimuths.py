@@ -41,6 +41,8 @@ def deflection_term(
     """Deflection term eta tan(phi) + (xi sin A - eta cos A) cot z.
 
     Source: physics.md 3.5; Torge & Mueller (2012), Geodesy, 4th ed., eq. 6.18.
+
+    ``latitude``, ``azimuth``, ``zenith`` [rad].
     """
     cot_z = math.cos(zenith) / math.sin(zenith)
     by_xi = math.sin(azimuth) * cot_z
@@ -98,7 +100,10 @@ def _mixed(found: Reference, expected: Reference) -> Problem:
 
 
 def latitude_problem(latitude: float, where: str) -> Problem | None:
-    """Refuse a latitude at which a suspended gyro does not work; None where it does."""
+    """Refuse a latitude at which a suspended gyro does not work; None where it does.
+
+    ``latitude`` [rad].
+    """
     if abs(math.degrees(latitude)) <= MAX_LATITUDE_DEG:
         return None
     return Problem(

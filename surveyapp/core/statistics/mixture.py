@@ -67,7 +67,10 @@ class Mixture:
         )
 
     def half_width(self, beside: float = 0.0) -> float:
-        """Half-width in which .95 lies, beside an independent error of a variance ``beside``."""
+        """Half-width in which .95 lies, beside an independent error of a variance ``beside``.
+
+        ``beside`` in the square of the unit of the offsets [rad^2].
+        """
         if beside not in self._cache:
             self._cache[beside] = self._half_width(beside)
         return self._cache[beside]

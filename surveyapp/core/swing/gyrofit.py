@@ -100,6 +100,8 @@ def design(index: Floats, sides: Floats, *, amplitude: float, log_decrement: flo
     Returns
     -------
     ndarray, shape (n, 3)
+
+    ``amplitude`` [rad].
     """
     decay = sides * np.exp(-log_decrement * index)
     columns = np.empty((index.size, 3))

@@ -162,7 +162,10 @@ def modelled_run(
     latitude: float | None,
     twist: TripodTwist | None = None,
 ) -> ModelledNorth:
-    """Observed north of a session with its adopted effects, before the tape-zero correction."""
+    """Observed north of a session with its adopted effects, before the tape-zero correction.
+
+    ``latitude`` [rad].
+    """
     problem = run_problem(session, card, latitude=latitude, twist=twist)
     fit = adopted_fit(problem, session.effects)
     value = value_of(problem, fit)
