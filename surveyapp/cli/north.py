@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from surveyapp.cli.output import heading, paragraph, print_json, table
 from surveyapp.cli.sensor_options import add_log_arguments, log_options, progress_bar, shown
+from surveyapp.domain.calibration import names_by_reason
 from surveyapp.errors import Problem, SurveyError
 
 if TYPE_CHECKING:
@@ -94,10 +95,15 @@ def print_north(result: NorthResult) -> None:
         f"95 % interval +- {shown(direction.interval95_arcsec)} arcsec"
     )
     print()
-    rows = [[p.name, shown(p.value), shown(p.sigma), p.unit] for p in result.parameters]
-    print(table(["parameter", "value", "sigma", "unit"], rows))
-    if result.undetermined:
-        print(paragraph(f"not determined: {', '.join(result.undetermined)}"))
+    cells = [[p.name, shown(p.value), shown(p.sigma), p.unit] for p in result.parameters]
+    print(table(["parameter", "value", "sigma", "unit"], cells))
+    told: set[str] = set()
+    for reason, own_names in names_by_reason(result.parameters).items():
+        told |= set(own_names)
+        print(paragraph(f"not determined: {', '.join(own_names)}: {reason}"))
+    open_names = [name for name in result.undetermined if name not in told]
+    if open_names:
+        print(paragraph(f"not determined: {', '.join(open_names)}"))
     for warning in result.warnings:
         print(paragraph(f"{warning.code}: {warning.text}"))
 

@@ -6,7 +6,7 @@ does not determine has no value, and its name stands in the geometry.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Final, Literal
 
@@ -43,7 +43,7 @@ class SensorParameter:
         Standard deviation; None where it is not determined or nothing was estimated.
     unit : str
     reason : str or None
-        Why there is no value: a key of ``REASONS``.
+        Why there is no value: a key of ``REASONS``, or words that hold numbers of the record.
     """
 
     name: str
@@ -61,6 +61,30 @@ class SensorParameter:
             "unit": self.unit,
             "reason": self.reason,
         }
+
+
+def in_words(reason: str) -> str:
+    """A reason as it is shown."""
+    return REASONS.get(reason, reason)
+
+
+def with_reasons(
+    parameters: Iterable[SensorParameter], why: Callable[[str], str]
+) -> tuple[SensorParameter, ...]:
+    """The parameters; one without a value and without a reason gets the one of its name."""
+    return tuple(
+        p if p.value is not None or p.reason else replace(p, reason=why(p.name)) for p in parameters
+    )
+
+
+def names_by_reason(parameters: Iterable[SensorParameter]) -> dict[str, tuple[str, ...]]:
+    """Reason in words to the names of the parameters that have no value for it."""
+    found: dict[str, tuple[str, ...]] = {}
+    for item in parameters:
+        if item.value is None and item.reason:
+            why = in_words(item.reason)
+            found[why] = (*found.get(why, ()), item.name)
+    return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,11 +247,7 @@ class Calibration:
     @property
     def empty(self) -> dict[str, tuple[str, ...]]:
         """Parameters without a value, by the reason in words."""
-        found: dict[str, list[str]] = {}
-        for item in self.parameters:
-            if item.value is None and item.reason is not None:
-                found.setdefault(REASONS[item.reason], []).append(item.name)
-        return {why: tuple(names) for why, names in found.items()}
+        return names_by_reason(self.parameters)
 
     def value(self, name: str) -> float | None:
         """Value of a parameter, None if it is not determined.

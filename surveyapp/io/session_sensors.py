@@ -11,6 +11,7 @@ from typing import Final
 
 import numpy as np
 
+from surveyapp.core.sensors.adopted_effects import without_events
 from surveyapp.core.sensors.compensation import compensate_compass, compensate_tilt
 from surveyapp.core.sensors.declination import model_declination
 from surveyapp.core.swing.levelling import ASIDE
@@ -128,7 +129,12 @@ def _source(
 def _read(source: _Source, files: ProjectFiles, columns: tuple[str, ...]) -> SensorLog:
     file = open_log(request_of(source.entry, files.path))
     acc = TRIPLES["acc"] if source.card.kind == "compass" and file.has(*TRIPLES["acc"]) else ()
-    return file.read(Need(columns=(*columns, *acc), optional=("temperature_c",)))
+    log = file.read(Need(columns=(*columns, *acc), optional=("temperature_c",)))
+    log, told = without_events(log, source.entry.effects)
+    files.findings.warnings += [
+        ResultWarning(item.code, f"sensor_log {source.entry.id}: {item.text}") for item in told
+    ]
+    return log
 
 
 def _refusals(

@@ -215,7 +215,7 @@ def mixed_units(columns: Mapping[str, Array], *, where: str) -> list[Problem]:
         if not all(column in columns for column in names):
             continue
         sizes = [float(np.median(np.abs(columns[c][:: _stride(columns[c])]))) for c in names]
-        spans = [float(np.ptp(columns[c][:: _stride(columns[c])])) for c in names]
+        spans = [_span(columns[c][:: _stride(columns[c])]) for c in names]
         large = max(range(3), key=lambda i: spans[i])
         others = [spans[i] for i in range(3) if i != large]
         apart = spans[large] > 100.0 * max(others) and sizes[large] > 100.0
@@ -233,6 +233,12 @@ def mixed_units(columns: Mapping[str, Array], *, where: str) -> list[Problem]:
                 )
             )
     return problems
+
+
+def _span(values: Array) -> float:
+    """Range without the outermost hundredths: gross errors are no unit."""
+    low, high = np.quantile(values, (0.01, 0.99))
+    return float(high - low)
 
 
 def _stride(values: Array) -> int:

@@ -32,7 +32,7 @@ def calibrate(request: CalibrationRequest) -> Calibration:
     swing = request.file.has("heading_deg")
     acc = ACC if request.file.has(*ACC) else ()
     heading = ("heading_deg",) if swing else ()
-    log = request.read(
+    log = request.read_adopted(
         Need(
             columns=(*MAG, *acc, *heading),
             varying=(*MAG, *heading),
