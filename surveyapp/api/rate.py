@@ -46,10 +46,10 @@ def plan_fog_station(
 
     problems = []
     for option, value, low, high in (
-        ("--elevation-deg", elevation_deg, -89.0, 89.0),
-        ("--rate", rate_deg_s, 1e-6, 1e5),
-        ("--samples", samples, 1, 1e9),
-        ("--table-rate-relative-sigma", relative_rate_sigma, 0.0, 1.0),
+        ("elevation_deg", elevation_deg, -89.0, 89.0),
+        ("rate", rate_deg_s, 1e-6, 1e5),
+        ("samples", samples, 1, 1e9),
+        ("table_rate_relative_sigma", relative_rate_sigma, 0.0, 1.0),
     ):
         if value is not None and not low <= value <= high:
             problems.append(Problem("out of range", option, f"{value:g}", f"{low:g} to {high:g}"))

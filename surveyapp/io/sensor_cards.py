@@ -138,7 +138,7 @@ def write_sensor_card(path: Path, card: SensorCard) -> None:
             raise SurveyError(
                 Problem(
                     "a file that is no sensor card stands there",
-                    "--card",
+                    "card",
                     shown_path(path),
                     "a name of its own for the card",
                 )

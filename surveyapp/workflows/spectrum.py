@@ -102,13 +102,13 @@ def _read(file: LogFile, columns: list[str], progress: Progress | None) -> Senso
 def _magnetic_problems(magnetic: MagneticOptions) -> list[Problem]:
     problems = []
     if (magnetic.field_uT is None) != (magnetic.sensitivity_deg_h_t is None):
-        missing = "--sensitivity" if magnetic.sensitivity_deg_h_t is None else "--field-uT"
+        missing = "sensitivity" if magnetic.sensitivity_deg_h_t is None else "field_uT"
         problems.append(
             Problem("a magnetic budget needs field and sensitivity", missing, "", "both of them")
         )
     if magnetic.shielding is not None and not magnetic.shielding > 0.0:
         found = f"{magnetic.shielding:g}"
-        problems.append(Problem("this is no shielding factor", "--shielding", found, "above 0"))
+        problems.append(Problem("this is no shielding factor", "shielding", found, "above 0"))
     return problems
 
 

@@ -120,7 +120,7 @@ def refuse_mirrored(known: Floats, shown: Floats, where: str) -> None:
                 where,
                 "x and y are exchanged, one of them is reversed, or z points down",
                 "x towards the mark, y to the left, z up; headings clockwise",
-                "exchange the columns with --map; --scale COLUMN=-1 reverses one",
+                "exchange the columns with `columns`; `scale` COLUMN=-1 reverses one",
             )
         )
 
@@ -135,5 +135,5 @@ def _exchanged(where: str, left: Sequence[float], found: Arrangement) -> Problem
         where,
         f"field along up scatters by {left[0]:.2g} uT",
         f"as with acc ({fits}) for (x, y, z): {left[1]:.2g} uT; axes right-handed, +g up",
-        "exchange the columns with --map; --scale COLUMN=-1 reverses one",
+        "exchange the columns with `columns`; `scale` COLUMN=-1 reverses one",
     )

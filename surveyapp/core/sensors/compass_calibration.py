@@ -94,7 +94,7 @@ def _refuse_other_units(fit: Ellipsoid, where: str) -> None:
             where,
             "scales " + ", ".join(f"{a} {1.0 / s:.3g}" for a, s in zip("xyz", scales, strict=True)),
             f"scales within a factor of {MOST_UNEQUAL:g}: iron makes no more",
-            "give each its own: --unit COLUMN=... or --scale COLUMN=VALUE",
+            "give each its own: `units` COLUMN=... or `scale` COLUMN=VALUE",
         )
     )
 
@@ -339,7 +339,7 @@ def _warnings(
     elif trials[chosen].fit.converged and record_dip(log, trials[chosen].fit) < 0.0:
         text = (
             "the field points upwards, as it does south of the magnetic equator: elsewhere acc_* "
-            "is gravity and not specific force (+g on the axis that is up); --scale COLUMN=-1"
+            "is gravity and not specific force (+g on the axis that is up); `scale` COLUMN=-1"
         )
         found.append(ResultWarning("field_points_up", text))
     return found

@@ -108,7 +108,7 @@ def check_rows(log: SensorLog) -> None:
         for column in columns:
             values = log.columns.get(column)
             if values is None:
-                hint = f"--map {column}=COLUMN names it"
+                hint = f"`columns` {column}=COLUMN names it"
                 problems.append(
                     Problem(
                         f"the test {test} needs the column {column}", log.path, "", column, hint

@@ -64,7 +64,7 @@ def refuse_swapped(acc: Floats, where: str) -> None:
             where,
             f"mean specific force ({mean[0]:.2f}, {mean[1]:.2f}, {mean[2]:.2f}) m/s2: up is {name}",
             "+g on the z axis, which points up; axes right-handed",
-            "exchange the columns with --map; --scale COLUMN=-1 reverses one (acc and mag alike)",
+            "exchange them with `columns`; `scale` COLUMN=-1 reverses one (acc and mag alike)",
         )
     )
 

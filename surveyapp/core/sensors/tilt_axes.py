@@ -128,7 +128,7 @@ def _refuse_exchanged(log: SensorLog, fits: list[AxisFit]) -> None:
                 log.path,
                 found,
                 "readings that follow the reference of their own axis",
-                "exchange the two columns with --map",
+                "exchange the two columns with `columns`",
             )
         )
 
@@ -140,7 +140,7 @@ def _refuse_other_unit(log: SensorLog, fits: list[AxisFit]) -> None:
         scale = abs(float(item.fit.x[1]))
         if SCALES[0] <= scale <= SCALES[1]:
             continue
-        hint = f"--unit COLUMN=... for tilt_{item.axis}_arcsec, or --scale for counts"
+        hint = f"`units` COLUMN=... for tilt_{item.axis}_arcsec, or `scale` for counts"
         problems.append(
             Problem(
                 f"the axis {item.axis} is in another unit than its reference",

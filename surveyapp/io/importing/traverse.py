@@ -89,7 +89,7 @@ def traverse_name(options: ImportOptions, file: Path) -> str:
         or any(c in _UNSAFE or not c.isprintable() for c in told)
     ):
         expected = f"printable characters without {_UNSAFE}, no dot in front"
-        raise SurveyError(Problem("this is no name", "--traverse", shown(told), expected))
+        raise SurveyError(Problem("this is no name", "traverse", shown(told), expected))
     return told
 
 
@@ -244,7 +244,7 @@ def _check_free(project: Project, name: str) -> None:
         raise SurveyError(
             Problem(
                 "the project has a traverse of this name",
-                "--traverse",
+                "traverse",
                 shown(name),
                 "a name that is free",
             )

@@ -170,9 +170,9 @@ def implausible(
         if unstated and whole:
             what = f"{name}_x/y/z are counts without a unit"
         units = [unit for unit, low, high in bounds.looks_like if low <= median <= high]
-        hint = "counts take --scale COLUMN=VALUE"
+        hint = "counts take `scale` COLUMN=VALUE"
         if units:
-            hint = f"is it {' or '.join(units)}? --unit COLUMN={units[0]}; {hint}"
+            hint = f"is it {' or '.join(units)}? `units` COLUMN={units[0]}; {hint}"
         found = f"a median size of {median:.6g} {bounds.unit}"
         expected = f"{bounds.low:g} to {bounds.high:g} {bounds.unit}"
         problems.append(Problem(what, where, found, expected, hint))
@@ -195,7 +195,7 @@ def unstated_counts(
             continue
         if _whole(values) and float(np.ptp(values)) > 0.0:
             unit = "deg/s" if name in TRIPLES["gyr"] else NUMBER_COLUMNS[name]
-            hint = f"counts take --scale COLUMN=VALUE (and --unit COLUMN={unit})"
+            hint = f"counts take `scale` COLUMN=VALUE (and `units` COLUMN={unit})"
             found = f"whole numbers from {values.min():g} to {values.max():g}"
             problems.append(
                 Problem(f"{name} is counts without a unit", where, found, "a unit", hint)
@@ -229,7 +229,7 @@ def mixed_units(columns: Mapping[str, Array], *, where: str) -> list[Problem]:
                     where,
                     f"ranges {found}",
                     "one unit for the three axes",
-                    f"give each its own: --unit COLUMN=..., for {names[large]} as well",
+                    f"give each its own: `units` COLUMN=..., for {names[large]} as well",
                 )
             )
     return problems

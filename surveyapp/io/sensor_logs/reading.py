@@ -171,15 +171,15 @@ class LogFile:
         for name in dict.fromkeys(wanted):
             if name in self.places:
                 continue
-            hint = f"--map {name}=COLUMN names it" if name not in need.others else ""
+            hint = f"`columns` {name}=COLUMN names it" if name not in need.others else ""
             if name == "time_s":
-                hint += "; --rate-hz replaces it"
+                hint += "; `rate_hz` replaces it"
             listing = ", ".join(shown(n) for n in self.layout.names)
             problems.append(Problem(f"the column {name} is missing", where, listing, name, hint))
         for name in need.unit_stated:
             if name in self.places and not self.places[name].stated:
                 column = self.places[name].name
-                hint = f"--unit {column}=LSB for counts"
+                hint = f"`units` {column}=LSB for counts"
                 expected = "a unit for this column"
                 problems.append(Problem(f"{name} has no unit", where, column, expected, hint))
         return problems
@@ -304,10 +304,10 @@ def _places(request: LogRequest, layout: Layout, problems: list[Problem]) -> dic
             hint = nearest_names(canonical, known)
             expected = "the canonical name of a column"
             problems.append(
-                Problem("there is no such column", f"{where}, --map", canonical, expected, hint)
+                Problem("there is no such column", f"{where}, `columns`", canonical, expected, hint)
             )
         elif names.count(column) != 1:
-            problems.append(_no_column(column, names, f"{where}, --map {canonical}"))
+            problems.append(_no_column(column, names, f"{where}, `columns` {canonical}"))
         else:
             mapped[canonical] = names.index(column)
     for canonical in known:
@@ -316,8 +316,8 @@ def _places(request: LogRequest, layout: Layout, problems: list[Problem]) -> dic
         elif canonical not in mapped and names.count(canonical) > 1:
             problems.append(_no_column(canonical, names, where))
     stated = (*names, *mapped)
-    for option, given in (("--unit", request.units), ("--scale", request.scale)):
-        place = f"{where}, {option}"
+    for option, given in (("units", request.units), ("scale", request.scale)):
+        place = f"{where}, `{option}`"
         problems += [_no_column(column, names, place) for column in given if column not in stated]
     places = {n: _place(request, n, (names[i], i), problems) for n, i in mapped.items()}
     taken = set(mapped.values())
@@ -369,7 +369,7 @@ def _place(
         problems.append(Problem("this unit does not fit the column", where, unit or "", expected))
         factor = 1.0
     if unit == COUNTS and scale is None and canonical in SENSOR_COLUMNS and canonical != "output":
-        hint = f"--scale {name}=VALUE, the {NUMBER_COLUMNS[canonical]} of one count"
+        hint = f"`scale` {name}=VALUE, the {NUMBER_COLUMNS[canonical]} of one count"
         expected = "the value of one count"
         problems.append(
             Problem(f"{canonical} is counts without a scale", where, "LSB", expected, hint)

@@ -36,7 +36,7 @@ def card_of(
         raise SurveyError(
             Problem(
                 "no card can be written: the calibration determines nothing",
-                f"--card, {calibration.source}",
+                f"`card`, {calibration.source}",
                 f"geometry {calibration.geometry.verdict}",
                 "a calibration whose parameters are determined",
             )

@@ -51,7 +51,7 @@ def calibrate(request: CalibrationRequest) -> Calibration:
     problems = []
     if unit is not None and not 0.1 <= unit <= LONGEST_UNIT_M:
         expected = f"0.1 to {LONGEST_UNIT_M:g} m"
-        problems.append(Problem("this is no unit length", "--unit-length-m", f"{unit:g}", expected))
+        problems.append(Problem("this is no unit length", "unit_length_m", f"{unit:g}", expected))
     heights = None
     file = _named(request.file)
     missing = [name for name in ("from_pillar", "to_pillar") if not file.has(name)]
@@ -61,7 +61,7 @@ def calibrate(request: CalibrationRequest) -> Calibration:
             file.request.where,
             ", ".join(file.layout.names),
             name,
-            f"--map {name}=COLUMN names it",
+            f"`columns` {name}=COLUMN names it",
         )
         for name in missing
     ]

@@ -89,11 +89,11 @@ class NorthRequest:
         if degrees is None:
             if required and len(problems) == before:
                 what = "the latitude is not stated"
-                problems.append(Problem(what, "--latitude", "", "degrees", _LATITUDE_HINT))
+                problems.append(Problem(what, "latitude", "", "degrees", _LATITUDE_HINT))
             return None
         if not -90.0 <= degrees <= 90.0:
             found = f"{degrees:g}"
-            problems.append(Problem("this is no latitude", "--latitude", found, "-90 to 90"))
+            problems.append(Problem("this is no latitude", "latitude", found, "-90 to 90"))
             return None
         return math.radians(degrees)
 
@@ -116,9 +116,9 @@ def declination_problems(request: NorthRequest) -> list[Problem]:
     return [
         Problem(
             "a declination belongs to a magnetic heading only",
-            "--declination",
+            "declination",
             found,
-            "--initial-reference MAGNETIC",
+            "`initial_reference` MAGNETIC",
             "a gyro finds true north: with a declination the heading would be wrong by it",
         )
     ]

@@ -110,7 +110,7 @@ def _outside(levels: Floats, wanted: Sequence[float], where: str) -> list[Proble
     return [
         Problem(
             "the temperature lies outside the nodes",
-            f"{where}, --predict-at",
+            f"{where}, `predict_at`",
             f"{t:g} C",
             f"{low:g} to {high:g} C",
             "nothing is extrapolated: calibrate over the range in which the unit is used",
@@ -126,7 +126,7 @@ def _room_problems(room: AccelerometerTriad) -> list[Problem]:
     return [
         Problem(
             "the room-temperature log does not determine the accelerometers",
-            "--room",
+            "room",
             f"rank {room.rank} of 12",
             "six positions, each axis up and down",
         )

@@ -98,7 +98,7 @@ def check_stations(state: State) -> None:
         raise SurveyError(
             Problem(
                 "the file has no code block of this code",
-                "--station-code",
+                "station_code",
                 code,
                 f"one of the codes of the file: {codes or 'there is none'}",
             )
@@ -109,7 +109,7 @@ def check_stations(state: State) -> None:
                 "no station is named in the file",
                 gathered.name,
                 f"code blocks: {codes}" if codes else "neither station nor code blocks",
-                "blocks 11 with 84 85 86 or 88, or code blocks 41 with --station-code N",
+                "blocks 11 with 84 85 86 or 88, or code blocks 41 with `station_code` N",
                 "Which code of your office opens a station?" if codes else "",
             )
         )

@@ -75,7 +75,7 @@ def parts_hint(parts: tuple[tuple[int, int], ...]) -> str:
     listed = ", ".join(f"{first}-{last}" for first, last in parts[:_SHOWN])
     more = f" and {len(parts) - _SHOWN} more" if len(parts) > _SHOWN else ""
     return (
-        f"--lines A-B takes a part, each as a --traverse of its own; parts between set-ups: "
+        f"`lines` A-B takes a part, each as a `traverse` of its own; parts between set-ups: "
         f"{listed}{more}"
     )
 
