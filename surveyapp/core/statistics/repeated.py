@@ -102,7 +102,7 @@ def consistency(groups: Sequence[Sequence[Uncertain]]) -> Consistency | None:
     the determinations.
     """
     squares, dof = 0.0, 0
-    variance_sum, variance_parts = 0.0, 0.0
+    sources: dict[Source, float] = {}
     for group in groups:
         usable = [item for item in group if 0.0 < own_variance(item) < math.inf]
         if len(usable) < 2:
@@ -111,12 +111,11 @@ def consistency(groups: Sequence[Sequence[Uncertain]]) -> Consistency | None:
         squares += math.fsum((item.value - mean) ** 2 / own_variance(item) for item in usable)
         dof += len(usable) - 1
         for item in usable:
-            own = item.without(*SHARED)
-            variance_sum += own.variance
-            variance_parts += own.variance**2 / own.dof if own.dof < math.inf else 0.0
+            for source, part in item.without(*SHARED).parts.items():
+                sources[source] = math.hypot(sources.get(source, 0.0), part)
     if dof == 0:
         return None
-    denominator = variance_sum**2 / variance_parts if variance_parts > 0.0 else math.inf
+    denominator = Uncertain(0.0, sources).dof  # a pooled estimate counts once for all of them
     probability = f_tail(squares / dof, dof_numerator=dof, dof_denominator=denominator)
     return Consistency(squares / dof, dof, probability)
 
