@@ -12,6 +12,7 @@ from surveyapp.api.sensors import LogOptions, open_sensor_log
 from surveyapp.domain.line_spectrum import LineSpectrum
 from surveyapp.domain.motion import Motion
 from surveyapp.domain.north import NorthResult
+from surveyapp.domain.told import told_about
 from surveyapp.errors import Problem, SurveyError, nearest_names
 
 if TYPE_CHECKING:
@@ -149,7 +150,7 @@ def north(
 
     opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
     stated = opened.entry.options.get("method") if opened.entry is not None else None
-    return find_north(
+    found = find_north(
         NorthRequest(
             method=method or str(stated or ""),
             file=opened.file,
@@ -160,6 +161,7 @@ def north(
             progress=progress,
         )
     )
+    return told_about(found, opened.subject)
 
 
 def spectrum(
@@ -200,13 +202,14 @@ def spectrum(
 
     opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
     other = None if against is None else open_sensor_log(against, log=log).file
-    return find_spectrum(
+    found = find_spectrum(
         opened.file,
         column,
         magnetic=MagneticOptions(field_uT, sensitivity_deg_h_t, shielding),
         against=other,
         progress=progress,
     )
+    return told_about(found, opened.subject)
 
 
 def motion(
@@ -241,4 +244,5 @@ def motion(
 
     opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
     found = find_motion(opened.file, options or {}, progress=progress)
-    return replace(found, warnings=(*found.warnings, *not_taken_out(opened.entry)))
+    found = replace(found, warnings=(*found.warnings, *not_taken_out(opened.entry)))
+    return told_about(found, opened.subject)

@@ -14,6 +14,8 @@ import numpy as np
 from surveyapp.api.project import SOFTWARE, Folder, open_project, require
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.noise import AllanResult, FilterResult
+from surveyapp.domain.subject import Subject
+from surveyapp.domain.told import told_about
 from surveyapp.errors import Problem, SurveyError
 
 if TYPE_CHECKING:
@@ -55,6 +57,11 @@ class OpenedLog:
     file: LogFile
     entry: SensorLogEntry | None
     folder: Path
+
+    @property
+    def subject(self) -> Subject:
+        """The sensor log: what warnings of its results are about."""
+        return Subject.of("sensor", self.file.request.id if self.entry is None else self.entry.id)
 
     def to_dict(self) -> dict[str, object]:
         """Keys of the JSON, schema ``surveyapp.sensor_log/1``."""
@@ -189,7 +196,7 @@ def calibrate(
         today=datetime.now(UTC).astimezone().date(),
         progress=progress,
     )
-    result = run_calibration(request)
+    result = told_about(run_calibration(request), opened.subject)
     if card is not None and result.met:
         write_card(Path(card), result, request, software=SOFTWARE)
     return result
@@ -235,9 +242,10 @@ def allan(
     from surveyapp.workflows.noise import allan_of_log
 
     opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
-    return allan_of_log(
+    found = allan_of_log(
         opened.file, column=column, estimator=estimator, taus=taus, progress=progress
     )
+    return told_about(found, opened.subject)
 
 
 def filter_log(
@@ -295,7 +303,7 @@ def filter_log(
         times = np.arange(raw.size) / result.before.rate_hz
         columns = {"time_s": times, result.column: raw, f"filtered_{result.column}": filtered}
         write_columns(Path(out), columns, inputs=(opened.file.request.path,))
-    return result
+    return told_about(result, opened.subject)
 
 
 def compensate(
@@ -357,6 +365,7 @@ def compensate(
         declination=added,
         progress=progress,
     )
-    return write_compensated(
+    written = write_compensated(
         parts, record, used, kind=kind, card_path=os.fspath(card), out=Path(out)
     )
+    return told_about(written, opened.subject)
