@@ -18,7 +18,7 @@ from surveyapp.errors import Problem, SurveyError, nearest_names
 if TYPE_CHECKING:
     from surveyapp.core.sensors.rate.fog_station_plan import FogStationPlan
     from surveyapp.core.sensors.rate.stop_plan import StopPlan
-    from surveyapp.io.sensor_logs.blocks import Progress
+    from surveyapp.domain.advance import PartDone
 
 
 def plan_fog_station(
@@ -123,7 +123,7 @@ def north(
     log: LogOptions | None = None,
     allow_outside: bool = False,
     options: Mapping[str, object] | None = None,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> NorthResult:
     """Find north from the log of a rate sensor.
 
@@ -175,7 +175,7 @@ def spectrum(
     sensitivity_deg_h_t: float | None = None,
     shielding: float | None = None,
     allow_outside: bool = False,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> LineSpectrum:
     """Interference lines of a column.
 
@@ -219,7 +219,7 @@ def motion(
     log: LogOptions | None = None,
     allow_outside: bool = False,
     options: Mapping[str, object] | None = None,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> Motion:
     """State of motion of a vehicle, and its path.
 

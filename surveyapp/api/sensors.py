@@ -19,8 +19,8 @@ from surveyapp.domain.told import told_about
 from surveyapp.errors import Problem, SurveyError
 
 if TYPE_CHECKING:
+    from surveyapp.domain.advance import PartDone
     from surveyapp.domain.sensor_entry import SensorLogEntry
-    from surveyapp.io.sensor_logs.blocks import Progress
     from surveyapp.io.sensor_logs.reading import LogFile
     from surveyapp.workflows.compensating import CompensationResult
 
@@ -147,7 +147,7 @@ def calibrate(
     card: Folder | None = None,
     allow_outside: bool = False,
     options: Mapping[str, object] | None = None,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> Calibration:
     """Calibrate a sensor from its log.
 
@@ -211,7 +211,7 @@ def allan(
     estimator: Literal["oadev", "adev"] = "oadev",
     taus: Sequence[float] | None = None,
     allow_outside: bool = False,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> AllanResult:
     """Allan deviation with intervals, and the noise coefficients, of the columns of a log.
 
@@ -260,7 +260,7 @@ def filter_log(
     seed: int = 1,
     out: Folder | None = None,
     allow_outside: bool = False,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> FilterResult:
     """Filter a column of a log, and tell what it costs: deviation ratios with the lag of a step.
 
@@ -316,7 +316,7 @@ def compensate(
     sensor: str | None = None,
     log: LogOptions | None = None,
     allow_outside: bool = False,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> CompensationResult:
     """Apply a sensor card to a log, and write the corrected columns.
 

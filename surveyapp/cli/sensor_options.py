@@ -13,8 +13,8 @@ from surveyapp.errors import Problem, SurveyError
 
 if TYPE_CHECKING:
     from surveyapp.api.sensors import LogOptions
+    from surveyapp.domain.advance import PartDone
     from surveyapp.domain.calibration import Calibration
-    from surveyapp.io.sensor_logs.blocks import Progress
 
 
 def add_log_arguments(parser: argparse.ArgumentParser) -> None:
@@ -91,7 +91,7 @@ def pairs(
     return found
 
 
-def progress_bar() -> Progress | None:
+def progress_bar() -> PartDone | None:
     """A bar on standard error while a large log is read; none where nobody looks."""
     if not sys.stderr.isatty():
         return None

@@ -14,10 +14,10 @@ from surveyapp.core.sensors.rate.motion_log import (
     MotionOptions,
     judge_motion,
 )
+from surveyapp.domain.advance import PartDone
 from surveyapp.domain.motion import Motion
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 
 LONGEST_PATH_M: Final = 1e6
@@ -28,7 +28,7 @@ SMALLEST_ALARM: Final = 1e-9
 
 
 def find_motion(
-    file: LogFile, options: Mapping[str, object], *, progress: Progress | None = None
+    file: LogFile, options: Mapping[str, object], *, progress: PartDone | None = None
 ) -> Motion:
     """Read a record and judge its motion.
 

@@ -13,11 +13,11 @@ from surveyapp.diagnosis.long_records.interference import (
     plotted_density,
     scatter_of,
 )
+from surveyapp.domain.advance import PartDone
 from surveyapp.domain.line_spectrum import LineSpectrum, MagneticBudget
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import NUMBER_COLUMNS, SensorLog
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.workflows.noise import FEWEST
 from surveyapp_models.rate.triad import magnetic_bias
@@ -40,7 +40,7 @@ def find_spectrum(
     *,
     magnetic: MagneticOptions,
     against: LogFile | None = None,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> LineSpectrum:
     """Lines of a column.
 
@@ -87,7 +87,7 @@ def _axes(file: LogFile, other: LogFile, column: str) -> list[str]:
     return [column]
 
 
-def _read(file: LogFile, columns: list[str], progress: Progress | None) -> SensorLog:
+def _read(file: LogFile, columns: list[str], progress: PartDone | None) -> SensorLog:
     known = tuple(c for c in columns if c in NUMBER_COLUMNS)
     others = tuple(c for c in columns if c not in NUMBER_COLUMNS)
     log = file.read(

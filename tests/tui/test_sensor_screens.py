@@ -131,7 +131,7 @@ async def test_a_cancelled_task_shows_nothing(
     async with app.run_test(size=SMALL) as pilot:
         screen = await open_log(pilot)
 
-        def slow(*_: object, progress: tasks.Progress | None = None) -> tasks.Examined:
+        def slow(*_: object, progress: tasks.PartDone | None = None) -> tasks.Examined:
             assert progress is not None
             app.call_from_thread(screen.action_cancel)
             progress(0.5)

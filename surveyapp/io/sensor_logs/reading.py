@@ -13,6 +13,7 @@ from typing import Final, Literal
 
 import numpy as np
 
+from surveyapp.domain.advance import PartDone
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import (
     NUMBER_COLUMNS,
@@ -25,7 +26,7 @@ from surveyapp.domain.sensor_log import (
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.files import decode, shown, shown_path
 from surveyapp.io.sensor_logs import checks
-from surveyapp.io.sensor_logs.blocks import Progress, Rows, Wrong, count_lines, read_rows
+from surveyapp.io.sensor_logs.blocks import Rows, Wrong, count_lines, read_rows
 from surveyapp.io.sensor_logs.layout import LOOKED_AT, Layout, find_layout
 from surveyapp.io.sensor_logs.units import COUNTS, DIMENSIONLESS, UNITS, factor_to, unit_in_name
 
@@ -133,7 +134,7 @@ class LogFile:
         """Whether the file holds all of these canonical columns."""
         return all(name in self.places for name in names)
 
-    def read(self, need: Need, *, progress: Progress | None = None) -> SensorLog:
+    def read(self, need: Need, *, progress: PartDone | None = None) -> SensorLog:
         """Read what is needed.
 
         Raises
@@ -288,7 +289,7 @@ def open_log(request: LogRequest) -> LogFile:
     return LogFile(request, layout, places, tuple(problems))
 
 
-def read_log(request: LogRequest, need: Need, *, progress: Progress | None = None) -> SensorLog:
+def read_log(request: LogRequest, need: Need, *, progress: PartDone | None = None) -> SensorLog:
     """Read the needed columns of a log; see ``LogFile.read``."""
     return open_log(request).read(need, progress=progress)
 

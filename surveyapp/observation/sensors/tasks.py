@@ -7,14 +7,13 @@ from dataclasses import dataclass, replace
 from typing import Any, Final, cast
 
 from surveyapp import api
+from surveyapp.domain.advance import PartDone
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.chart import Picture
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.observation.sensors.options import ToldOptions, told_options
 from surveyapp.report.blocks import Block
-
-Progress = Callable[[float], None]
 
 
 class CancelledError(Exception):
@@ -54,7 +53,7 @@ class Examined:
 
 
 def examine(
-    folder: str, entry: SensorLogEntry, task: str, options: str, *, progress: Progress | None = None
+    folder: str, entry: SensorLogEntry, task: str, options: str, *, progress: PartDone | None = None
 ) -> Examined:
     """Run a task on a log of a project.
 
@@ -80,7 +79,7 @@ def examine(
 
 
 def _calibrate(
-    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: Progress | None
+    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: PartDone | None
 ) -> Examined:
     from surveyapp.report.sections.sensors import calibration_body
 
@@ -99,7 +98,7 @@ def _calibrate(
 
 
 def _allan(
-    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: Progress | None
+    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: PartDone | None
 ) -> Examined:
     from surveyapp.report.sections.sensor_results import warning_blocks
     from surveyapp.report.sections.sensors import coefficients, deviations
@@ -114,7 +113,7 @@ def _allan(
 
 
 def _filter(
-    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: Progress | None
+    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: PartDone | None
 ) -> Examined:
     from surveyapp.report.sections.sensor_results import filter_blocks
 
@@ -129,7 +128,7 @@ def _filter(
 
 
 def _spectrum(
-    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: Progress | None
+    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: PartDone | None
 ) -> Examined:
     from surveyapp.report.sections.sensor_results import spectrum_blocks
 
@@ -167,7 +166,7 @@ def _only_column(folder: str, entry: SensorLogEntry, told: ToldOptions) -> str:
 
 
 def _motion(
-    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: Progress | None
+    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: PartDone | None
 ) -> Examined:
     from surveyapp.report.sections.sensor_results import motion_blocks
 
@@ -181,7 +180,7 @@ def _motion(
 
 
 def _north(
-    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: Progress | None
+    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: PartDone | None
 ) -> Examined:
     from surveyapp.report.sections.sensor_results import north_blocks
 
@@ -199,7 +198,7 @@ def _north(
 
 
 def _plan(
-    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: Progress | None
+    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: PartDone | None
 ) -> Examined:
     from surveyapp.report.sections.sensor_results import plan_blocks
 
@@ -210,7 +209,7 @@ def _plan(
 
 
 def _diagnose(
-    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: Progress | None
+    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: PartDone | None
 ) -> Examined:
     from surveyapp.report.sections.sensor_results import diagnosis_blocks
 
@@ -246,7 +245,7 @@ def adopt_effects(folder: str, entry: SensorLogEntry) -> tuple[tuple[str, ...], 
 
 
 TASKS: Final[
-    Mapping[str, Callable[[str, SensorLogEntry, ToldOptions, Progress | None], Examined]]
+    Mapping[str, Callable[[str, SensorLogEntry, ToldOptions, PartDone | None], Examined]]
 ] = {
     "calibrate": _calibrate,
     "allan": _allan,

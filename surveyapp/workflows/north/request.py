@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 from datetime import date
 from pathlib import Path
 
+from surveyapp.domain.advance import PartDone
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem
-from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 
 _LATITUDE_HINT = "the level part of the earth rate, from which north is found, depends on it"
@@ -40,7 +40,7 @@ class NorthRequest:
     options: Mapping[str, object] = field(default_factory=dict)
     folder: Path | None = None
     today: date | None = None
-    progress: Progress | None = None
+    progress: PartDone | None = None
 
     def read(self, need: Need) -> SensorLog:
         """Read the columns that are needed."""
