@@ -14,6 +14,7 @@ from surveyapp.domain.motion import Motion
 from surveyapp.domain.north import NorthResult
 from surveyapp.domain.told import told_about
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import said
 
 if TYPE_CHECKING:
     from surveyapp.core.sensors.rate.fog_station_plan import FogStationPlan
@@ -53,7 +54,14 @@ def plan_fog_station(
         ("table_rate_relative_sigma", relative_rate_sigma, 0.0, 1.0),
     ):
         if value is not None and not low <= value <= high:
-            problems.append(Problem("out of range", option, f"{value:g}", f"{low:g} to {high:g}"))
+            problems.append(
+                Problem(
+                    "out of range",
+                    option,
+                    f"{value:g}",
+                    said("{low:g} to {high:g}", low=low, high=high),
+                )
+            )
     if problems:
         raise SurveyError(problems)
     return plan.plan_fog_station(

@@ -17,6 +17,7 @@ from surveyapp.domain.noise import AllanResult, FilterResult
 from surveyapp.domain.subject import Subject
 from surveyapp.domain.told import told_about
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 
 if TYPE_CHECKING:
     from surveyapp.domain.advance import PartDone
@@ -123,8 +124,13 @@ def open_sensor_log(
         sensor = entries[0].id
     if sensor is None:
         names = ", ".join(entry.id for entry in entries) or "none"
+<<<<<<< HEAD
         hint = f"`sensor` ID names it; the project has: {names}"
         raise SurveyError(Problem("which sensor log?", os.fspath(source), "", "`sensor` ID", hint))
+=======
+        hint = said("--sensor ID names it; the project has: {names}", names=names)
+        raise SurveyError(Problem("which sensor log?", os.fspath(source), "", "--sensor ID", hint))
+>>>>>>> main
     require(sensor, [entry.id for entry in entries], "sensor")
     entry = next(item for item in entries if item.id == sensor)
     override = {

@@ -13,6 +13,7 @@ from surveyapp.domain.sensor_card import SensorCard
 from surveyapp.domain.sensor_entry import SensorKind
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_cards import write_sensor_card
+from surveyapp.languages import said
 from surveyapp.workflows.calibrating.request import CalibrationRequest
 
 HOLDS_DAYS: Final = {"compass": 365, "tilt": 365, "rate": 122, "fog-station": 122, "edm": 365}
@@ -36,8 +37,13 @@ def card_of(
         raise SurveyError(
             Problem(
                 "no card can be written: the calibration determines nothing",
+<<<<<<< HEAD
                 f"`card`, {calibration.source}",
                 f"geometry {calibration.geometry.verdict}",
+=======
+                f"--card, {calibration.source}",
+                said("geometry {verdict}", verdict=calibration.geometry.verdict),
+>>>>>>> main
                 "a calibration whose parameters are determined",
             )
         )
