@@ -124,13 +124,8 @@ def open_sensor_log(
         sensor = entries[0].id
     if sensor is None:
         names = ", ".join(entry.id for entry in entries) or "none"
-<<<<<<< HEAD
-        hint = f"`sensor` ID names it; the project has: {names}"
-        raise SurveyError(Problem("which sensor log?", os.fspath(source), "", "`sensor` ID", hint))
-=======
         hint = said("--sensor ID names it; the project has: {names}", names=names)
         raise SurveyError(Problem("which sensor log?", os.fspath(source), "", "--sensor ID", hint))
->>>>>>> main
     require(sensor, [entry.id for entry in entries], "sensor")
     entry = next(item for item in entries if item.id == sensor)
     override = {

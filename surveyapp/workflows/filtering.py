@@ -73,11 +73,7 @@ def filter_log(
     model_name = _known(name)
     names = noise_columns(file, column)
     if len(names) > 1:
-<<<<<<< HEAD
-        hint = f"`column` C, one of: {', '.join(names)}"
-=======
         hint = said("--column C, one of: {names}", names=", ".join(names))
->>>>>>> main
         raise SurveyError(Problem("which column?", file.request.where, "", "one column", hint))
     log = read_columns(file, names, progress)
     series, unit = log.columns[names[0]], log.units[names[0]]

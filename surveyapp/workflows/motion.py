@@ -78,13 +78,8 @@ def motion_options(options: Mapping[str, object], problems: list[Problem]) -> Mo
     """Options of the command line; what is wrong goes to ``problems``."""
     alarm = _number(options, "false_alarm", 0.01)
     if not SMALLEST_ALARM <= alarm < 0.5:
-<<<<<<< HEAD
-        expected = f"{SMALLEST_ALARM:g} to 0.5"
-        problems.append(Problem("this is no probability", "false_alarm", f"{alarm:g}", expected))
-=======
         expected = said("{smallest_alarm:g} to 0.5", smallest_alarm=SMALLEST_ALARM)
         problems.append(Problem("this is no probability", "--false-alarm", f"{alarm:g}", expected))
->>>>>>> main
     factor = _number(options, "still_gate_factor", 1.0)
     if not factor > 0.0 or not math.isfinite(factor):
         where = "still_gate_factor"

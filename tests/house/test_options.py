@@ -18,12 +18,12 @@ WHOLE = ("surveyapp ", "dask ", "diagnose --")
 """A command that is told with its options is no speech of options."""
 
 
-def texts(node: ast.Call) -> str:
-    return " ".join(
-        item.value
-        for item in ast.walk(node)
-        if isinstance(item, ast.Constant) and isinstance(item.value, str)
-    )
+def texts(node: ast.AST) -> str:
+    """Texts of a problem; those of ``said`` are translated with the options in them."""
+    if isinstance(node, ast.Call) and ast.unparse(node.func) == "said":
+        return ""
+    own = [node.value] if isinstance(node, ast.Constant) and isinstance(node.value, str) else []
+    return " ".join([*own, *map(texts, ast.iter_child_nodes(node))])
 
 
 def test_no_problem_speaks_of_an_option() -> None:

@@ -135,11 +135,6 @@ def _exchanged(where: str, left: Sequence[float], found: Arrangement) -> Problem
     return Problem(
         "the axes of field and specific force are exchanged or one is reversed",
         where,
-<<<<<<< HEAD
-        f"field along up scatters by {left[0]:.2g} uT",
-        f"as with acc ({fits}) for (x, y, z): {left[1]:.2g} uT; axes right-handed, +g up",
-        "exchange the columns with `columns`; `scale` COLUMN=-1 reverses one",
-=======
         said("field along up scatters by {left:.2g} uT", left=left[0]),
         said(
             "as with acc ({fits}) for (x, y, z): {left:.2g} uT; axes right-handed, +g up",
@@ -147,5 +142,4 @@ def _exchanged(where: str, left: Sequence[float], found: Arrangement) -> Problem
             left=left[1],
         ),
         "exchange the columns with --map; --scale COLUMN=-1 reverses one",
->>>>>>> main
     )

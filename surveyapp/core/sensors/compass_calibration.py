@@ -94,16 +94,11 @@ def _refuse_other_units(fit: Ellipsoid, where: str) -> None:
             "mag_x/y/z are in different units",
             where,
             "scales " + ", ".join(f"{a} {1.0 / s:.3g}" for a, s in zip("xyz", scales, strict=True)),
-<<<<<<< HEAD
-            f"scales within a factor of {MOST_UNEQUAL:g}: iron makes no more",
-            "give each its own: `units` COLUMN=... or `scale` COLUMN=VALUE",
-=======
             said(
                 "scales within a factor of {most_unequal:g}: iron makes no more",
                 most_unequal=MOST_UNEQUAL,
             ),
             "give each its own: --unit COLUMN=... or --scale COLUMN=VALUE",
->>>>>>> main
         )
     )
 

@@ -109,11 +109,7 @@ def check_rows(log: SensorLog) -> None:
         for column in columns:
             values = log.columns.get(column)
             if values is None:
-<<<<<<< HEAD
-                hint = f"`columns` {column}=COLUMN names it"
-=======
                 hint = said("--map {column}=COLUMN names it", column=column)
->>>>>>> main
                 problems.append(
                     Problem(
                         said("the test {test} needs the column {column}", test=test, column=column),

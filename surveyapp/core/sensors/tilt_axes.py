@@ -141,13 +141,9 @@ def _refuse_other_unit(log: SensorLog, fits: list[AxisFit]) -> None:
         scale = abs(float(item.fit.x[1]))
         if SCALES[0] <= scale <= SCALES[1]:
             continue
-<<<<<<< HEAD
-        hint = f"`units` COLUMN=... for tilt_{item.axis}_arcsec, or `scale` for counts"
-=======
         hint = said(
             "--unit COLUMN=... for tilt_{axis}_arcsec, or --scale for counts", axis=item.axis
         )
->>>>>>> main
         problems.append(
             Problem(
                 said("the axis {axis} is in another unit than its reference", axis=item.axis),

@@ -89,13 +89,8 @@ def traverse_name(options: ImportOptions, file: Path) -> str:
         or len(told) > 100
         or any(c in _UNSAFE or not c.isprintable() for c in told)
     ):
-<<<<<<< HEAD
-        expected = f"printable characters without {_UNSAFE}, no dot in front"
-        raise SurveyError(Problem("this is no name", "traverse", shown(told), expected))
-=======
         expected = said("printable characters without {unsafe}, no dot in front", unsafe=_UNSAFE)
         raise SurveyError(Problem("this is no name", "--traverse", shown(told), expected))
->>>>>>> main
     return told
 
 

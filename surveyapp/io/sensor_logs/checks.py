@@ -193,11 +193,6 @@ def implausible(
         units = [unit for unit, low, high in bounds.looks_like if low <= median <= high]
         hint = "counts take `scale` COLUMN=VALUE"
         if units:
-<<<<<<< HEAD
-            hint = f"is it {' or '.join(units)}? `units` COLUMN={units[0]}; {hint}"
-        found = f"a median size of {median:.6g} {bounds.unit}"
-        expected = f"{bounds.low:g} to {bounds.high:g} {bounds.unit}"
-=======
             hint = said(
                 "is it {names}? --unit COLUMN={units}; {hint}",
                 names=either(units),
@@ -208,7 +203,6 @@ def implausible(
         expected = said(
             "{low:g} to {high:g} {unit}", low=bounds.low, high=bounds.high, unit=bounds.unit
         )
->>>>>>> main
         problems.append(Problem(what, where, found, expected, hint))
     return problems
 
@@ -229,17 +223,12 @@ def unstated_counts(
             continue
         if _whole(values) and float(np.ptp(values)) > 0.0:
             unit = "deg/s" if name in TRIPLES["gyr"] else NUMBER_COLUMNS[name]
-<<<<<<< HEAD
-            hint = f"counts take `scale` COLUMN=VALUE (and `units` COLUMN={unit})"
-            found = f"whole numbers from {values.min():g} to {values.max():g}"
-=======
             hint = said("counts take --scale COLUMN=VALUE (and --unit COLUMN={unit})", unit=unit)
             found = said(
                 "whole numbers from {value:g} to {value2:g}",
                 value=values.min(),
                 value2=values.max(),
             )
->>>>>>> main
             problems.append(
                 Problem(
                     said("{name} is counts without a unit", name=name), where, found, "a unit", hint
@@ -274,14 +263,10 @@ def mixed_units(columns: Mapping[str, Array], *, where: str) -> list[Problem]:
                     where,
                     said("ranges {found}", found=found),
                     "one unit for the three axes",
-<<<<<<< HEAD
-                    f"give each its own: `units` COLUMN=..., for {names[large]} as well",
-=======
                     said(
                         "give each its own: --unit COLUMN=..., for {names} as well",
                         names=names[large],
                     ),
->>>>>>> main
                 )
             )
     return problems

@@ -173,28 +173,18 @@ class LogFile:
         for name in dict.fromkeys(wanted):
             if name in self.places:
                 continue
-<<<<<<< HEAD
-            hint = f"`columns` {name}=COLUMN names it" if name not in need.others else ""
-            if name == "time_s":
-                hint += "; `rate_hz` replaces it"
-=======
             hint = ""
             if name not in need.others:
                 hint = said("--map {name}=COLUMN names it", name=name)
             if name == "time_s":
                 hint += said("; --rate-hz replaces it")
->>>>>>> main
             listing = ", ".join(shown(n) for n in self.layout.names)
             what = said("the column {name} is missing", name=name)
             problems.append(Problem(what, where, listing, name, hint))
         for name in need.unit_stated:
             if name in self.places and not self.places[name].stated:
                 column = self.places[name].name
-<<<<<<< HEAD
-                hint = f"`units` {column}=LSB for counts"
-=======
                 hint = said("--unit {column}=LSB for counts", column=column)
->>>>>>> main
                 expected = "a unit for this column"
                 what = said("{name} has no unit", name=name)
                 problems.append(Problem(what, where, column, expected, hint))
@@ -389,17 +379,10 @@ def _place(
         problems.append(Problem("this unit does not fit the column", where, unit or "", expected))
         factor = 1.0
     if unit == COUNTS and scale is None and canonical in SENSOR_COLUMNS and canonical != "output":
-<<<<<<< HEAD
-        hint = f"`scale` {name}=VALUE, the {NUMBER_COLUMNS[canonical]} of one count"
-        expected = "the value of one count"
-        problems.append(
-            Problem(f"{canonical} is counts without a scale", where, "LSB", expected, hint)
-=======
         hint = said(
             "--scale {name}=VALUE, the {number_columns} of one count",
             name=name,
             number_columns=NUMBER_COLUMNS[canonical],
->>>>>>> main
         )
         what = said("{name} is counts without a scale", name=canonical)
         problems.append(Problem(what, where, "LSB", "the value of one count", hint))

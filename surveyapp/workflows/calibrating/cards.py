@@ -37,13 +37,8 @@ def card_of(
         raise SurveyError(
             Problem(
                 "no card can be written: the calibration determines nothing",
-<<<<<<< HEAD
-                f"`card`, {calibration.source}",
-                f"geometry {calibration.geometry.verdict}",
-=======
                 f"--card, {calibration.source}",
                 said("geometry {verdict}", verdict=calibration.geometry.verdict),
->>>>>>> main
                 "a calibration whose parameters are determined",
             )
         )

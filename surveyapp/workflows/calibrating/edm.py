@@ -51,13 +51,8 @@ def calibrate(request: CalibrationRequest) -> Calibration:
     unit = request.number("unit_length_m")
     problems = []
     if unit is not None and not 0.1 <= unit <= LONGEST_UNIT_M:
-<<<<<<< HEAD
-        expected = f"0.1 to {LONGEST_UNIT_M:g} m"
-        problems.append(Problem("this is no unit length", "unit_length_m", f"{unit:g}", expected))
-=======
         expected = said("0.1 to {longest_unit_m:g} m", longest_unit_m=LONGEST_UNIT_M)
         problems.append(Problem("this is no unit length", "--unit-length-m", f"{unit:g}", expected))
->>>>>>> main
     heights = None
     file = _named(request.file)
     missing = [name for name in ("from_pillar", "to_pillar") if not file.has(name)]
@@ -67,11 +62,7 @@ def calibrate(request: CalibrationRequest) -> Calibration:
             file.request.where,
             ", ".join(file.layout.names),
             name,
-<<<<<<< HEAD
-            f"`columns` {name}=COLUMN names it",
-=======
             said("--map {name}=COLUMN names it", name=name),
->>>>>>> main
         )
         for name in missing
     ]

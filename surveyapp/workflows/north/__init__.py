@@ -34,11 +34,7 @@ def find_north(request: NorthRequest) -> NorthResult:
         found = request.method or ""
         what = "there is no such method" if found else "which method?"
         hint = nearest_names(found, METHODS) if found else ""
-<<<<<<< HEAD
-        raise SurveyError(Problem(what, "method", found, " or ".join(METHODS), hint))
-=======
         raise SurveyError(Problem(what, "--method", found, either(METHODS), hint))
->>>>>>> main
     problems = declination_problems(request)
     module = importlib.import_module(f"{__name__}.{METHODS[request.method]}")
     try:

@@ -127,13 +127,8 @@ def _room_problems(room: AccelerometerTriad) -> list[Problem]:
     return [
         Problem(
             "the room-temperature log does not determine the accelerometers",
-<<<<<<< HEAD
-            "room",
-            f"rank {room.rank} of 12",
-=======
             "--room",
             said("rank {rank} of 12", rank=room.rank),
->>>>>>> main
             "six positions, each axis up and down",
         )
     ]

@@ -185,13 +185,6 @@ def check_map(
         allowed = _allowed(quantities, name)
         unit = units.get(name)
         if unit is None and name in quantities.angles | quantities.lengths:
-<<<<<<< HEAD
-            expected = f"`units` {name}= {' | '.join(allowed)}"
-            problems.append(Problem("a unit is not told", "units", name, expected))
-        elif unit is not None and unit not in allowed:
-            expected = " | ".join(allowed) or "no unit"
-            problems.append(Problem(f"{name} in an impossible unit", "units", unit, expected))
-=======
             expected = said("--unit {name}= {names}", name=name, names=" | ".join(allowed))
             problems.append(Problem("a unit is not told", "--unit", name, expected))
         elif unit is not None and unit not in allowed:
@@ -199,7 +192,6 @@ def check_map(
             problems.append(
                 Problem(said("{name} in an impossible unit", name=name), "--unit", unit, expected)
             )
->>>>>>> main
     return problems
 
 

@@ -109,15 +109,10 @@ def check_stations(state: State) -> None:
             Problem(
                 "no station is named in the file",
                 gathered.name,
-<<<<<<< HEAD
-                f"code blocks: {codes}" if codes else "neither station nor code blocks",
-                "blocks 11 with 84 85 86 or 88, or code blocks 41 with `station_code` N",
-=======
                 said("code blocks: {codes}", codes=codes)
                 if codes
                 else "neither station nor code blocks",
                 "blocks 11 with 84 85 86 or 88, or code blocks 41 with --station-code N",
->>>>>>> main
                 "Which code of your office opens a station?" if codes else "",
             )
         )

@@ -73,19 +73,11 @@ class Parts:
 
 def parts_hint(parts: tuple[tuple[int, int], ...]) -> str:
     """How to take a large file over in parts."""
-<<<<<<< HEAD
-    listed = ", ".join(f"{first}-{last}" for first, last in parts[:_SHOWN])
-    more = f" and {len(parts) - _SHOWN} more" if len(parts) > _SHOWN else ""
-    return (
-        f"`lines` A-B takes a part, each as a `traverse` of its own; parts between set-ups: "
-        f"{listed}{more}"
-=======
     listed = some([f"{first}-{last}" for first, last in parts], _SHOWN)
     return said(
         "--lines A-B takes a part, each as a --traverse of its own; parts between set-ups: "
         "{listed}",
         listed=listed,
->>>>>>> main
     )
 
 
