@@ -79,7 +79,7 @@ def motion_options(options: Mapping[str, object], problems: list[Problem]) -> Mo
     alarm = _number(options, "false_alarm", 0.01)
     if not SMALLEST_ALARM <= alarm < 0.5:
         expected = said("{smallest_alarm:g} to 0.5", smallest_alarm=SMALLEST_ALARM)
-        problems.append(Problem("this is no probability", "--false-alarm", f"{alarm:g}", expected))
+        problems.append(Problem("this is no probability", "false_alarm", f"{alarm:g}", expected))
     factor = _number(options, "still_gate_factor", 1.0)
     if not factor > 0.0 or not math.isfinite(factor):
         where = "still_gate_factor"

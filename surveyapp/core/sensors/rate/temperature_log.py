@@ -127,7 +127,7 @@ def _room_problems(room: AccelerometerTriad) -> list[Problem]:
     return [
         Problem(
             "the room-temperature log does not determine the accelerometers",
-            "--room",
+            "room",
             said("rank {rank} of 12", rank=room.rank),
             "six positions, each axis up and down",
         )

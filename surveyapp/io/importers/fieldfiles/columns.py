@@ -186,11 +186,11 @@ def check_map(
         unit = units.get(name)
         if unit is None and name in quantities.angles | quantities.lengths:
             expected = said("--unit {name}= {names}", name=name, names=" | ".join(allowed))
-            problems.append(Problem("a unit is not told", "--unit", name, expected))
+            problems.append(Problem("a unit is not told", "units", name, expected))
         elif unit is not None and unit not in allowed:
             expected = " | ".join(allowed) or "no unit"
             problems.append(
-                Problem(said("{name} in an impossible unit", name=name), "--unit", unit, expected)
+                Problem(said("{name} in an impossible unit", name=name), "units", unit, expected)
             )
     return problems
 
