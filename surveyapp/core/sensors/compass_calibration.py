@@ -98,7 +98,7 @@ def _refuse_other_units(fit: Ellipsoid, where: str) -> None:
                 "scales within a factor of {most_unequal:g}: iron makes no more",
                 most_unequal=MOST_UNEQUAL,
             ),
-            "give each its own: `units` COLUMN=... or `scale` COLUMN=VALUE",
+            "give each its own: --unit COLUMN=... or --scale COLUMN=VALUE",
         )
     )
 
@@ -343,7 +343,7 @@ def _warnings(
     elif trials[chosen].fit.converged and record_dip(log, trials[chosen].fit) < 0.0:
         text = (
             "the field points upwards, as it does south of the magnetic equator: elsewhere acc_* "
-            "is gravity and not specific force (+g on the axis that is up); `scale` COLUMN=-1"
+            "is gravity and not specific force (+g on the axis that is up); --scale COLUMN=-1"
         )
         found.append(ResultWarning("field_points_up", text))
     return found

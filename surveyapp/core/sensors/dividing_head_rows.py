@@ -107,7 +107,7 @@ def _strange_angles(log: SensorLog) -> list[Problem]:
             what = said(
                 "the angles of set {code} are not those of +-{span} degrees", code=code, span=span
             )
-            found, hint = f"up to {size:g}", "are they in degrees? `units` COLUMN=rad"
+            found, hint = f"up to {size:g}", "are they in degrees? --unit COLUMN=rad"
             problems.append(Problem(what, log.path, found, f"up to {span}", hint))
     return problems
 

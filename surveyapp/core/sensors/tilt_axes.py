@@ -129,7 +129,7 @@ def _refuse_exchanged(log: SensorLog, fits: list[AxisFit]) -> None:
                 log.path,
                 found,
                 "readings that follow the reference of their own axis",
-                "exchange the two columns with `columns`",
+                "exchange the two columns with --map",
             )
         )
 

@@ -191,7 +191,7 @@ def implausible(
         if unstated and whole:
             what = said("{name}_x/y/z are counts without a unit", name=name)
         units = [unit for unit, low, high in bounds.looks_like if low <= median <= high]
-        hint = "counts take `scale` COLUMN=VALUE"
+        hint = "counts take --scale COLUMN=VALUE"
         if units:
             hint = said(
                 "is it {names}? --unit COLUMN={units}; {hint}",

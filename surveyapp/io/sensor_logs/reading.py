@@ -307,11 +307,9 @@ def _places(request: LogRequest, layout: Layout, problems: list[Problem]) -> dic
     mapped: dict[str, int] = {}
     for canonical, column in request.columns.items():
         if canonical not in known:
-            hint = nearest_names(canonical, known)
+            place, hint = f"{where}, `columns`", nearest_names(canonical, known)
             expected = "the canonical name of a column"
-            problems.append(
-                Problem("there is no such column", f"{where}, `columns`", canonical, expected, hint)
-            )
+            problems.append(Problem("there is no such column", place, canonical, expected, hint))
         elif names.count(column) != 1:
             problems.append(_no_column(column, names, f"{where}, `columns` {canonical}"))
         else:
