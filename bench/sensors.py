@@ -11,10 +11,12 @@ import os
 import time
 import tracemalloc
 from collections.abc import Callable, Iterator
+from functools import partial
 from statistics import median
 
 import numpy as np
 
+from bench._stored import stored
 from surveyapp.core.sensors.allan import allan_variances, octaves
 from surveyapp.core.sensors.compass_calibration import calibrate_ellipsoid
 from surveyapp.core.sensors.filters import LocalLevel, kalman, particles
@@ -80,17 +82,24 @@ def _worst(used: dict[str, float], hard: Floats, corrects: Floats) -> float:
     return float(np.max(np.abs(np.degrees((error + np.pi) % (2.0 * np.pi) - np.pi))))
 
 
+def _cell(shape: str, sigma: float) -> tuple[int, int]:
+    """How many records are accepted, and how many of these have a wrong heading."""
+    accepted = wrong = 0
+    for seed in range(RECORDS):
+        log, hard, corrects = _distorted(shape, seed, sigma)
+        result = calibrate_ellipsoid(log, limit=math.radians(0.5))
+        if result.met:
+            accepted += 1
+            wrong += _worst(dict(result.constants), hard, corrects) > 1.5
+    return accepted, int(wrong)
+
+
 def gate() -> Iterator[str]:
     """Accepted records of each shape, and how many of them have a heading worse than 1.5 deg."""
     for sigma in (0.3, 1.0):
         for shape in SHAPES:
-            accepted = wrong = 0
-            for seed in range(RECORDS):
-                log, hard, corrects = _distorted(shape, seed, sigma)
-                result = calibrate_ellipsoid(log, limit=math.radians(0.5))
-                if result.met:
-                    accepted += 1
-                    wrong += _worst(dict(result.constants), hard, corrects) > 1.5
+            make = partial(_cell, shape, sigma)
+            accepted, wrong = stored(f"gate {shape}", (RECORDS, sigma), make)
             yield f"gate, {shape} at {sigma} uT: {accepted} of {RECORDS} accepted, {wrong} wrong"
 
 

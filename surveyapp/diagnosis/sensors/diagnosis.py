@@ -13,6 +13,7 @@ from typing import Any, Final
 import numpy as np
 
 from surveyapp.core.sensors.linear import alternate_blocks
+from surveyapp.diagnosis.result import Verdict
 from surveyapp.diagnosis.sensors.confirming import confirmed
 from surveyapp.diagnosis.sensors.document import (
     adopted_of,
@@ -129,7 +130,7 @@ def diagnose_sensor(
         notes += [ResultWarning("not_adopted", f"{n}: {why}") for n, why in proof.refused]
     best = _refined(record, found.best) if found.ambiguous else after
     fits = {"before": found.before, "after": after, "after_best": best}
-    verdict = _verdict(record, found)
+    verdict: Verdict = _verdict(record, found)
     if proof is not None and proof.refused and not found.ambiguous:
         verdict = "unattributed"
     adopted = [adopted_of(record, found, after, c) for c in after.chosen]
@@ -318,7 +319,7 @@ def _edges(record: SensorRecord, fit: LoopFit, chosen: Chosen) -> tuple[float, f
     return float(record.time[first]), off
 
 
-def _verdict(record: SensorRecord, found: LoopResult) -> str:
+def _verdict(record: SensorRecord, found: LoopResult) -> Verdict:
     if found.ambiguous:
         return "not_separable"
     if found.after.chosen or record.gross:
