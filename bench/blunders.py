@@ -5,8 +5,9 @@ fixed or not; or, lean, one calibration and one survey of a line without coordin
 read and checked through the public interface. Then one blunder is planted into its files as a hand
 makes it. It is told where the project is refused or a confirmed check is not met;
 it is silent with harm where nothing is told and the grid azimuth is off by more than three of its
-own sigmas. What no second session, no fixed coordinates and no card could have told is listed with
-what would be needed to see it.
+own sigmas; "asked" are those of them that a warning or a check that only warns asks about. What no
+second session, no fixed coordinates and no card could have told is listed with what would be needed
+to see it.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import re
 import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -71,11 +72,15 @@ def clean_projects(count: int, seed: int, *, lean: bool = False) -> Iterator[Cle
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What became of one project."""
+    """What became of one project.
+
+    ``asked`` are the warnings and the checks that only warn.
+    """
 
     told: tuple[str, ...]
     error: float | None
     sigma: float | None
+    asked: frozenset[str] = frozenset()
 
     @property
     def harmful(self) -> bool:
@@ -94,12 +99,16 @@ def judged(files: Files, azimuth: float) -> Outcome:
             result = api.orient(folder)
         except SurveyError:
             return Outcome(("refused",), None, None)
-        told = tuple(c.rule for c in result.checks if c.confirmed and c.passed is False)
+        failed = [check for check in result.checks if check.passed is False]
+        told = tuple(check.rule for check in failed if check.confirmed)
+        asked = frozenset(check.rule for check in failed if not check.confirmed)
+        asked |= {warning.code for warning in result.warnings}
     lines = [line for line in result.lines if line.grid_azimuth is not None]
     if not lines or lines[0].grid_azimuth is None:
         return Outcome(told or ("no azimuth",), None, None)
     found = lines[0].grid_azimuth
-    return Outcome(told, wrap_pi(found.value - azimuth), found.sigma)
+    true = azimuth + (math.pi if lines[0].station == "U2" else 0.0)
+    return Outcome(told, wrap_pi(found.value - true), found.sigma, asked)
 
 
 ROW = re.compile(r"^(\d+),([^,]*),([^,]*),(\w+),([^,]*),(\w*),(\w*),(\w*)(.*)$")
@@ -253,7 +262,7 @@ def _known_azimuth(arcsec: float) -> Plant:
     return plant
 
 
-def _text(name: str, pattern: str, new: str) -> Plant:
+def _text(name: str, pattern: str, new: str | Callable[[re.Match[str]], str]) -> Plant:
     def plant(files: Files, rng: np.random.Generator) -> Files | None:
         changed = re.sub(pattern, new, files[name])
         return None if changed == files[name] else files | {name: changed}
@@ -281,6 +290,55 @@ def _moved(names: tuple[str, ...], degrees: float) -> Plant:
             text = f"{float(found[1]) + degrees:.12f}"
             toml = toml[: found.start(1)] + text + toml[found.end(1) :]
         return files | {"project.toml": toml}
+
+    return plant
+
+
+def _ends_exchanged(purpose: str) -> Plant:
+    """Station and target of the first line of a kind under each other's name."""
+
+    def plant(files: Files, rng: np.random.Generator) -> Files | None:
+        head, *tables = files["project.toml"].split("[[orientation]]")
+        for place, table in enumerate(tables):
+            if f'purpose = "{purpose}"' not in table:
+                continue
+            station, target = (
+                re.search(rf'^{key} = "(.*)"', table, re.MULTILINE) for key in ("station", "target")
+            )
+            if station is None or target is None:
+                return None
+            other = table.replace(station[0], f'station = "{target[1]}"')
+            tables[place] = other.replace(target[0], f'target = "{station[1]}"')
+            break
+        return files | {"project.toml": "[[orientation]]".join([head, *tables])}
+
+    return plant
+
+
+def _known_in_gon(files: Files, rng: np.random.Generator) -> Files | None:
+    """Every known azimuth is the number of gon, written as degrees."""
+
+    def changed(hit: re.Match[str]) -> str:
+        angle = parse_angle(hit[1], AngleUnit.DMS)
+        if angle > 1.8 * math.pi:
+            return hit[0]
+        return f'azimuth_known = "{format_angle(angle / 0.9, AngleUnit.DMS, 3)}"'
+
+    toml = re.sub(r'azimuth_known = "([^"]*)"', changed, files["project.toml"])
+    return None if toml == files["project.toml"] else files | {"project.toml": toml}
+
+
+def _every_unit(unit: str) -> Plant:
+    """The circle readings of one book in another unit than they were read in."""
+
+    def plant(files: Files, rng: np.random.Generator) -> Files | None:
+        book = str(rng.choice(_books(files)))
+        rows = _rows(files, book)
+        value, place = rows[0].index("value"), rows[0].index("unit")
+        for row in _of_kind(rows, "backsight", "reversal", "clamp"):
+            rows[row][value] = f"{math.degrees(parse_angle(rows[row][value], AngleUnit.DMS)):.5f}"
+            rows[row][place] = unit
+        return _with(files, book, rows)
 
     return plant
 
@@ -317,6 +375,21 @@ PLANTS: dict[str, Plant] = {
         CARD, r"tracking_s = \S+\nclamped_s = \S+", "tracking_s = 480.0\nclamped_s = 410.0"
     ),
     "books exchanged": _books_exchanged,
+    "ends of the survey exchanged": _ends_exchanged("survey"),
+    "ends of a calibration exchanged": _ends_exchanged("calibration"),
+    "known azimuths in gon": _known_in_gon,
+    "a book in gon": _every_unit("gon"),
+    "tape zero missing": _missing("tape_zero"),
+    "tape zeros swapped": _swapped("tape_zero"),
+    "scale readings swapped": _swapped("scale_reversal"),
+    "passages swapped": _swapped("transit"),
+    "clamp missing": _missing("clamp"),
+    "lambda of another latitude": _text(
+        CARD, r"latitude_deg = (-?)(\d+)", lambda hit: f"latitude_deg = {hit[1]}{int(hit[2]) - 20}"
+    ),
+    "other hemisphere": _text(
+        "project.toml", r"lat = (-?)(\S+)", lambda hit: f"lat = {'' if hit[1] else '-'}{hit[2]}"
+    ),
     "station 1 deg away": _moved(("U1",), 1.0),
     "line 1 deg away": _moved(("U1", "U2"), 1.0),
     "latitude exchanged": _text("project.toml", r"lat = (\S+)\nlon = (\S+)", r"lat = \2\nlon = \1"),
@@ -324,6 +397,10 @@ PLANTS: dict[str, Plant] = {
 """Blunders by name."""
 NEEDED = {
     "clamp": "a second clamping of the line, or fixed coordinates",
+    "ends of": "fixed coordinates of both ends",
+    "known azimuths in gon": "coordinates of the known line",
+    "other hemisphere": "times of the swing cannot tell (the period is that of the other latitude)",
+    "lambda of": "times of the turning points or passages: the period",
     "another target": "fixed coordinates, or a second session of the line",
     "known azimuth": "coordinates of the known line, or a second known line",
     "scale": "two clampings of the line, or a second session clamped elsewhere",
@@ -357,16 +434,22 @@ def alarms(count: int, seed: int) -> tuple[int, Counter[str]]:
 
 
 def planted(count: int, seed: int, *, lean: bool = False) -> dict[str, list[tuple[bool, Outcome]]]:
-    """Outcomes of planted blunders by name, with whether the line had fixed coordinates."""
+    """Outcomes of planted blunders by name, with whether the line had fixed coordinates.
+
+    What is asked about in the clean project too says nothing of the blunder and is left out.
+    """
     rng = np.random.default_rng(seed)
     found: dict[str, list[tuple[bool, Outcome]]] = {name: [] for name in PLANTS}
     done = 0
     while done < count:
         for clean in clean_projects(6, seed + 1000 + done, lean=lean):
+            before = judged(clean.files, clean.azimuth).asked
             for name, plant in PLANTS.items():
                 files = plant(clean.files, rng)
                 if files is not None:
-                    found[name].append((clean.fixed, judged(files, clean.azimuth)))
+                    outcome = judged(files, clean.azimuth)
+                    outcome = replace(outcome, asked=outcome.asked - before)
+                    found[name].append((clean.fixed, outcome))
                     done += 1
     return found
 
@@ -377,15 +460,27 @@ def table(found: dict[str, list[tuple[bool, Outcome]]]) -> list[str]:
     silent = {
         name: [o for _, o in items if not o.told and o.harmful] for name, items in found.items()
     }
-    lines = [f"planted {total}, silent with harm {sum(map(len, silent.values()))}"]
-    lines.append("blunder                      planted  told  harmless  silent  with fixed ends")
+    mute = [outcome for items in silent.values() for outcome in items]
+    asked = sum(bool(outcome.asked) for outcome in mute)
+    lines = [f"planted {total}, silent with harm {len(mute)}, of these asked about {asked}"]
+    lines.append(
+        "blunder                          planted  told  harmless  silent  asked  with fixed ends"
+    )
     for name, items in found.items():
         told = sum(bool(o.told) for _, o in items)
-        mute = len(silent[name])
-        fixed = sum(not o.told and o.harmful for is_fixed, o in items if is_fixed)
-        rest = len(items) - told - mute
+        mute, fixed = (
+            silent[name],
+            sum(not o.told and o.harmful for is_fixed, o in items if is_fixed),
+        )
+        warned = sum(bool(o.asked) for o in mute)
+        rest = len(items) - told - len(mute)
+        words = Counter(code for o in mute for code in o.asked)
         why = f"  {needed(name)}" if mute else ""
-        lines.append(f"{name:<28} {len(items):>7} {told:>5} {rest:>9} {mute:>7} {fixed:>6}{why}")
+        why += f" [{', '.join(code for code, _ in words.most_common(3))}]" if words else ""
+        lines.append(
+            f"{name:<32} {len(items):>7} {told:>5} {rest:>9} {len(mute):>7} {warned:>6} {fixed:>6}"
+            f"{why}"
+        )
     return lines
 
 

@@ -30,9 +30,9 @@ MEANING = {
 }
 
 LEFT_OUT = """Looked for and left out, because no source that could be read states a figure for
-them: AGT-5, ARK-2, BTJ-5, Fennel TK4 and TK5, MOM Gi-B21, Y/JTG-1. Whoever owns one writes a card of
-his own from its data sheet or test certificate ([how](../project-folder.md#instrument-cards)); the
-program asks for what it needs at the step where it is missing."""
+them: AGT-5, ARK-2, BTJ-5, Fennel TK4 and TK5, MOM Gi-B21, Y/JTG-1. Whoever owns one writes a card
+of his own from its data sheet or test certificate ([how](../project-folder.md#instrument-cards));
+the program asks for what it needs at the step where it is missing."""
 
 
 def pages() -> dict[str, str]:

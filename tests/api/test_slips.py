@@ -131,3 +131,11 @@ def test_a_constant_that_is_known_to_be_large_is_one(tmp_path: Path) -> None:
     assert "constant.slip" in failed(folder)
     folder = project(tmp_path / "b", crs=PL92, at=at, known=known, constant=180.0, gyro=gyro)
     assert "constant.slip" not in failed(folder)
+
+
+def test_a_line_that_nobody_can_sight_is_told(tmp_path: Path) -> None:
+    folder = project(tmp_path, crs=PL92, at=WHERE[PL92])
+    text = (folder / "project.toml").read_text()
+    n = text.split('name = "B"\n')[1].split("n = ")[1].split("\n")[0]
+    (folder / "project.toml").write_text(text.replace(f"n = {n}", f"n = {float(n) + 1e5}"))
+    assert "coordinates.length" in failed(folder)

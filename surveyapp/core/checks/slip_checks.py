@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable, Iterator
 from typing import Final
 
-from surveyapp.core.checks.blunders import LARGEST_CONSTANT
+from surveyapp.core.checks.blunders import LARGEST_CONSTANT, LONGEST_LINE_M
 from surveyapp.core.geodesy import Grid, Position
 from surveyapp.core.orientation.instrument_constant import Calibration, InstrumentConstant
 from surveyapp.core.orientation.whole_project import Orientation
@@ -28,10 +28,35 @@ GON: Final = 0.9
 """Degrees of one gon."""
 Point = tuple[float, float]
 _CLAUSE: Final = said("a constant of degrees that one slip explains")
+_SIGHT: Final = said("nobody sights so far with a gyro-theodolite")
 
 
 def slip_checks(orientation: Orientation) -> list[Check]:
-    """A check, not met, for every determination whose large constant one slip explains."""
+    """A check, not met, for every line too long to be sighted and every constant made by a slip."""
+    return [*_too_long(orientation), *_slips(orientation)]
+
+
+def _too_long(orientation: Orientation) -> list[Check]:
+    """Oriented lines whose coordinates cannot both be right: one makes a wrong convergence."""
+    return [
+        Check(
+            rule="coordinates.length",
+            clause=_SIGHT,
+            value=line.result.distance_m,
+            limit=LONGEST_LINE_M,
+            confirmed=True,
+            passed=False,
+            unit="m",
+            where=line.result.subject.text,
+            text=said("length of the line by its coordinates: is one of the stations mistyped?"),
+            subject=line.result.subject,
+        )
+        for line in orientation.lines
+        if line.result.distance_m is not None and line.result.distance_m > LONGEST_LINE_M
+    ]
+
+
+def _slips(orientation: Orientation) -> list[Check]:
     return [
         _failed(calibration, slip, value)
         for constant in orientation.constants
