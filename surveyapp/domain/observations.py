@@ -13,6 +13,7 @@ from enum import StrEnum
 import numpy as np
 
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 
 
 class ObservationKind(StrEnum):
@@ -262,7 +263,7 @@ class CorrelatedBlock:
 
     def __post_init__(self) -> None:
         size = len(self.members)
-        where = f"covariance matrix of {size} observations"
+        where = said("covariance matrix of {size} observations", size=size)
         if len(set(self.members)) != size or size == 0:
             raise SurveyError(
                 Problem("An observation stands twice in a block", where, str(self.members), "once")

@@ -29,6 +29,7 @@ from surveyapp.io.sensor_cards import read_sensor_card
 from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.io.sensor_logs.writing import write_parts
+from surveyapp.languages import said
 
 BLOCK_ROWS: Final = 50_000
 """Rows that are corrected at once: a log of any length takes the memory of one block."""
@@ -122,7 +123,7 @@ def compensate_log(
     if card.kind != kind:
         raise SurveyError(Problem("the card is of another kind", where, card.kind, kind))
     if declination is not None and kind != "compass":
-        found = f"a {kind} sensor"
+        found = said("a {kind} sensor", kind=kind)
         raise SurveyError(
             Problem("a declination is added to magnetic headings only", "declination", found)
         )
@@ -219,7 +220,9 @@ def write_compensated(
         text = "the log holds no temperature: whether the card holds was not judged by it"
         warnings.append(ResultWarning("temperature_unknown", text))
     if "restricted" in card.notes:
-        warnings.append(ResultWarning("restricted", f"the card {card.notes['restricted']}"))
+        warnings.append(
+            ResultWarning("restricted", said("the card {value}", value=card.notes["restricted"]))
+        )
     return CompensationResult(
         kind=kind,
         source=log.id,

@@ -16,6 +16,7 @@ from typing import Final
 from surveyapp.core.fieldfile.rounds import Round, group
 from surveyapp.domain.fieldfile import FieldFile, Pointing, ReducedSet, ReducedSight
 from surveyapp.domain.project import ResultWarning
+from surveyapp.languages import joined, said, some
 from surveyapp_models.angles import wrap_pi, wrap_two_pi
 
 _FACES_DIFFER_M: Final = 0.010
@@ -120,12 +121,18 @@ def reduce_file(file: FieldFile) -> tuple[tuple[ReducedSet, ...], tuple[ResultWa
         *_face_warnings(grouped.rounds),
         *_listed(
             "repeated_reading",
-            "a target was read again in the same face: it counts for the next set",
-            [f"line {p.line} ({p.at}-{p.to})" for p in grouped.repeated],
+            said("a target was read again in the same face: it counts for the next set"),
+            [
+                said("line {line} ({at}-{to})", line=p.line, at=p.at, to=p.to)
+                for p in grouped.repeated
+            ],
         ),
         *_listed(
             "faces_differ",
-            f"distances of the two faces differ by more than {_FACES_DIFFER_M * 1000:.0f} mm",
+            said(
+                "distances of the two faces differ by more than {most:.0f} mm",
+                most=_FACES_DIFFER_M * 1000.0,
+            ),
             _unequal_distances(grouped.rounds),
         ),
         *_length_warnings(sets),
@@ -136,8 +143,7 @@ def reduce_file(file: FieldFile) -> tuple[tuple[ReducedSet, ...], tuple[ResultWa
 def _listed(code: str, text: str, places: Sequence[str]) -> list[ResultWarning]:
     if not places:
         return []
-    more = f" and {len(places) - _SHOWN} more" if len(places) > _SHOWN else ""
-    return [ResultWarning(code, f"{text}: {', '.join(places[:_SHOWN])}{more}")]
+    return [ResultWarning(code, joined(": ", (text, some(places, _SHOWN))))]
 
 
 def _face_warnings(rounds: Sequence[Round]) -> list[ResultWarning]:
@@ -152,8 +158,10 @@ def _face_warnings(rounds: Sequence[Round]) -> list[ResultWarning]:
                 single.append(place)
                 unequal += [place] if both else []
     return [
-        *_listed("one_face", "observed in one face only: collimation and index stay in", single),
-        *_listed("unequal_targets", "the faces of a set hold unequal targets", unequal),
+        *_listed(
+            "one_face", said("observed in one face only: collimation and index stay in"), single
+        ),
+        *_listed("unequal_targets", said("the faces of a set hold unequal targets"), unequal),
     ]
 
 
@@ -177,10 +185,10 @@ def _length_warnings(sets: Sequence[ReducedSet]) -> list[ResultWarning]:
         if t.zenith is not None and (t.hi is None or t.ht is None)
     ]
     return [
-        *_listed("horizontal_only", "only horizontal distances are stored", level),
+        *_listed("horizontal_only", said("only horizontal distances are stored"), level),
         *_listed(
             "heights_unknown",
-            "no height of instrument or target in the file: it counts as 0 in the book",
+            said("no height of instrument or target in the file: it counts as 0 in the book"),
             list(dict.fromkeys(blind)),
         ),
     ]

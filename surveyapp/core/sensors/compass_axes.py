@@ -16,6 +16,7 @@ import numpy as np
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 ROWS: Final = 2000
@@ -67,10 +68,11 @@ def check_axes(log: SensorLog) -> tuple[ResultWarning, ...]:
     if as_given > NOTICED * scale and as_given > BETTER * left[best]:
         raise SurveyError(_exchanged(log.path, (as_given, left[best]), best))
     if as_given > LOOSE * scale:
-        text = (
+        text = said(
             "the specific force does not belong to the field: the dip scatters by "
-            f"{np.degrees(np.arctan(as_given / scale)):.1f} degrees; was the compass moved "
-            "jerkily, or are the axes those of another sensor?"
+            "{value:.1f} degrees; was the compass moved jerkily, or are the axes "
+            "those of another sensor?",
+            value=np.degrees(np.arctan(as_given / scale)),
         )
         return (ResultWarning("acc_does_not_fit", text),)
     return ()
@@ -133,7 +135,11 @@ def _exchanged(where: str, left: Sequence[float], found: Arrangement) -> Problem
     return Problem(
         "the axes of field and specific force are exchanged or one is reversed",
         where,
-        f"field along up scatters by {left[0]:.2g} uT",
-        f"as with acc ({fits}) for (x, y, z): {left[1]:.2g} uT; axes right-handed, +g up",
+        said("field along up scatters by {left:.2g} uT", left=left[0]),
+        said(
+            "as with acc ({fits}) for (x, y, z): {left:.2g} uT; axes right-handed, +g up",
+            fits=fits,
+            left=left[1],
+        ),
         "exchange the columns with --map; --scale COLUMN=-1 reverses one",
     )

@@ -27,6 +27,7 @@ from surveyapp.domain.calibration import (
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 TESTS: Final = ("static", "transverse", "reversal", "zero", "capacitance", "dynamic")
@@ -108,16 +109,25 @@ def check_rows(log: SensorLog) -> None:
         for column in columns:
             values = log.columns.get(column)
             if values is None:
-                hint = f"--map {column}=COLUMN names it"
+                hint = said("--map {column}=COLUMN names it", column=column)
                 problems.append(
                     Problem(
-                        f"the test {test} needs the column {column}", log.path, "", column, hint
+                        said("the test {test} needs the column {column}", test=test, column=column),
+                        log.path,
+                        "",
+                        column,
+                        hint,
                     )
                 )
                 continue
             bad = int(np.count_nonzero(~np.isfinite(values[rows])))
             if bad:
-                what = f"{column} is not a number in {bad} rows of the test {test}"
+                what = said(
+                    "{column} is not a number in {bad} rows of the test {test}",
+                    column=column,
+                    bad=bad,
+                    test=test,
+                )
                 problems.append(Problem(what, log.path, "NaN or an empty cell", "a number"))
             elif column == "output" and test in ("static", "transverse"):
                 problems += _constant(test, values[rows], log.path)
@@ -129,7 +139,15 @@ def _constant(test: str, values: Floats, where: str) -> list[Problem]:
     if values.size < 2 or float(np.ptp(values)) > 0.0:
         return []
     found, hint = f"{values[0]:g}", "is the sensor connected?"
-    return [Problem(f"output is constant in the test {test}", where, found, "it varies", hint)]
+    return [
+        Problem(
+            said("output is constant in the test {test}", test=test),
+            where,
+            found,
+            "it varies",
+            hint,
+        )
+    ]
 
 
 def _line(log: SensorLog, number: int) -> Line | None:
@@ -214,9 +232,11 @@ def _zero(
     p = _trend_p(fit)
     if p < TREND_P:
         drift = 2.0 * float(fit.x[1]) * to_arcsec
-        text = (
-            f"the zero drifts by {drift:+.1f} arcsec over the record (p = {p:.1e}): let the sensor "
-            "warm up, or use the detrended figure"
+        text = said(
+            "the zero drifts by {drift:+.1f} arcsec over the record (p = {p:.1e}): "
+            "let the sensor warm up, or use the detrended figure",
+            drift=drift,
+            p=p,
         )
         warnings.append(ResultWarning("warm_up", text))
     return found

@@ -18,6 +18,7 @@ from textual.widgets import DataTable, Footer, TabbedContent, TabPane
 from surveyapp import api
 from surveyapp.core.sensors.programmes.catalogue import PROGRAMMES
 from surveyapp.errors import SurveyError
+from surveyapp.languages import shown
 from surveyapp.observation.sensors.desk import SensorDesk, sensor_desk
 from surveyapp.observation.sensors.programmes import (
     ProgrammeDesk,
@@ -110,7 +111,7 @@ class SensorsScreen(Screen[None]):
             runs, problems = runs_of(self.folder)
             self.post_message(self.Read(sensor_desk(self.folder, moment.date()), runs))
             for problem in problems:
-                told = partial(self.notify, str(problem), severity="error", markup=False)
+                told = partial(self.notify, shown(problem.text), severity="error", markup=False)
                 self.app.call_from_thread(told)
         except SurveyError as error:
             self.post_message(self.Failed(error))
@@ -177,7 +178,7 @@ class SensorsScreen(Screen[None]):
                 api.begin_programme(self.folder, programme.id, identity, now=self.moment())
             desk = ProgrammeDesk(self.folder, identity, now=self.moment)
         except SurveyError as error:
-            self.notify(str(error), severity="error", markup=False)
+            self.notify(shown(error.text), severity="error", markup=False)
             return
         self.app.push_screen(ProgrammeScreen(desk))
 

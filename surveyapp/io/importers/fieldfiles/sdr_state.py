@@ -11,6 +11,7 @@ from surveyapp.domain.fieldfile import Pointing
 from surveyapp.io.importers.fieldfiles.gathering import Gathering
 from surveyapp.io.importers.fieldfiles.sdr_layout import TEXT, Shape
 from surveyapp.io.importers.fieldfiles.units import DEGREE
+from surveyapp.languages import said
 
 
 @dataclass(slots=True)
@@ -82,5 +83,5 @@ def constant_applied(state: State) -> bool | None:
             "constant_unknown",
             "no note says whether the prism constant is in the distances",
         )
-    state.gathered.warn(code, f"{why}: enter it in [[traverse]]")
+    state.gathered.warn(code, said("{why}: enter it in [[traverse]]", why=why))
     return None
