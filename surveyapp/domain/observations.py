@@ -107,7 +107,7 @@ _POSITIVE = frozenset(item.kind for item in KINDS if item.positive)
 
 @dataclass(frozen=True, slots=True)
 class EstimatedSigma:
-    """That part of an observation's variance which somebody estimated from a few readings.
+    """That part of an observation's variance which is that of its reading.
 
     Parameters
     ----------
@@ -116,12 +116,16 @@ class EstimatedSigma:
     variance : float
         [rad^2] or [m^2].
     dof : float
-        Degrees of freedom of the estimate, above 0.
+        Degrees of freedom of the estimate, above 0; infinite where it is known.
+    rest_assumed : bool
+        Whether the rest of the variance, centring and heights, is a mere assumption: it may be
+        smaller.
     """
 
     name: str
     variance: float
     dof: float
+    rest_assumed: bool = False
 
 
 @dataclass(frozen=True, slots=True)

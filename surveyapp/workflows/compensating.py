@@ -19,6 +19,7 @@ from surveyapp.core.sensors.compensation import (
     compensate_head,
     compensate_rate,
     compensate_tilt,
+    field_doubt,
 )
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_card import SensorCard
@@ -136,6 +137,9 @@ def compensate_log(
     problems += other_instrument(card, entry, where)
     if problems:
         raise SurveyError(problems)
+    doubt = field_doubt(log, card, where=where) if kind == "compass" else None
+    if doubt is not None:
+        log = replace(log, warnings=(*log.warnings, ResultWarning("field_differs", doubt)))
     starts = range(0, log.size, BLOCK_ROWS)
     blocks = (log.rows(slice(start, start + BLOCK_ROWS)) for start in starts)
     return (_run(kind, block, card, (declination, where)) for block in blocks), log, card

@@ -53,10 +53,13 @@ def refuse_undetermined(network: Network, state: Converged) -> SurveyError:
     for unknown in undetermined.tolist():
         owner, name = unknown_name(network, model, unknown)
         owners.setdefault(owner, []).append(name)
-    free_datum = not any(
+    names = {"plane": "en", "height": "h"}
+    lacking = {key for owner in owners.values() for key in names if set(owner) & set(names[key])}
+    free_datum = bool(lacking) and not any(
         status in (Status.FIXED, Status.CONSTRAINED)
         for point in network.points
-        for _, _, status in point.components()
+        for part, _, status in point.components()
+        if any(part in names[key] for key in lacking)
     )
     parts = _parts(network, model)
     problems = [_reason(state.solved.defect, undetermined, model, parts, free_datum=free_datum)]
@@ -88,7 +91,10 @@ def _reason(
     coordinates = model.slot_of < model.coordinate_slots
     touched = np.isin(np.flatnonzero(coordinates), undetermined)
     if free_datum:
-        hint = "Fix points or an azimuth, or constrain points for a free network."
+        hint = (
+            "Fix points or an azimuth, or constrain points for a free network: of a project "
+            "coordinates and fixed = true in [[station]], of an import --fix NAME."
+        )
         return Problem("The network has no datum", "network", found, "fixed points", hint)
     joined = [part for part in parts if len(part) > 1]
     if len(joined) > 1:

@@ -150,6 +150,7 @@ def _sigmas(
         **({} if zenith is None else {"sigma_zenith_arcsec": zenith}),
         "sigma_distance": {"mm": float(distance[0]), "ppm": float(distance[1])},
         **({"sigma_dof": dof} if dof else {}),
+        "centring_assumed": True,
         "centring_mm": {"instrument": ASSUMED_CENTRING_MM, "target": ASSUMED_CENTRING_MM},
         "sigma_height_mm": {"instrument": ASSUMED_CENTRING_MM, "target": ASSUMED_CENTRING_MM},
     }

@@ -136,6 +136,7 @@ def _header(table: Table, number: int) -> Traverse:
         _heights(table),
         sigma_zenith=None if zenith is None else zenith * ARCSEC,
         sigma_dof=_sigma_dof(table),
+        centring_assumed=table.boolean("centring_assumed"),
     )
     for part in (distance, centring):
         if part is not None:

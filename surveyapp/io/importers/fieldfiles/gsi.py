@@ -126,9 +126,11 @@ def _passed(text: FieldText, state: State) -> State:
             continue
         for block in blocks(line):
             kind = layout(block)
-            if kind in layouts or len(layouts) < MOST_LAYOUTS:
-                layouts[kind] = layouts.get(kind, 0) + 1
-                state.first_of.setdefault(kind, number)
+            if kind in layouts:
+                layouts[kind] += 1
+            elif len(layouts) < MOST_LAYOUTS:
+                layouts[kind] = 1
+                state.first_of[kind] = number
             state.last = kind
             _block(state, number, block, cut=kind in state.cut)
     return state

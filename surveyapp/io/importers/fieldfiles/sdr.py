@@ -86,15 +86,7 @@ def read_sdr(path: Path, options: ReadOptions) -> FieldFile:
         "SDR files do not say whether distances hold the atmospheric correction: enter "
         "atmosphere_applied in [[traverse]]",
     )
-    if applied is False:
-        state.gathered.warn(
-            "raw_distances", "distances are stored raw: the prism constant was added"
-        )
-    return state.gathered.finish(
-        form=("sdr", shape.version),
-        applied=(None, None if applied is None else True),
-        corrected=applied is False,
-    )
+    return state.gathered.finish(form=("sdr", shape.version), applied=(None, applied))
 
 
 def _from_horizon(state: State) -> Problem:
@@ -278,8 +270,9 @@ def _observation(state: State, number: int, line: str) -> None:
         return
     if at != state.station and not _stands(state, number, at):
         return
+    raw = state.applied is False and state.prism is not None
     if sd:
-        state.said.add(state.applied)
+        state.said.add(state.applied or (False if raw else None))
     pointing = Pointing(
         line=number,
         at=at,
@@ -295,6 +288,7 @@ def _observation(state: State, number: int, line: str) -> None:
         prism_m=state.prism,
         time=state.time,
         code=line[state.shape.full("09") :].strip(),
+        raw=raw,
     )
     _keep(state, pointing, mean=origin == "MC")
 
