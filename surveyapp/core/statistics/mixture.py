@@ -70,7 +70,10 @@ class Mixture:
         )
 
     def half_width(self, beside: float = 0.0) -> float:
-        """Half-width in which .95 lies, beside an independent error of a variance ``beside``."""
+        """Half-width in which .95 lies, beside an independent error of a variance ``beside``.
+
+        ``beside`` in the square of the unit of the offsets [rad^2].
+        """
         if beside not in self._cache:
             self._cache[beside] = self._half_width(beside)
         return self._cache[beside]
@@ -130,11 +133,6 @@ def half_widths(weights: Floats, means: Floats, variance: Floats, dof: float) ->
             break
         guess = low + (high - low) * above / (above - under)
     return np.asarray(guess)
-
-
-def normal_cdf(z: Floats) -> Floats:
-    """Normal distribution function, error below 1e-7."""
-    return _normal(z)[0]
 
 
 def _normal(z: Floats) -> tuple[Floats, Floats]:
