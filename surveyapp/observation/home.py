@@ -184,7 +184,14 @@ def read_stations(text: str) -> tuple[NewStation, ...]:
     stations: list[NewStation] = []
     problems: list[Problem] = []
     for number, line in enumerate(text.splitlines(), start=1):
-        cells = _cells(line)
+        try:
+            cells = _cells(line)
+        except csv.Error as error:
+            place = said("stations, line {number}", number=number)
+            problems.append(
+                Problem(said("this is no station"), place, line.strip(), "", str(error))
+            )
+            continue
         if not cells:
             continue
         lowered = [cell.lower() for cell in cells]
