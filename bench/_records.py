@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from surveyapp.diagnosis import Case, Determination, TurningPoints
+from surveyapp.diagnosis import CampaignDetermination, Case, TurningPoints
 from surveyapp.diagnosis.subjects.campaign import campaign
 from surveyapp.diagnosis.subjects.reversal_run import reversal_run
 from surveyapp_models.angles import ARCSEC
@@ -213,7 +213,7 @@ def campaign_problem(truth: CampaignTruth, seed: int) -> tuple[Case, float]:
     observed = np.round(value + 4.8 * noise if truth.ar1 else value + sigma * noise, 1)
     stated = np.full(n, 4.8) if truth.ar1 else sigma
     made = [
-        Determination.at(
+        CampaignDetermination.at(
             float(observed[i]) * ARCSEC,
             sigma=float(stated[i]) * ARCSEC,
             elapsed_days=float(days[i]),

@@ -23,7 +23,7 @@ from surveyapp.diagnosis.action import POSITION, completed
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.later_visits import campaign_data
 from surveyapp.diagnosis.next_observation import advice
-from surveyapp.diagnosis.subjects.campaign import Determination, campaign
+from surveyapp.diagnosis.subjects.campaign import CampaignDetermination, campaign
 from surveyapp.domain.priors import DEFAULT_PRIORS
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
@@ -80,7 +80,7 @@ def _case(rows: list[dict[str, float]], truth: Truths) -> Case:
     theta = np.array([r["temperature_c"] for r in rows])
     y = np.asarray(truth(days, theta)) + np.array([r["error"] for r in rows])
     items = [
-        Determination.at(
+        CampaignDetermination.at(
             float(v) * ARCSEC,
             sigma=SIGMA * ARCSEC,
             elapsed_days=20000.0 + r["elapsed_days"],

@@ -11,7 +11,7 @@ from scipy.stats import binom
 
 from bench._records import Truth, problems
 from bench.operating_characteristics import evaluate
-from surveyapp.diagnosis import Case, Determination, TurningPoints
+from surveyapp.diagnosis import CampaignDetermination, Case, TurningPoints
 from surveyapp.diagnosis.candidates import all_candidates
 from surveyapp.diagnosis.compare import base_level, next_level, settled_count
 from surveyapp.diagnosis.engine import diagnose
@@ -111,7 +111,7 @@ def series(missing: bool) -> Case:
     unread = g.random(45) < 0.3
     return campaign(
         [
-            Determination.at(
+            CampaignDetermination.at(
                 float(v) * ARCSEC,
                 sigma=3.0 * ARCSEC,
                 elapsed_days=float(d),
@@ -155,7 +155,7 @@ def test_what_has_no_name_stays_in_the_sigma() -> None:
 def dated(values: list[float], days: list[float], sigma: float | None = None) -> Case:
     return campaign(
         [
-            Determination.at(
+            CampaignDetermination.at(
                 v * ARCSEC, sigma=None if sigma is None else sigma * ARCSEC, elapsed_days=d
             )
             for v, d in zip(values, days, strict=True)

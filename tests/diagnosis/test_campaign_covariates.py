@@ -14,7 +14,7 @@ from surveyapp.cli.main import main
 from surveyapp.core.orientation.circumstances import facts_of
 from surveyapp.core.prediction.average import Determinations, predict
 from surveyapp.diagnosis.engine import diagnose
-from surveyapp.diagnosis.subjects.campaign import Determination, campaign
+from surveyapp.diagnosis.subjects.campaign import CampaignDetermination, campaign
 from surveyapp.domain.priors import DEFAULT_PRIORS
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
@@ -33,7 +33,7 @@ def told(column: str, values: Floats | list[str], shift: Floats, seed: int = 1) 
     rng = np.random.default_rng(seed)
     y = shift + SIGMA * rng.standard_normal(N)
     items = [
-        Determination.at(
+        CampaignDetermination.at(
             float(y[i]) * ARCSEC,
             sigma=SIGMA * ARCSEC,
             elapsed_days=20000.0 + 3.0 * (i // 3) + 0.05 * (i % 3),

@@ -67,7 +67,10 @@ class Mixture:
         )
 
     def half_width(self, beside: float = 0.0) -> float:
-        """Half-width in which .95 lies, beside an independent error of a variance ``beside``."""
+        """Half-width in which .95 lies, beside an independent error of a variance ``beside``.
+
+        ``beside`` in the square of the unit of the offsets [rad^2].
+        """
         if beside not in self._cache:
             self._cache[beside] = self._half_width(beside)
         return self._cache[beside]
@@ -118,11 +121,6 @@ def half_widths(weights: Floats, means: Floats, variance: Floats, dof: float) ->
         enough = (weights * inside).sum(axis=1) >= PROBABILITY
         high, low = np.where(enough, middle, high), np.where(enough, low, middle)
     return np.asarray(0.5 * (low + high))
-
-
-def normal_cdf(z: Floats) -> Floats:
-    """Normal distribution function, error below 1e-7."""
-    return _normal(z)[0]
 
 
 def _normal(z: Floats) -> tuple[Floats, Floats]:

@@ -31,7 +31,7 @@ from surveyapp.diagnosis.candidates import Candidate, all_candidates
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.fits import Fit, Member, fit_members
 from surveyapp.diagnosis.run_value import value_of
-from surveyapp.diagnosis.subjects.campaign import Determination, campaign
+from surveyapp.diagnosis.subjects.campaign import CampaignDetermination, campaign
 from surveyapp.diagnosis.subjects.reversal_run import TurningPoints, reversal_run
 from surveyapp.domain.instrument import AdoptedEffect, InstrumentCard
 from surveyapp.domain.project import OrientationSession
@@ -162,7 +162,10 @@ def modelled_run(
     latitude: float | None,
     twist: TripodTwist | None = None,
 ) -> ModelledNorth:
-    """Observed north of a session with its adopted effects, before the tape-zero correction."""
+    """Observed north of a session with its adopted effects, before the tape-zero correction.
+
+    ``latitude`` [rad].
+    """
     problem = run_problem(session, card, latitude=latitude, twist=twist)
     fit = adopted_fit(problem, session.effects)
     value = value_of(problem, fit)
@@ -178,7 +181,7 @@ def modelled_run(
     )
 
 
-def determinations(orientation: Orientation, instrument: str) -> tuple[Determination, ...]:
+def determinations(orientation: Orientation, instrument: str) -> tuple[CampaignDetermination, ...]:
     """Every determination of the constant of one instrument, in order of time where it is known.
 
     The sigma is that of what belongs to one determination alone: centring, deflection and the
@@ -198,7 +201,7 @@ def determinations(orientation: Orientation, instrument: str) -> tuple[Determina
     return _in_time(found if found else _azimuths(orientation, instrument, by_key))
 
 
-def _in_time(items: Sequence[Determination]) -> tuple[Determination, ...]:
+def _in_time(items: Sequence[CampaignDetermination]) -> tuple[CampaignDetermination, ...]:
     """In order of time, whatever the order of the project's tables.
 
     Where every date is the same (or none is known) the sequence stands in for time.
@@ -218,9 +221,9 @@ def _azimuths(
     orientation: Orientation,
     instrument: str,
     by_key: dict[tuple[str, str], Circumstances],
-) -> list[Determination]:
+) -> list[CampaignDetermination]:
     """Repeated gyro azimuths of the most often observed line of an uncalibrated instrument."""
-    lines: dict[Name, list[Determination]] = {}
+    lines: dict[Name, list[CampaignDetermination]] = {}
     for item in orientation.sessions:
         if item.session.instrument != instrument:
             continue
@@ -237,7 +240,7 @@ def _azimuths(
             subject = Subject.session(item.session.id, target.target)
             own = target.gyro_azimuth
             members.append(_determination(-value, own, facts, subject, label=subject.id))
-    longest: list[Determination] = []
+    longest: list[CampaignDetermination] = []
     for members in lines.values():
         longest = members if len(members) > len(longest) else longest
     return longest
@@ -245,10 +248,10 @@ def _azimuths(
 
 def _determination(
     value: float, own: Uncertain, facts: Circumstances, subject: Subject, *, label: str
-) -> Determination:
+) -> CampaignDetermination:
     sigma = own.sigma
     stated = sigma if 0.0 < sigma < math.inf else None
-    return Determination(value, stated, facts, label, subject)
+    return CampaignDetermination(value, stated, facts, label, subject)
 
 
 def campaign_problem(
