@@ -142,7 +142,8 @@ def midpoint(truth: Truth, runs: int, g: np.random.Generator) -> Callable[[float
     period = g.uniform(0.3, 0.55, runs) * n
     phase = g.uniform(0.0, 2.0 * np.pi, runs)
     tau = g.uniform(2.0, 6.0, runs)
-    begin = g.uniform(2.0, n - 7.0, runs) if truth.pulse else np.zeros(runs)
+    latest = n - 7.0
+    begin = g.uniform(min(2.0, latest), max(2.0, latest), runs) if truth.pulse else np.zeros(runs)
     end = begin + g.uniform(3.0, 5.0, runs) if truth.pulse else begin
     walk = np.cumsum(truth.walk * g.standard_normal((runs, n + 3)), axis=1)
 

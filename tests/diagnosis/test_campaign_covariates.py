@@ -11,6 +11,7 @@ import pytest
 
 from surveyapp import api
 from surveyapp.cli.main import main
+from surveyapp.core.orientation.campaign_columns import SETTLED_H
 from surveyapp.core.orientation.circumstances import facts_of
 from surveyapp.core.prediction.average import Determinations, predict
 from surveyapp.diagnosis.engine import diagnose
@@ -127,4 +128,6 @@ def test_hours_since_transport_follow_from_the_stations(tmp_path: Path) -> None:
         if elsewhere:
             assert hours == pytest.approx(24.0 * (days[key] - max(elsewhere)))
             checked += 1
+        else:
+            assert hours == SETTLED_H
     assert checked > 5

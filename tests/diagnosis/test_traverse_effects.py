@@ -26,7 +26,7 @@ from surveyapp.domain.traverse import Network, Status
 from surveyapp.errors import SurveyError
 from tests.diagnosis.simulated_traverses import ARC, Undeclared, folder_text, simulated
 
-DRAWS = 2000
+DRAWS = 1000
 SIDES = np.array([110.0, 40, 150, 60, 25, 130, 80, 170, 35, 90, 145, 55, 120, 75])
 ALIKE = np.full(14, 100.0)
 UNEVEN = np.array([100.0] + [15.0, 400.0] * 6 + [100.0])

@@ -14,8 +14,10 @@ import numpy as np
 
 from surveyapp.core.checks.adopted_checks import occurrences
 from surveyapp.core.orientation.adopted import SOURCE
+from surveyapp.core.orientation.adopted_course import courses_of
 from surveyapp.core.orientation.campaign_columns import Name
 from surveyapp.core.orientation.circumstances import Circumstances, facts_of
+from surveyapp.core.orientation.set_ups import one_a_set_up
 from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.core.statistics.repeated import SHARED
 from surveyapp.core.swing.run_model import ModelledNorth
@@ -70,7 +72,7 @@ def run_problem(
     twist : TripodTwist or None
         Turning of the tripod that the sights tell: known and taken out as well.
     extra : tuple of Effect
-        The user's own.
+        The user's own; the courses that the session has adopted are tried in any case.
 
     Raises
     ------
@@ -95,6 +97,8 @@ def run_problem(
         math.nan if row.temperature_c is None else row.temperature_c for row in points.rows
     ]
     known = not all(math.isnan(value) for value in temperature)
+    own = {effect.id for effect in extra}
+    carried = tuple(item for item in courses_of(session.effects) if item.id not in own)
     return reversal_run(
         TurningPoints(
             readings=(points.origin + points.values).tolist(),
@@ -108,7 +112,7 @@ def run_problem(
             instrument=session.instrument,
             identity=session.id,
         ),
-        extra,
+        (*extra, *carried),
     )
 
 
@@ -186,16 +190,19 @@ def determinations(orientation: Orientation, instrument: str) -> tuple[CampaignD
 
     The sigma is that of what belongs to one determination alone: centring, deflection and the
     known azimuth are the line's own, and whether a line stands off is to be found, not assumed.
+    Several lines sighted from one set-up are one determination.
     """
     by_key = facts_of(orientation.sessions, instrument, orientation.positions)
     constant = next(c for c in orientation.constants if c.instrument.id == instrument)
     found = []
+    lines: dict[str, list[str]] = {}
     for calibration in constant.calibrations:
-        facts = by_key[calibration.session, calibration.target]
+        lines.setdefault(calibration.session, []).append(str(calibration.line))
+    for calibration, facts in one_a_set_up(constant.calibrations, by_key):
         own = calibration.value.without(
             *SHARED, said("run-to-run scatter"), said("{source} outside its range", source=SOURCE)
         )
-        label = f"{calibration.session} ({calibration.line})"
+        label = f"{calibration.session} ({' + '.join(lines[calibration.session])})"
         subject = Subject.session(calibration.session, calibration.target)
         found.append(_determination(calibration.value.value, own, facts, subject, label=label))
     return _in_time(found if found else _azimuths(orientation, instrument, by_key))
