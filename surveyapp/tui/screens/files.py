@@ -85,8 +85,8 @@ class FilesScreen(Screen[None], Generic[Understood]):
         yield TitleBar(self.title_text)
         with Horizontal(id="exchange"):
             yield OptionList(id="files", compact=True, markup=False)
-            pane = BlocksPane()
-            pane.id, pane.can_focus = "preview", False
+            pane = BlocksPane(can_focus=False)
+            pane.id = "preview"
             yield pane
         yield TextField(self.OPTIONS, "options", hint=self.HINT)
         yield KeyBar()

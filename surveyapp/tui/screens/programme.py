@@ -84,8 +84,7 @@ class ProgrammeScreen(Screen[None]):
 
     def compose(self) -> ComposeResult:
         """Title, steps and guide, the line, keys."""
-        title = self.desk.programme.title
-        yield TitleBar(texts.PROGRAMME_TITLE.format(run=self.desk.identity, title=title))
+        yield TitleBar(self.desk.programme.title)
         with Horizontal(id="programme"):
             yield OptionList(id="steps", compact=True)
             with VerticalScroll(id="guide", can_focus=False):

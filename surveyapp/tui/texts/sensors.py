@@ -106,7 +106,6 @@ RUN_NEW: Final = "(new)"
 RUN_STEPS: Final = "{done} of {count}"
 RUN_RECORDED: Final = "from a log"
 RUN_FACTS: Final = {"standard": "follows", "begun": "begun", "file": "file", "log": "log"}
-PROGRAMME_TITLE: Final = "{run}: {title}"
 PROGRAMME_MARKS: Final = {"open": " ", "here": ">", "done": "+", "short": "!"}
 PROGRAMME_LINE: Final = "line"
 PROGRAMME_NEXT: Final = "{part}: {title}"

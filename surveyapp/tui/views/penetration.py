@@ -36,12 +36,7 @@ def state_text(result: Prediction) -> str:
         limit = result.tolerance.lateral_m
         word = texts.MET if result.factor * sigma <= limit * (1.0 + 1e-12) else texts.NOT_MET
         allowed = texts.P_ALLOWED.format(limit=f"{limit:g}", word=word)
-    return texts.P_STATE.format(
-        factor=f"{result.factor:g}",
-        sigma=plain(sigma, 4),
-        value=plain(result.factor * sigma, 4),
-        allowed=allowed,
-    )
+    return texts.P_STATE.format(value=plain(result.factor * sigma, 4), allowed=allowed)
 
 
 def tried_text(trial: Trial, before: Prediction) -> str:

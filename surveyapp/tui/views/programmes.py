@@ -96,6 +96,7 @@ def guide_text(state: ProgrammeState, step: ProgrammeStep | None, *, width: int)
     _titled(text, texts.PROGRAMME_UNKNOWN, unknown, width)
     determined = _names(known.determined) if known.determined else texts.PROGRAMME_NOTHING
     _titled(text, texts.PROGRAMME_KNOWN, determined, width)
+    text.append(f"{texts.COL_RUN} {state.run.id}\n", style="dim")
     if state.warnings:
         _titled(text, texts.PROGRAMME_TOLD, "; ".join(state.warnings), width)
     return text

@@ -12,6 +12,7 @@ from surveyapp.core.observing.target import Target
 from surveyapp.observation.aim import Aim
 from surveyapp.report.numbers import plain, seconds
 from surveyapp.tui import texts
+from surveyapp.tui.cells import columns
 from surveyapp_models.angles import AngleUnit, format_angle
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 WIDTH = 54
 """Columns beside the steps in a terminal of 80."""
+RESIDUAL_WIDTH = 7
 NEAR_S = 10.0
 """A moment is near this long before and after it, longer where it is known less sharply."""
 
@@ -172,15 +174,17 @@ def time_difference_text(progress: Progress, shown: int = 4) -> str:
     return texts.TIME_DIFFERENCES.format(values=values) if values else ""
 
 
-def channel_lines(progress: Progress, shown: int) -> tuple[str, ...]:
-    """Residuals in the channels of midpoint and amplitude, the latest at the end."""
+def channel_lines(progress: Progress) -> tuple[str, ...]:
+    """Residuals in the channels of midpoint and amplitude, as many as fit, the latest last."""
     if not progress.midpoint:
         return ()
     labels = (texts.CHANNEL_MIDPOINT, texts.CHANNEL_AMPLITUDE)
     if progress.scale:
         labels = (texts.CHANNEL_MIDPOINT_DIV, texts.CHANNEL_AMPLITUDE_DIV)
+    shown = min(6, (WIDTH - 1 - max(map(columns, labels))) // RESIDUAL_WIDTH)
     return tuple(
-        f"{label} " + "".join(f"{residual_text(progress, v):>7}" for v in values[-shown:])
+        f"{label} "
+        + "".join(f"{residual_text(progress, v):>{RESIDUAL_WIDTH}}" for v in values[-shown:])
         for label, values in zip(labels, (progress.midpoint, progress.amplitude), strict=True)
     )
 

@@ -17,10 +17,12 @@ class BlocksPane(VerticalScroll):
     Parameters
     ----------
     empty : str
+    can_focus : bool
+        Whether the keys that move a text may come here.
     """
 
-    def __init__(self, *, empty: str = "") -> None:
-        super().__init__()
+    def __init__(self, *, empty: str = "", can_focus: bool = True) -> None:
+        super().__init__(can_focus=can_focus)
         self.empty = empty
         self.blocks: tuple[Block, ...] | None = None
 

@@ -9,7 +9,7 @@ from textual.widgets._footer import FooterKey
 
 from surveyapp.tui.cells import columns
 
-LAST = ("escape", "f1")
+LAST = ("escape", "f1", "q")
 """Keys that stay in the narrowest window."""
 
 

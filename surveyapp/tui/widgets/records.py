@@ -6,13 +6,13 @@ from collections.abc import Callable
 
 from rich.text import Text
 from textual.app import ComposeResult
-from textual.containers import Container, VerticalScroll
+from textual.containers import Container
 from textual.widgets import DataTable, Static
 
 from surveyapp.report.blocks import Block, KeyValues, Table
 from surveyapp.report.in_words import in_words
 from surveyapp.report.text import display_width
-from surveyapp.tui.views.blocks import blocks_as_text
+from surveyapp.tui.widgets.blocks_pane import BlocksPane
 
 CELL_SIDES = 2
 """Columns that the cell of a list has beside its text."""
@@ -57,8 +57,7 @@ class Records(Container):
     def compose(self) -> ComposeResult:
         """Table, details, and the sentence for an empty table."""
         yield DataTable[Text](cursor_type="row", zebra_stripes=True)
-        with VerticalScroll(can_focus=self.whole):
-            yield Static(markup=False)
+        yield BlocksPane(can_focus=self.whole)
         yield Static(self.empty, classes="empty", markup=False)
 
     def on_mount(self) -> None:
@@ -72,12 +71,10 @@ class Records(Container):
         self._fill(columns_in(self.table, self._room()))
 
     def on_resize(self) -> None:
-        """As many columns as there is room for, and details as wide."""
+        """As many columns as there is room for."""
         listed = columns_in(self.table, self._room())
         if listed != self.listed:
             self._fill(listed)
-        else:
-            self._tell(self.query_one(DataTable).cursor_row)
 
     def on_data_table_row_highlighted(self, event: DataTable.RowHighlighted) -> None:
         """Show the details of the row."""
@@ -108,22 +105,20 @@ class Records(Container):
     def _show_parts(self) -> None:
         rows = len(self.table.rows)
         self.query_one(DataTable).display = rows > 0
-        self.query_one(VerticalScroll).display = rows > 0 and self.whole
+        self.query_one(BlocksPane).display = rows > 0 and self.whole
         self.query_one(".empty").display = rows == 0
 
     def _tell(self, row: int) -> None:
         """The details of a row, what found no room in the list before them."""
         if not self.whole or not 0 <= row < len(self.table.rows):
             return
-        pane = self.query_one(VerticalScroll)
-        width = pane.scrollable_content_region.width
         first = 0 if self.details is None else self.listed
         cells = zip(self.table.head[first:], self.table.rows[row][first:], strict=True)
         pairs = tuple((head, cell) for head, cell in cells if cell)
         blocks: tuple[Block, ...] = (KeyValues(pairs),) if pairs else ()
         if self.details is not None:
             blocks += self.details(row)
-        pane.query_one(Static).update(blocks_as_text(blocks, width))
+        self.query_one(BlocksPane).show(blocks)
 
 
 def columns_in(table: Table, room: int) -> int:
