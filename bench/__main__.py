@@ -31,7 +31,7 @@ def main(names: list[str]) -> int:
             work = importlib.import_module(f"bench.{name}").run
             takes = "executor" in inspect.signature(work).parameters
             for line in work(executor=executor) if takes else work():
-                print(line)
+                print(line, flush=True)
     return 0
 
 

@@ -210,7 +210,12 @@ def row_of(name: str, quantity: str, item: Coverage, before: str = "", *, silent
     low = float(beta.ppf(0.025, held, size - held + 1))
     high = float(beta.ppf(0.975, held + 1, size - held)) if held < size else 1.0
     ratio = float(np.std(item.errors) / np.mean(item.sigmas))
-    note = f"; {silent / (size + silent):.1%} disagree" if silent else ""
+    note = ""
+    if silent:
+        tried = size + silent
+        few = float(beta.ppf(0.025, silent, tried - silent + 1))
+        many = float(beta.ppf(0.975, silent + 1, tried - silent))
+        note = f"; {silent / tried:.1%} ({few:.1%} to {many:.1%}) disagree"
     return (
         f"| {name} | {quantity} | {size} | {item.share:.3f} ({low:.3f} to {high:.3f}){note} | "
         f"{item.bias_in_sigma:+.2f} | {ratio:.2f} | {np.mean(item.sigmas):.2f} | "

@@ -1,8 +1,8 @@
 """Global test at 95 % after import: clean simulated closed traverses with fixed seeds.
 
 Readings, centring and heights are normal; centring and heights have the 1 mm that import assumes.
-The sigmas of readings are estimated from the file itself, so that few rounds make the test wider
-than its level says. The bounds are those of the binomial distribution at 99 %.
+The sigmas of readings are estimated from the file itself, with few degrees of freedom where there
+are few rounds: the test knows it. The bounds are those of the binomial distribution at 99 %.
 """
 
 from __future__ import annotations

@@ -2,13 +2,14 @@
 
 Every size runs in a process of its own, so that the memory is its own. Timed is the whole way: the
 file is read, approximate coordinates are found, everything is solved, and the result with all
-covariances, redundancies and standardized residuals is there.
+covariances, redundancies and standardized residuals is there. Each network is timed without
+approximate coordinates and with them (true ones with an error of ``APPROXIMATE_M``); a ratio is
+printed only where the peer has adjusted the same network (``_gama``).
 """
 
 from __future__ import annotations
 
 import math
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -18,6 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
+from bench import _gama
 from surveyapp.domain.observations import Observation, ObservationKind
 from surveyapp.domain.traverse import GyroConstant, Network, NetworkPoint, Status
 
@@ -28,6 +30,8 @@ SIZES = (1000, 10_000, 100_000)
 TARGETS = {1000: (0.3, None), 10_000: (2.0, 300.0), 100_000: (25.0, 2048.0)}
 """Seconds and megabytes that the issue asks for."""
 GAMA_SIZES = (1000, 3000)
+APPROXIMATE_M = 0.5
+"""Standard deviation of each approximate coordinate that is given."""
 
 
 def _ring(count: int, rng: np.random.Generator) -> tuple[np.ndarray, list[tuple[int, int]]]:
@@ -56,22 +60,25 @@ def _branched(count: int, rng: np.random.Generator) -> tuple[np.ndarray, list[tu
     return places, edges
 
 
-def network(count: int, *, branched: bool, seed: int = 1) -> Network:
-    """A traverse network with directions, distances and a gyro side every tenth leg."""
+def network(count: int, *, branched: bool, near: bool = False, seed: int = 1) -> Network:
+    """A traverse network with directions, distances and a gyro side every tenth leg.
+
+    ``near``: every new point has approximate coordinates.
+    """
     rng = np.random.default_rng(seed)
     places, edges = (_branched if branched else _ring)(count, rng)
     names = [f"P{i}" for i in range(count)]
-    near: list[list[int]] = [[] for _ in range(count)]
+    sighted: list[list[int]] = [[] for _ in range(count)]
     for a, b in edges:
-        near[a].append(b)
-        near[b].append(a)
+        sighted[a].append(b)
+        sighted[b].append(a)
 
     def azimuth(a: int, b: int) -> float:
         east, north = places[b] - places[a]
         return math.atan2(east, north)
 
     observations = []
-    for i, targets in enumerate(near):
+    for i, targets in enumerate(sighted):
         if len(targets) > 1:
             zero = rng.uniform(0.0, 2.0 * math.pi)
             for j in targets:
@@ -87,11 +94,12 @@ def network(count: int, *, branched: bool, seed: int = 1) -> Network:
             observations.append(
                 Observation(K.GYRO, names[a], names[b], value, 15 * ARC, constant="G")
             )
+    given = places + rng.normal(0.0, APPROXIMATE_M, places.shape)
     points = tuple(
-        NetworkPoint(n, float(p[0]), float(p[1]), None, Status.FIXED, Status.FIXED)
+        NetworkPoint(name, float(true[0]), float(true[1]), None, Status.FIXED, Status.FIXED)
         if i < 2
-        else NetworkPoint(n)
-        for i, (n, p) in enumerate(zip(names, places, strict=True))
+        else (NetworkPoint(name, float(about[0]), float(about[1])) if near else NetworkPoint(name))
+        for i, (name, true, about) in enumerate(zip(names, places, given, strict=True))
     )
     return Network(points, tuple(observations), constants=(GyroConstant("G", 0.0, 20 * ARC),))
 
@@ -108,7 +116,7 @@ def with_plain_azimuths(net: Network) -> Network:
 
 
 def _measure(count: int, shape: str, path: str) -> None:
-    """Run in a process of its own: prints seconds of both ways and the memory."""
+    """Run in a process of its own: prints seconds of both ways, memory, and what was found."""
     import resource
 
     from surveyapp.core.network import adjust
@@ -125,19 +133,25 @@ def _measure(count: int, shape: str, path: str) -> None:
     unsound = abs(sum(o.redundancy for o in result.observations) - result.dof)
     if unsound > 1e-4 * result.dof:
         raise RuntimeError(f"redundancies miss the degrees of freedom by {unsound:g}")
+    dof, sigma0 = result.dof, result.sigma0 or math.nan
     del read, result
     shared = network(count, branched=branched)
     start = time.perf_counter()
     adjust(shared)
     shared_s = time.perf_counter() - start
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
-    print(f"{reading} {file_s} {shared_s} {memory}")
+    print(f"{reading} {file_s} {shared_s} {memory} {dof} {sigma0}")
 
 
 def _write(count: int, shape: str, path: str) -> None:
     from surveyapp.io.exporters.gkf import write_gkf
 
-    write_gkf(with_plain_azimuths(network(count, branched=shape == "branched")), path)
+    near = Path(path).stem.endswith(NEAR)
+    net = network(count, branched=shape == "branched", near=near)
+    write_gkf(with_plain_azimuths(net), path)
+
+
+NEAR = "-near"
 
 
 def _child(*arguments: str) -> list[float]:
@@ -154,33 +168,22 @@ def _child(*arguments: str) -> list[float]:
     return [float(item) for item in run.stdout.split()]
 
 
-def _line(count: int, shape: str, folder: Path) -> str:
-    path = folder / f"{shape}-{count}.gkf"
+def line(count: int, shape: str, folder: Path, *, near: bool = False) -> str:
+    """One network: our times and memory, and what the peer answered."""
+    path = folder / f"{shape}-{count}{NEAR if near else ''}.gkf"
     _child("write", str(count), shape, str(path))
-    reading, file_s, shared_s, memory = _child("measure", str(count), shape, str(path))
+    reading, file_s, shared_s, memory, dof, sigma0 = _child("measure", str(count), shape, str(path))
     seconds, megabytes = TARGETS.get(count, (None, None))
     text = (
-        f"{shape:>8} {count:>7} points: {file_s:6.2f} s from file (reading {reading:.2f} s), "
-        f"{shared_s:6.2f} s with one gyro constant, {memory:5.0f} MB"
+        f"{shape:>8} {count:>7} points{', near' if near else '':6}: {file_s:6.2f} s from file "
+        f"(reading {reading:.2f} s), {shared_s:6.2f} s with one gyro constant, {memory:5.0f} MB"
     )
     if seconds is not None:
         limit = "" if megabytes is None else f", {megabytes:.0f} MB"
         text += f" (target {seconds} s{limit})"
-    return text + _gama(count, path, file_s)
-
-
-def _gama(count: int, path: Path, ours: float) -> str:
-    program = shutil.which("gama-local")
-    if program is None or count not in GAMA_SIZES:
-        return ""
-    start = time.perf_counter()
-    subprocess.run(
-        [program, str(path), "--cov-band", "0", "--xml", str(path.with_suffix(".out.xml"))],
-        capture_output=True,
-        check=False,
-    )
-    theirs = time.perf_counter() - start
-    return f"; gama-local {theirs:.2f} s, ratio {theirs / ours:.1f}"
+    if count in GAMA_SIZES and _gama.there():
+        text += _gama.compared(path, file_s, _gama.Expected(round(dof), sigma0))
+    return text
 
 
 def run() -> list[str]:
@@ -188,10 +191,11 @@ def run() -> list[str]:
     lines = []
     with tempfile.TemporaryDirectory() as folder:
         for shape in ("closed", "branched"):
-            sizes = sorted({*SIZES, *(GAMA_SIZES if shutil.which("gama-local") else ())})
-            lines += [_line(count, shape, Path(folder)) for count in sizes]
-    if shutil.which("gama-local") is None:
-        lines.append("gama-local is not on the PATH: no ratio")
+            for count in sorted({*SIZES, *(GAMA_SIZES if _gama.there() else ())}):
+                both = (False, True)
+                lines += [line(count, shape, Path(folder), near=near) for near in both]
+    if not _gama.there():
+        lines.append(f"{_gama.PROGRAM} is not on the PATH: no ratio")
     return lines
 
 

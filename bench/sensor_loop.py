@@ -1,7 +1,8 @@
 """The loop on compass and tilt logs: false alarms, names under noise that wanders, switch times.
 
-``SURVEYAPP_BENCH_RUNS`` records a line (200). AR(1): .95 from sample to sample, driven by .1 uT (.1
-arcsec); a walk of 6 uT (6 arcsec) from end to end, each axis by itself. Which is wrong: any name.
+``SURVEYAPP_BENCH_RUNS`` records a line (200); lines are kept in ``SURVEYAPP_BENCH_STORE``. AR(1):
+.95 from sample to sample, driven by .1 uT (.1 arcsec); a walk of 6 uT (6 arcsec) from end to end,
+each axis by itself. Which is wrong: any name.
 """
 
 from __future__ import annotations
@@ -9,10 +10,12 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from scipy.signal import lfilter
 
+from bench._stored import stored
 from surveyapp.core.simulate.sensors import simulate_compass, simulate_tilt
 from surveyapp.core.simulate.specification import Effect
 from surveyapp.diagnosis.sensors.diagnosis import SensorDiagnosis, diagnose_sensor
@@ -104,10 +107,18 @@ def switch_times(size: float, runs: int) -> tuple[float, float]:
 def run() -> Iterator[str]:
     """Every line."""
     for kind, attitude in (("compass", True), ("compass", False), ("tilt", True)):
-        shares = [named(kind, noise, RUNS, attitude=attitude) for noise in (white, ar1, walk)]
+        shares = [
+            stored(
+                f"sensor loop {kind} {noise.__name__}",
+                (RUNS, attitude),
+                partial(named, kind, noise, RUNS, attitude=attitude),
+            )
+            for noise in (white, ar1, walk)
+        ]
         told = "" if attitude else " without attitude"
         numbers = "white {:.3f}, AR(1) {:.3f}, walk {:.3f}".format(*shares)
         yield f"{kind}{told}, {RUNS} records: named in {numbers}"
     for size in (15.0, 6.0, 3.0):
-        share, within = switch_times(size, RUNS)
+        make = partial(switch_times, size, RUNS)
+        share, within = stored("sensor loop switch", (RUNS, size), make)
         yield f"switch of {size:g} uT: named {share:.3f}, times within 1 s {within:.3f}"

@@ -17,6 +17,7 @@ PAGE_MODULES: tuple[str, ...] = (
     "pages_api",
     "pages_campaign",
     "pages_cards",
+    "pages_catalogues",
     "pages_command_line",
     "pages_effects",
     "pages_estimators",

@@ -36,13 +36,13 @@ def import_file(
     Parameters
     ----------
     form : str
-        ``gsi`` | ``sdr`` | ``jobxml`` | ``csv`` | ``gyro-csv``.
+        One of ``surveyapp import --help``: ``gsi``, ``csv``, ``gyro-csv`` ...
     file, folder : path
         The file, and the project folder.
     traverse : str or None
         Name of the traverse and its book; the name of the file without it.
     instrument : str or None
-        ``gyro-csv``: id of the gyro.
+        Of azimuths of a gyro: its id.
     station_code : str or None
         ``gsi``: code of the blocks that open a station.
     columns, units : mapping or None
@@ -71,22 +71,24 @@ def import_file(
     SurveyError
         Every damaged line; a book of that name; whatever else is wrong. Nothing is written then.
     """
+    from surveyapp.io.importers.fieldfiles.catalogue import importer_of
     from surveyapp.io.importers.fieldfiles.gathering import ReadOptions
     from surveyapp.io.importing.gyro import plan_gyro
     from surveyapp.io.importing.traverse import ImportOptions, plan_traverse
     from surveyapp.io.importing.writing import write_additions
 
+    importer = importer_of(form)
     project = open_project(folder)
     read = ReadOptions(skip_damaged, station_code, columns or {}, units or {}, progress, lines)
     options = ImportOptions(traverse, tuple(fixed), sigma_angle_arcsec, sigma_distance, read)
-    if form == "gyro-csv":
-        if instrument is None:
-            raise SurveyError(
-                Problem("the gyro is not named", "--instrument", "", "the id of an instrument")
-            )
-        planned = plan_gyro(project, Path(file), options, instrument)
-    else:
+    if importer.azimuths is None:
         planned = plan_traverse(project, form, Path(file), options)
+    elif instrument is None:
+        raise SurveyError(
+            Problem("the gyro is not named", "instrument", "", "the id of an instrument")
+        )
+    else:
+        planned = plan_gyro(project, form, Path(file), options, instrument=instrument)
     if preview:
         return planned.result
     write_additions(Path(folder), planned.additions)
@@ -109,7 +111,7 @@ def export_survey(
     Parameters
     ----------
     form : str
-        ``gsi`` | ``sdr`` | ``starnet`` | ``dxf`` | ``landxml`` | ``kml`` | ``geojson``.
+        One of ``surveyapp export --help`` that holds a survey: ``gsi``, ``landxml``, ``kml`` ...
     folder, output : path
         The project, and the file to be written.
     now : callable
@@ -131,13 +133,13 @@ def export_survey(
     from surveyapp.io.outputs import write_output
     from surveyapp.workflows.exporting import exported_survey
 
-    exporter = next((item for item in EXPORTERS if item.id == form), None)
-    if exporter is None:
-        hint = nearest_names(form, [item.id for item in EXPORTERS])
+    writers = {item.id: item.write for item in EXPORTERS if item.write is not None}
+    if form not in writers:
+        hint = nearest_names(form, writers)
         raise SurveyError(Problem("there is no such format", "export", form, "", hint))
     project = open_project(folder)
     survey = exported_survey(project, network(project) if project.traverses else None)
-    written = exporter.write(survey, Stamp(SOFTWARE, now()))
+    written = writers[form](survey, Stamp(SOFTWARE, now()))
     data = written.text.encode("utf-8")
     write_output(Path(output), data)
     warnings = (*survey.warnings, *written.warnings)

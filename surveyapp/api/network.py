@@ -46,10 +46,13 @@ def adjust_network(network: Network, *, family_level: float = 0.05) -> Adjustmen
     from numpy.linalg import LinAlgError
 
     from surveyapp.core.network import adjust as adjusted
-    from surveyapp.core.network.removals import with_removals
+    from surveyapp.core.network.gaussnewton import UnsettledError
+    from surveyapp.core.network.removals import unsettled, with_removals
 
     try:
         return with_removals(network, adjusted(network, family_level=family_level))
+    except UnsettledError as error:
+        raise unsettled(network, error) from None
     except (LinAlgError, OverflowError, FloatingPointError, ZeroDivisionError) as error:
         raise SurveyError(
             Problem(

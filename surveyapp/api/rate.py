@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
@@ -235,7 +236,9 @@ def motion(
     SurveyError
         For input that cannot be used.
     """
+    from surveyapp.workflows.adopted_effects import not_taken_out
     from surveyapp.workflows.motion import find_motion
 
     opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
-    return find_motion(opened.file, options or {}, progress=progress)
+    found = find_motion(opened.file, options or {}, progress=progress)
+    return replace(found, warnings=(*found.warnings, *not_taken_out(opened.entry)))

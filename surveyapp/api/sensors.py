@@ -348,7 +348,7 @@ def compensate(
     if declination is not None:
         value, sigma = declination_of(declination)
         added = Declination(math.radians(value), None if sigma is None else math.radians(sigma))
-    found, record, used = compensate_log(
+    parts, record, used = compensate_log(
         kind,
         opened.file,
         Path(card),
@@ -358,5 +358,5 @@ def compensate(
         progress=progress,
     )
     return write_compensated(
-        found, record, used, kind=kind, card_path=os.fspath(card), out=Path(out)
+        parts, record, used, kind=kind, card_path=os.fspath(card), out=Path(out)
     )

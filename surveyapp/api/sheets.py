@@ -11,6 +11,17 @@ from surveyapp.errors import SurveyError
 from surveyapp.report.written import SheetsResult
 
 
+def _file_part(identity: str, taken: set[str]) -> str:
+    """Part of a file name, each of its own also where capitals do not count."""
+    base = "".join(c if c.isalnum() or c in "-_." else "_" for c in identity)
+    name, number = base, 1
+    while name.casefold() in taken:
+        number += 1
+        name = f"{base}-{number}"
+    taken.add(name.casefold())
+    return name
+
+
 def write_sheets(source: Source, output: Folder) -> SheetsResult:
     """Write the sheets of a project beside a record, as CSV and as HTML.
 
@@ -45,8 +56,9 @@ def write_sheets(source: Source, output: Folder) -> SheetsResult:
         sheets.append(traverse_sheet(traverse.name, result, unit))
     paths = []
     base = Path(output)
+    taken: set[str] = set()
     for sheet in sheets:
-        name = "".join(c if c.isalnum() or c in "-_." else "_" for c in sheet.id)
+        name = _file_part(sheet.id, taken)
         page = sheet_html(sheet, project=found.project.name, software=SOFTWARE)
         for ending, text in ((".csv", sheet_csv(sheet)), (".html", page)):
             path = base.with_name(f"{base.stem}-{name}{ending}")

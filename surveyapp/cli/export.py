@@ -4,21 +4,12 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Final
 
 from surveyapp.cli.output import paragraph, print_json
 from surveyapp.domain.filing import ExportResult
 
 TABLES: Final = ("lines", "sessions", "constants", "checks", "all")
-
-
-@dataclass(frozen=True, slots=True)
-class Format:
-    """One format: what it is, and what writes it."""
-
-    summary: str
-    write: Callable[[argparse.Namespace], ExportResult]
 
 
 def _zip(options: argparse.Namespace) -> ExportResult:
@@ -51,26 +42,22 @@ def _survey(options: argparse.Namespace) -> ExportResult:
     return api.export_survey(options.format, options.folder, options.file)
 
 
-FORMATS: Final[Mapping[str, Format]] = {
-    "csv": Format("results as a table", _csv),
-    "gkf": Format("traverses as a GNU Gama network", _gkf),
-    "json": Format("result with cards, rule book and hashes, for a later compare", _json),
-    "gsi": Format("points as Leica GSI-16", _survey),
-    "sdr": Format("points as Sokkia SDR33", _survey),
-    "starnet": Format("points and observations as STAR*NET input", _survey),
-    "dxf": Format("a drawing, DXF R12", _survey),
-    "landxml": Format("points as LandXML 1.2", _survey),
-    "kml": Format("stations and lines for maps", _survey),
-    "geojson": Format("stations and lines for maps", _survey),
-    "zip": Format("the whole project for hand-over", _zip),
+OTHERS: Final[Mapping[str, Callable[[argparse.Namespace], ExportResult]]] = {
+    "csv": _csv,
+    "gkf": _gkf,
+    "json": _json,
+    "zip": _zip,
 }
-"""Formats by name."""
+"""What is no survey: the catalogue of the exporters has an entry without a writer for each."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    listing = "; ".join(f"{name}: {item.summary}" for name, item in FORMATS.items())
-    parser.add_argument("format", metavar="FORMAT", choices=FORMATS, help=listing)
+    from surveyapp.io.exporters.catalogue import EXPORTERS
+
+    names = [item.id for item in EXPORTERS]
+    listing = "; ".join(f"{item.id}: {item.title}" for item in EXPORTERS)
+    parser.add_argument("format", metavar="FORMAT", choices=names, help=listing)
     parser.add_argument("folder", metavar="DIR", help="project folder")
     parser.add_argument("file", metavar="FILE", help="file to be written")
     parser.add_argument("--table", choices=TABLES, default="lines", help="csv: which table")
@@ -82,7 +69,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Export and say what was written."""
-    result = FORMATS[options.format].write(options)
+    result = OTHERS.get(options.format, _survey)(options)
     if options.json:
         print_json(result.to_dict())
     else:

@@ -11,22 +11,16 @@ from surveyapp.cli.output import heading, number, paragraph, print_json, table
 from surveyapp.domain.fieldfile import ImportResult
 from surveyapp.errors import Problem, SurveyError
 
-FORMATS: Final = {
-    "gsi": "Leica GSI-8 and GSI-16",
-    "sdr": "Sokkia SDR33 and SDR20",
-    "jobxml": "Trimble JobXML",
-    "csv": "a table of pointings, its columns told by --map and --unit",
-    "gyro-csv": "a table of azimuths of an automatic gyro, told by --map and --unit",
-}
-"""Formats and what they are."""
-
 _MOST_SETS: Final = 20
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    listing = "; ".join(f"{name}: {text}" for name, text in FORMATS.items())
-    parser.add_argument("format", metavar="FORMAT", choices=FORMATS, help=listing)
+    from surveyapp.io.importers.fieldfiles.catalogue import IMPORTERS
+
+    names = [item.id for item in IMPORTERS]
+    listing = "; ".join(f"{item.id}: {item.title}" for item in IMPORTERS)
+    parser.add_argument("format", metavar="FORMAT", choices=names, help=listing)
     parser.add_argument("file", metavar="FILE", help="the field file")
     parser.add_argument("folder", metavar="DIR", help="project folder")
     parser.add_argument("--traverse", metavar="NAME", help="name of traverse and book")

@@ -66,6 +66,9 @@ COMMANDS: tuple[Command, ...] = (
         "Allan deviation and noise coefficients of a sensor log",
         waits=False,
     ),
+    Command(
+        "programme", "programme", "a guided calibration, step by step, to its card", waits=False
+    ),
     Command("compensate", "compensate", "a sensor card applied to a log", waits=False),
     Command(
         "filter",

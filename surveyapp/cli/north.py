@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import argparse
+from typing import TYPE_CHECKING
 
 from surveyapp.cli.output import heading, paragraph, print_json, table
 from surveyapp.cli.sensor_options import add_log_arguments, log_options, progress_bar, shown
+from surveyapp.domain.calibration import names_by_reason
 from surveyapp.errors import Problem, SurveyError
+
+if TYPE_CHECKING:
+    from surveyapp.domain.north import NorthResult
 
 NUMBERS = (
     ("--latitude", "DEG", "of the place"),
@@ -75,6 +80,12 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print_json(result.to_dict())
         return 0 if result.met else 1
+    print_north(result)
+    return 0 if result.met else 1
+
+
+def print_north(result: NorthResult) -> None:
+    """The direction with its interval, the parameters and the warnings."""
     print(heading(f"{result.source}: north by {result.method}, {result.n} rows"))
     direction = result.direction
     what = "circle reading of north" if result.key == "gyro_north" else "heading"
@@ -84,13 +95,17 @@ def run(options: argparse.Namespace) -> int:
         f"95 % interval +- {shown(direction.interval95_arcsec)} arcsec"
     )
     print()
-    rows = [[p.name, shown(p.value), shown(p.sigma), p.unit] for p in result.parameters]
-    print(table(["parameter", "value", "sigma", "unit"], rows))
-    if result.undetermined:
-        print(paragraph(f"not determined: {', '.join(result.undetermined)}"))
+    cells = [[p.name, shown(p.value), shown(p.sigma), p.unit] for p in result.parameters]
+    print(table(["parameter", "value", "sigma", "unit"], cells))
+    told: set[str] = set()
+    for reason, own_names in names_by_reason(result.parameters).items():
+        told |= set(own_names)
+        print(paragraph(f"not determined: {', '.join(own_names)}: {reason}"))
+    open_names = [name for name in result.undetermined if name not in told]
+    if open_names:
+        print(paragraph(f"not determined: {', '.join(open_names)}"))
     for warning in result.warnings:
         print(paragraph(f"{warning.code}: {warning.text}"))
-    return 0 if result.met else 1
 
 
 def _plan(options: argparse.Namespace) -> int:

@@ -173,8 +173,8 @@ def _print_geometry(result: Calibration) -> None:
     if geometry.condition is not None:
         parts.append(f"condition {geometry.condition:.3g}")
     print(paragraph(", ".join(parts)))
-    if geometry.undetermined:
-        print(paragraph(f"not determined: {', '.join(geometry.undetermined)}"))
+    for why, names in result.empty.items():
+        print(paragraph(f"no value, {why}: {', '.join(names)}"))
 
 
 def shown(value: Any) -> str:

@@ -47,6 +47,20 @@ class Source:
     detail: str = ""
     weight_ratio: float = 1.0
     pool: str = ""
+    _hash: int = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        key = (self.name, self.entity, self.dof, self.detail, self.weight_ratio, self.pool)
+        object.__setattr__(self, "_hash", hash(key))
+
+    def __hash__(self) -> int:
+        """Computed once: a line is summed over thousands of sources."""
+        return self._hash
+
+    def __reduce__(self) -> tuple[type[Source], tuple[str | float, ...]]:
+        """Made anew where it is unpickled: every process hashes texts in its own way."""
+        own = (self.name, self.entity, self.dof, self.detail, self.weight_ratio, self.pool)
+        return Source, own
 
 
 @dataclass(frozen=True, slots=True)

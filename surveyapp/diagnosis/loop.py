@@ -30,6 +30,7 @@ from surveyapp.diagnosis.fits import Fit, fit_members, with_noise
 from surveyapp.diagnosis.gate import GATE, Gate, open_gate
 from surveyapp.diagnosis.held_out import confirm_rms, flagged, leave_one_out, unforetold
 from surveyapp.diagnosis.run_value import plausible
+from surveyapp.diagnosis.wandering import imitates, refuted
 from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
@@ -138,6 +139,7 @@ def search(problem: Case, *, draws: int, confirm: Case | None) -> Search:
         return Search(tuple(levels), tuple(gates), (), (), (), implausible, base, base, pool)
     near = within_margin(last)
     chosen = _chosen(last, near) or base
+    near = tuple(f for f in near if f is chosen or not refuted(problem, chosen, f))
     names = _names(problem, levels, near, confirmed=confirm is not None)
     proofs = Proofs(current, draws, confirm)
     adopted, refused, after = _proved(problem, chosen, names, base, proofs=proofs)
@@ -361,7 +363,11 @@ def along(fit: Fit, column: Floats) -> tuple[float, float] | None:
 
 def imitating_noise(problem: Case, after: Fit, without: Fit) -> str | None:
     """Kind of noise that explains the record without an effect nearly as well, else None."""
-    rivals = [fit for fit in with_noise(problem, without) if fit.bic < after.bic + NOISE_MARGIN]
+    rivals = [
+        fit
+        for fit in with_noise(problem, without)
+        if imitates(problem, after, fit, margin=NOISE_MARGIN)
+    ]
     best = min(rivals, key=lambda fit: fit.bic, default=None)
     return None if best is None or best.noise is None else best.noise.kind
 

@@ -7,16 +7,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from surveyapp.core.sensors.rate.hand_held import (
-    ForceModel,
-    HeldStop,
-    fit_rates,
-    turn_rows,
-)
+from surveyapp.core.sensors.rate.hand_forces import ForceModel
+from surveyapp.core.sensors.rate.hand_held import HeldStop, fit_rates, turn_rows
+from surveyapp.core.sensors.rate.hand_parameters import LEAST_TURNS
 from surveyapp.core.sensors.rate.held_turns import ACCELEROMETERS, rest_rates, turns_between
 from surveyapp.core.sensors.rate.multi_position_log import (
     LEAST_STOPS,
-    LEAST_TURNS,
     MultiPositionOptions,
     force_model,
     held_stops,

@@ -6,13 +6,26 @@ does not determine has no value, and its name stands in the geometry.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any, Final, Literal
 
 from surveyapp.domain.project import ResultWarning
+from surveyapp.languages import said
 
 CALIBRATE_SCHEMA: Final = "surveyapp.calibrate/1"
+
+REASONS: Final[dict[str, str]] = {
+    "refused": said("the record does not determine the result"),
+    "not_determined": said("the record does not determine it"),
+    "sigma_above_2_uT": said("its sigma is more than 2 uT"),
+    "test_absent": said("its test is not in the log"),
+    "no_scale": said("the static test over +-90 degrees, which gives the scale, is not in the log"),
+    "too_few_rows": said("its test has too few rows"),
+    "no_temperature": said("the temperature is not recorded or does not vary"),
+    "attitude": said("the attitudes do not determine it"),
+}
+"""Why a parameter has no value."""
 
 GeometryVerdict = Literal["good", "restricted", "refused"]
 
@@ -29,16 +42,49 @@ class SensorParameter:
     sigma : float or None
         Standard deviation; None where it is not determined or nothing was estimated.
     unit : str
+    reason : str or None
+        Why there is no value: a key of ``REASONS``, or words that hold numbers of the record.
     """
 
     name: str
     value: float | None
     sigma: float | None
     unit: str
+    reason: str | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""
-        return {"name": self.name, "value": self.value, "sigma": self.sigma, "unit": self.unit}
+        return {
+            "name": self.name,
+            "value": self.value,
+            "sigma": self.sigma,
+            "unit": self.unit,
+            "reason": self.reason,
+        }
+
+
+def in_words(reason: str) -> str:
+    """A reason as it is shown."""
+    return REASONS.get(reason, reason)
+
+
+def with_reasons(
+    parameters: Iterable[SensorParameter], why: Callable[[str], str]
+) -> tuple[SensorParameter, ...]:
+    """The parameters; one without a value and without a reason gets the one of its name."""
+    return tuple(
+        p if p.value is not None or p.reason else replace(p, reason=why(p.name)) for p in parameters
+    )
+
+
+def names_by_reason(parameters: Iterable[SensorParameter]) -> dict[str, tuple[str, ...]]:
+    """Reason in words to the names of the parameters that have no value for it."""
+    found: dict[str, tuple[str, ...]] = {}
+    for item in parameters:
+        if item.value is None and item.reason:
+            why = in_words(item.reason)
+            found[why] = (*found.get(why, ()), item.name)
+    return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,6 +234,20 @@ class Calibration:
     temperature_c: tuple[float, float] | None = None
     constants: Mapping[str, float] = field(default_factory=dict)
     notes: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """No parameter without a value is without a reason."""
+        usual = "refused" if self.geometry.verdict == "refused" else "not_determined"
+        told = tuple(
+            replace(item, reason=usual) if item.value is None and item.reason is None else item
+            for item in self.parameters
+        )
+        object.__setattr__(self, "parameters", told)
+
+    @property
+    def empty(self) -> dict[str, tuple[str, ...]]:
+        """Parameters without a value, by the reason in words."""
+        return names_by_reason(self.parameters)
 
     def value(self, name: str) -> float | None:
         """Value of a parameter, None if it is not determined.

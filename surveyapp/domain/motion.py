@@ -75,8 +75,8 @@ class Path:
         East, north, up of the end; from the beginning where none is stated.
     sides_m : tuple of float
         Straight distances between successive stops.
-    points : tuple of (distance, east, north, sigma_e, sigma_n)
-        In steps of half a metre [m].
+    points : tuple of (distance, east, north, sigma_e, sigma_n, covariance_en)
+        In steps of half a metre [m], the covariance of east and north [m2].
     length_m : float
     """
 
@@ -84,12 +84,12 @@ class Path:
     closure_m: float | None
     end_m: tuple[float, ...]
     sides_m: tuple[float, ...]
-    points: tuple[tuple[float, float, float, float, float], ...]
+    points: tuple[tuple[float, float, float, float, float, float], ...]
     length_m: float
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""
-        names = ("distance_m", "e", "n", "sigma_e_m", "sigma_n_m")
+        names = ("distance_m", "e", "n", "sigma_e_m", "sigma_n_m", "covariance_en_m2")
         return {
             "mode": self.mode,
             "closure_m": self.closure_m,

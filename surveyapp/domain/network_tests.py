@@ -41,7 +41,7 @@ class LeftOut:
 
 @dataclass(frozen=True, slots=True)
 class Removal:
-    """What the adjustment says without one observation.
+    """What the adjustment says without one observation, or without some of one cause.
 
     Parameters
     ----------
@@ -57,6 +57,8 @@ class Removal:
         Global test without it.
     suspects : int
         How many observations are suspected then.
+    left_out : int
+        Observations that are left out together.
     """
 
     place: int
@@ -66,11 +68,13 @@ class Removal:
     ratio: float | None
     passed: bool | None
     suspects: int
+    left_out: int = 1
 
     def to_dict(self) -> dict[str, object]:
         """Keys of the JSON."""
         return {
             "observation": self.description,
+            "left_out": self.left_out,
             "standardized": self.standardized,
             "sum_of_squares": self.sum_of_squares,
             "ratio": self.ratio,
@@ -81,7 +85,7 @@ class Removal:
 
 @dataclass(frozen=True, slots=True)
 class GlobalTest:
-    """Chi-square test of the a-priori sigma0, two-sided.
+    """Test of the a-priori sigma0, two-sided: chi-square, or F where sigmas were estimated.
 
     Parameters
     ----------
@@ -94,6 +98,8 @@ class GlobalTest:
         Bounds of the ratio.
     probability : float
     passed : bool or None
+    sigma_dof : float or None
+        Degrees of freedom of the sigmas themselves; None where they are known beforehand.
     """
 
     sum_of_squares: float
@@ -103,6 +109,7 @@ class GlobalTest:
     upper: float | None
     probability: float
     passed: bool | None
+    sigma_dof: float | None = None
 
     def to_dict(self) -> dict[str, object]:
         """Keys of the JSON."""

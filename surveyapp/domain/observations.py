@@ -35,27 +35,92 @@ class ObservationKind(StrEnum):
     VECTOR_H = "vector_h"
 
 
-ANGULAR = frozenset(
-    {
-        ObservationKind.ANGLE,
-        ObservationKind.DIRECTION,
-        ObservationKind.ZENITH,
-        ObservationKind.AZIMUTH,
-        ObservationKind.GYRO,
+@dataclass(frozen=True, slots=True)
+class KindOfObservation:
+    """What a kind of observation is.
+
+    Parameters
+    ----------
+    kind : ObservationKind
+    title : str
+        In the trade's words.
+    angular : bool
+        Value, sigma and residual in radians; else in metres.
+    single_point : bool
+        Without a target.
+    positive : bool
+        A value of zero or below is impossible.
+    book : str
+        What a row of a traverse book holds for it: ``value``; ``none`` where the value comes from
+        elsewhere; empty where no row may have this kind.
+    """
+
+    kind: ObservationKind
+    title: str
+    angular: bool = False
+    single_point: bool = False
+    positive: bool = False
+    book: str = ""
+
+
+KINDS: tuple[KindOfObservation, ...] = (
+    KindOfObservation(
+        ObservationKind.ANGLE, "angle from the back to the fore sight", angular=True, book="value"
+    ),
+    KindOfObservation(ObservationKind.DIRECTION, "direction of a set", angular=True, book="value"),
+    KindOfObservation(ObservationKind.DISTANCE, "horizontal distance", positive=True, book="value"),
+    KindOfObservation(
+        ObservationKind.SLOPE_DISTANCE, "slope distance", positive=True, book="value"
+    ),
+    KindOfObservation(ObservationKind.ZENITH, "zenith angle", angular=True, book="value"),
+    KindOfObservation(
+        ObservationKind.HEIGHT_DIFFERENCE, "height difference, to minus at", book="value"
+    ),
+    KindOfObservation(ObservationKind.AZIMUTH, "known grid azimuth", angular=True, book="value"),
+    KindOfObservation(
+        ObservationKind.GYRO, "gyro azimuth of a session of this project", angular=True, book="none"
+    ),
+    KindOfObservation(
         ObservationKind.GYRO_CONSTANT,
-    }
+        "instrument constant known beforehand",
+        angular=True,
+        single_point=True,
+    ),
+    KindOfObservation(ObservationKind.COORDINATE_E, "observed east", single_point=True),
+    KindOfObservation(ObservationKind.COORDINATE_N, "observed north", single_point=True),
+    KindOfObservation(ObservationKind.COORDINATE_H, "observed height", single_point=True),
+    KindOfObservation(ObservationKind.VECTOR_E, "east of a vector"),
+    KindOfObservation(ObservationKind.VECTOR_N, "north of a vector"),
+    KindOfObservation(ObservationKind.VECTOR_H, "height of a vector"),
 )
+"""Every kind once; its equation stands in ``core.network.linearise``."""
+
+ANGULAR = frozenset(item.kind for item in KINDS if item.angular)
 """Kinds whose value, sigma and residual are in radians; the others are in metres."""
 
-SINGLE_POINT = frozenset(
-    {
-        ObservationKind.GYRO_CONSTANT,
-        ObservationKind.COORDINATE_E,
-        ObservationKind.COORDINATE_N,
-        ObservationKind.COORDINATE_H,
-    }
-)
+SINGLE_POINT = frozenset(item.kind for item in KINDS if item.single_point)
 """Kinds without a target."""
+
+_POSITIVE = frozenset(item.kind for item in KINDS if item.positive)
+
+
+@dataclass(frozen=True, slots=True)
+class EstimatedSigma:
+    """That part of an observation's variance which somebody estimated from a few readings.
+
+    Parameters
+    ----------
+    name : str
+        Observations of one name share the estimate, and so its error.
+    variance : float
+        [rad^2] or [m^2].
+    dof : float
+        Degrees of freedom of the estimate, above 0.
+    """
+
+    name: str
+    variance: float
+    dof: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +156,8 @@ class Observation:
         Length of the levelled section of a height difference [m]; None where nobody says.
     line : int
         Line of the file, 0 = unknown.
+    estimated : EstimatedSigma or None
+        What of its variance is an estimate; None where the sigma is known beforehand.
 
     Raises
     ------
@@ -114,6 +181,7 @@ class Observation:
     extern: str = ""
     line: int = 0
     length_m: float | None = None
+    estimated: EstimatedSigma | None = None
 
     def __post_init__(self) -> None:
         if (
@@ -138,9 +206,6 @@ class Observation:
         place = f"line {self.line}, " if self.line else ""
         sight = "-".join(name for name in (self.back, self.at, self.to) if name)
         return f"{place}{self.kind} {sight}"
-
-
-_POSITIVE = frozenset({ObservationKind.DISTANCE, ObservationKind.SLOPE_DISTANCE})
 
 
 def _observation_problems(obs: Observation) -> list[Problem]:

@@ -7,7 +7,7 @@ meaning of every column stand in one table here; ``io.sensor_logs`` reads files 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
@@ -136,6 +136,23 @@ class SensorLog:
         for name, values in self.columns.items():
             if values.shape != (self.size,):
                 raise ValueError(f"column {name} has shape {values.shape}, not ({self.size},)")
+
+    def rows(self, part: slice) -> SensorLog:
+        """Some of its rows, evenly spaced; views, nothing is copied."""
+        columns = {name: values[part] for name, values in self.columns.items()}
+        texts = {name: words[part] for name, words in self.texts.items()}
+        size = len(range(*part.indices(self.size)))
+        rate = None if self.rate_hz is None else self.rate_hz / (part.step or 1)
+        return replace(self, columns=columns, texts=texts, size=size, rate_hz=rate)
+
+    def thinned(self, most: int) -> SensorLog:
+        """Every k-th row, so that at most so many are left; a warning tells it."""
+        every = -(-self.size // most)
+        if every <= 1:
+            return self
+        text = f"{self.size} rows: every {every}th is used"
+        warnings = (*self.warnings, ResultWarning("thinned", text))
+        return replace(self.rows(slice(None, None, every)), warnings=warnings)
 
     def has(self, *names: str) -> bool:
         """Whether every one of these columns is there."""

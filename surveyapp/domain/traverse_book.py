@@ -64,6 +64,9 @@ class Traverse:
         Whether the instrument has corrected the distances; None where nobody says.
     height_m : tuple of float
         Standard deviations of instrument and target height, which a set-up's rounds share [m].
+    sigma_dof : tuple of (str, float)
+        Degrees of freedom of sigmas that were estimated: ``angle``, ``zenith``, ``distance``, and
+        ``circles`` where one estimate stands for angles and zenith angles.
     rows : tuple of TraverseRow
         Of its book, every station known.
     """
@@ -80,6 +83,7 @@ class Traverse:
     constant_applied: bool | None = None
     height_m: tuple[float, float] = (0.0, 0.0)
     sigma_zenith: float | None = None
+    sigma_dof: tuple[tuple[str, float], ...] = ()
     rows: tuple[TraverseRow, ...] = ()
 
     @property

@@ -38,7 +38,7 @@ from surveyapp.io.project_tables import (
 from surveyapp.io.rulebooks import read_rule_book
 from surveyapp.io.sensor_logs.tables import read_sensor_logs
 from surveyapp.io.session_books import read_sessions
-from surveyapp.io.session_sensors import with_sensors
+from surveyapp.io.session_sensors import with_declinations, with_sensors
 from surveyapp.io.shafts.table import read_shaft_tables
 from surveyapp.io.tables import Findings, Table, parse_toml
 from surveyapp.io.traverse.book import read_traverses
@@ -220,9 +220,7 @@ def _read_tables(top: _Top, repair: bool | None) -> Project:
     crs = table.text("crs", multiline=True)
     refuse_two_convergences(stations, sessions, files.findings)
     sensor_logs = read_sensor_logs(table, top.lines.get("sensor_log", ()))
-    sessions = with_sensors(
-        sessions, orientations, files, sensor_logs, unit=unit, stations=stations
-    )
+    sessions = with_sensors(sessions, orientations, files, sensor_logs, unit=unit)
     stations, length = with_regional_deflection(table, stations)
     project = Project(
         name=table.text("name") or files.path.resolve().name,
@@ -247,7 +245,7 @@ def _read_tables(top: _Top, repair: bool | None) -> Project:
     )
     table.get("note")
     table.warn_unknown()
-    return project
+    return with_declinations(project, files.findings)
 
 
 def _rules(top: _Top) -> tuple[str | None, RuleBook | None]:

@@ -11,10 +11,13 @@ from typing import Final
 
 import numpy as np
 
+from surveyapp.core.geodesy.mine import grid_of
+from surveyapp.core.geodesy.position import position_of
+from surveyapp.core.sensors.adopted_effects import without_events
 from surveyapp.core.sensors.compensation import compensate_compass, compensate_tilt
 from surveyapp.core.sensors.declination import model_declination
 from surveyapp.core.swing.levelling import ASIDE
-from surveyapp.domain.project import OrientationSession, ResultWarning, Station
+from surveyapp.domain.project import OrientationSession, Project, ResultWarning, Station
 from surveyapp.domain.readings import FieldBook, Reading, ReadingKind
 from surveyapp.domain.sensor_card import SensorCard
 from surveyapp.domain.sensor_entry import SensorLogEntry
@@ -26,7 +29,7 @@ from surveyapp.io.project_files import ProjectFiles, inside
 from surveyapp.io.sensor_cards import read_sensor_card
 from surveyapp.io.sensor_logs.reading import Need, open_log
 from surveyapp.io.sensor_logs.tables import request_of
-from surveyapp.io.tables import Table
+from surveyapp.io.tables import Findings, Table
 from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, AngleUnit
 from surveyapp_models.arrays import Floats
@@ -53,7 +56,6 @@ def with_sensors(
     logs: Sequence[SensorLogEntry],
     *,
     unit: AngleUnit,
-    stations: Sequence[Station] = (),
 ) -> list[OrientationSession]:
     """Sessions with what their logs say; problems go to the findings.
 
@@ -66,10 +68,7 @@ def with_sensors(
     files : ProjectFiles
     logs : sequence of SensorLogEntry
     unit : AngleUnit
-    stations : sequence of Station
-        Where a declination is not stated, the World Magnetic Model gives it for the place and day.
     """
-    places = {station.name: station for station in stations}
     found = []
     for session, table in zip(sessions, tables, strict=True):
         levelling, aimed = table.table("levelling"), table.table("pre_orientation")
@@ -84,8 +83,6 @@ def with_sensors(
         try:
             if aimed is not None:
                 made = _aimed(session, aimed, files, logs, unit=unit)
-                if made is not None and made.declination is None and not made.refusals:
-                    made = _with_model(made, session, places.get(session.station), files)
                 session = replace(session, pre_orientation=made)
         except SurveyError as error:
             _absorb(error, files, session)
@@ -128,7 +125,12 @@ def _source(
 def _read(source: _Source, files: ProjectFiles, columns: tuple[str, ...]) -> SensorLog:
     file = open_log(request_of(source.entry, files.path))
     acc = TRIPLES["acc"] if source.card.kind == "compass" and file.has(*TRIPLES["acc"]) else ()
-    return file.read(Need(columns=(*columns, *acc), optional=("temperature_c",)))
+    log = file.read(Need(columns=(*columns, *acc), optional=("temperature_c",)))
+    log, told = without_events(log, source.entry.effects)
+    files.findings.warnings += [
+        ResultWarning(item.code, f"sensor_log {source.entry.id}: {item.text}") for item in told
+    ]
+    return log
 
 
 def _refusals(
@@ -298,18 +300,43 @@ def _aimed(
     )
 
 
+def with_declinations(project: Project, findings: Findings) -> Project:
+    """The same with the declination of the World Magnetic Model where none is stated.
+
+    For the place of the station, through the project's grid where it has no latitude and longitude,
+    and the day of the session.
+    """
+    places = {station.name: station for station in project.stations}
+    sessions = []
+    for session in project.sessions:
+        aimed = session.pre_orientation
+        if aimed is not None and aimed.declination is None and aimed.heading is not None:
+            made = _with_model(aimed, session, places.get(session.station), (project, findings))
+            session = replace(session, pre_orientation=made)
+        sessions.append(session)
+    return replace(project, sessions=tuple(sessions))
+
+
 def _with_model(
-    aimed: PreOrientation, session: OrientationSession, place: Station | None, files: ProjectFiles
+    aimed: PreOrientation,
+    session: OrientationSession,
+    place: Station | None,
+    around: tuple[Project, Findings],
 ) -> PreOrientation:
-    """The same with the declination of the World Magnetic Model, where place and day are known."""
-    if place is None or place.latitude is None or place.longitude is None or session.date is None:
+    project, findings = around
+    day = session.date or next((r.time.date() for r in session.book.live if r.time), None)
+    if place is None or day is None:
         return aimed
     try:
+        known = place.latitude is not None and place.longitude is not None
+        at = position_of(place, None if known else grid_of(project))
+        if at.latitude is None or at.longitude is None:
+            return aimed
         declination, sigma = model_declination(
-            latitude_deg=math.degrees(place.latitude),
-            longitude_deg=math.degrees(place.longitude),
-            height_m=place.h or 0.0,
-            day=session.date,
+            latitude_deg=math.degrees(at.latitude),
+            longitude_deg=math.degrees(at.longitude),
+            height_m=at.h or 0.0,
+            day=day,
         )
     except SurveyError as error:
         text = said(
@@ -318,7 +345,7 @@ def _with_model(
             what=error.problems[0].what,
         )
         warning = ResultWarning("no_model_declination", text, Subject.session(session.id))
-        files.findings.warnings.append(warning)
+        findings.warnings.append(warning)
         return aimed
     return replace(
         aimed,

@@ -69,7 +69,7 @@ def entries(folder: str) -> list[Entry]:
     SurveyError
         If it cannot be read.
     """
-    endings = {ending: item.id for item in IMPORTERS for ending in item.endings}
+    endings = {ending: item.id for item in reversed(IMPORTERS) for ending in item.endings}
     folders, files = [Entry("../", str(Path(folder).absolute().parent))], []
     try:
         with os.scandir(folder) as found:
@@ -177,12 +177,7 @@ def bring(
 
 def export_formats() -> dict[str, str]:
     """Every format of an export and what it is."""
-    return {
-        **{item.id: item.title for item in EXPORTERS},
-        "gkf": said("traverses as a GNU Gama network"),
-        "csv": said("azimuths of the lines as a table"),
-        "zip": said("the whole project for hand-over"),
-    }
+    return {item.id: item.title for item in EXPORTERS}
 
 
 def export_path(folder: str, form: str) -> str:
@@ -205,7 +200,12 @@ def hand_over(form: str, folder: str, path: str) -> ExportResult:
             Problem(said("a file of this name exists"), path, "", said("a name that is free"))
         )
     others: dict[str, Callable[[str, str], ExportResult]]
-    others = {"gkf": api.export_gkf, "csv": api.export_csv, "zip": api.export_zip}
+    others = {
+        "csv": api.export_csv,
+        "gkf": api.export_gkf,
+        "json": api.export_json,
+        "zip": api.export_zip,
+    }
     if form in others:
         return others[form](folder, path)
     return api.export_survey(form, folder, path)

@@ -87,9 +87,10 @@ class Record:
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """One section: its id, and the function that makes its blocks; no blocks, no section."""
+    """One section: its id, what it holds, and what makes its blocks; no blocks, no section."""
 
     id: str
+    title: str
     blocks: Callable[[Record], tuple[Block, ...]]
 
 
@@ -116,19 +117,44 @@ def _extras(record: Record) -> tuple[Block, ...]:
 SECTIONS: Final[tuple[Section, ...]] = (
     Section(
         "head",
+        "project, verdict, instruments, stations, closings",
         lambda r: head.blocks(
             r.project, r.result, r.rule_book, (*_told(r.extras), *_signed(r.seals))
         ),
     ),
-    Section("azimuths", lambda r: azimuths.blocks(r.project, r.result)),
-    Section("constants", lambda r: constants.blocks(r.result)),
-    Section("reduction", lambda r: reduction.blocks(r.project, r.result)),
-    Section("fieldbook", lambda r: fieldbook.blocks(r.project)),
-    Section("extras", _extras),
-    Section("checks", lambda r: checks.blocks(r.result.checks, r.result.warnings)),
-    Section("seal", lambda r: seal.blocks(r.seals)),
-    Section("signature", lambda _: signature.blocks()),
-    Section("full_numbers", lambda r: full_numbers.blocks(r.result)),
+    Section(
+        "azimuths",
+        "oriented lines: every step to the grid azimuth, and the budget of errors",
+        lambda r: azimuths.blocks(r.project, r.result),
+    ),
+    Section(
+        "constants",
+        "instrument constants with their determinations",
+        lambda r: constants.blocks(r.result),
+    ),
+    Section(
+        "reduction",
+        "each session from readings to gyro north",
+        lambda r: reduction.blocks(r.project, r.result),
+    ),
+    Section(
+        "fieldbook",
+        "the readings as they were taken, struck ones too",
+        lambda r: fieldbook.blocks(r.project),
+    ),
+    Section("extras", "diagnosis, traverse, breakthrough, sensors: what was asked for", _extras),
+    Section(
+        "checks",
+        "every verdict with value and limit",
+        lambda r: checks.blocks(r.result.checks, r.result.warnings),
+    ),
+    Section("seal", "closings in force", lambda r: seal.blocks(r.seals)),
+    Section("signature", "room for signatures", lambda _: signature.blocks()),
+    Section(
+        "full_numbers",
+        "the numbers of the result with all digits",
+        lambda r: full_numbers.blocks(r.result),
+    ),
 )
 
 

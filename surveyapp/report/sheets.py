@@ -205,7 +205,10 @@ def sheet_csv(sheet: Sheet) -> str:
 
 def _safe(cell: str) -> str:
     """A text that a spreadsheet would take for a formula is quoted; numbers are left alone."""
-    if cell[:1] in ("=", "@", "+", "-") and not cell.lstrip("+-").replace(".", "", 1).isdigit():
+    if (
+        cell[:1] in ("=", "@", "+", "-", "\t", "\r")
+        and not cell.lstrip("+-").replace(".", "", 1).isdigit()
+    ):
         return f"'{cell}"
     return cell
 

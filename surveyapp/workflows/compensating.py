@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 from datetime import date
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
+from surveyapp.core.sensors.adopted_effects import without_events
 from surveyapp.core.sensors.compensation import (
+    Columns,
     Compensated,
     Declination,
     compensate_compass,
@@ -25,7 +28,10 @@ from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.sensor_cards import read_sensor_card
 from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
-from surveyapp.io.sensor_logs.writing import write_columns
+from surveyapp.io.sensor_logs.writing import write_parts
+
+BLOCK_ROWS: Final = 50_000
+"""Rows that are corrected at once: a log of any length takes the memory of one block."""
 
 KINDS: Final = ("compass", "tilt", "rate")
 MAG: Final = ("mag_x_uT", "mag_y_uT", "mag_z_uT")
@@ -85,8 +91,8 @@ def compensate_log(
     today: date | None = None,
     declination: Declination | None = None,
     progress: Progress | None = None,
-) -> tuple[Compensated, SensorLog, SensorCard]:
-    """Correct a log by a card.
+) -> tuple[Iterator[Compensated], SensorLog, SensorCard]:
+    """Correct a log by a card, block by block.
 
     Parameters
     ----------
@@ -121,12 +127,17 @@ def compensate_log(
             Problem("a declination is added to magnetic headings only", "declination", found)
         )
     log = file.read(_need(kind, file, card), progress=progress)
+    if entry is not None and entry.effects and kind != "rate":
+        log, told = without_events(log, entry.effects)
+        log = replace(log, warnings=(*log.warnings, *told))
     day = entry.calibrated_on if entry is not None and entry.calibrated_on else today
     problems = card.refusals(on=day, temperature_c=temperatures(log), where=where)
     problems += other_instrument(card, entry, where)
     if problems:
         raise SurveyError(problems)
-    return _run(kind, log, card, (declination, where)), log, card
+    starts = range(0, log.size, BLOCK_ROWS)
+    blocks = (log.rows(slice(start, start + BLOCK_ROWS)) for start in starts)
+    return (_run(kind, block, card, (declination, where)) for block in blocks), log, card
 
 
 def _need(kind: str, file: LogFile, card: SensorCard) -> Need:
@@ -174,7 +185,7 @@ def other_instrument(card: SensorCard, entry: SensorLogEntry | None, where: str)
 
 
 def write_compensated(
-    found: Compensated,
+    parts: Iterable[Compensated],
     log: SensorLog,
     card: SensorCard,
     *,
@@ -189,7 +200,19 @@ def write_compensated(
     SurveyError
         If the file cannot be written.
     """
-    write_columns(out, found.columns)
+    names: list[str] = []
+    references: list[str | None] = []
+    sigmas: list[float] = []
+
+    def columns() -> Iterator[Columns]:
+        for part in parts:
+            names[:] = part.columns
+            references.append(part.reference)
+            if part.heading_sigma_deg is not None:
+                sigmas.append(part.heading_sigma_deg)
+            yield part.columns
+
+    write_parts(out, columns())
     warnings = list(log.warnings)
     span = temperatures(log)
     if card.temperature_c is not None and span is None:
@@ -203,8 +226,8 @@ def write_compensated(
         card=card_path,
         path=str(out),
         rows=log.size,
-        columns=tuple(found.columns),
-        reference=found.reference,
-        heading_sigma_deg=found.heading_sigma_deg,
+        columns=tuple(names),
+        reference=references[0] if references else None,
+        heading_sigma_deg=max(sigmas, default=None),
         warnings=tuple(warnings),
     )

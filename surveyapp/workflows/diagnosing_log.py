@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
+from typing import Final
 
 from surveyapp.diagnosis.sensors.diagnosis import SensorDiagnosis, diagnose_sensor
 from surveyapp.diagnosis.sensors.records import SensorRecord, compass_record, tilt_record
@@ -21,6 +22,9 @@ from surveyapp_models.effects.effect import Effect
 MAG = ("mag_x_uT", "mag_y_uT", "mag_z_uT")
 PLACE = ("ref_px_m", "ref_py_m", "ref_pz_m")
 TILT = ("tilt_along_arcsec", "tilt_across_arcsec", "ref_along_arcsec", "ref_across_arcsec")
+MOST_ROWS: Final = 100_000
+"""A longer log is thinned: effects and switches are seen in it as well, and in bounded memory."""
+
 FEWEST = 40
 """Rows below which no effect is told from noise."""
 
@@ -157,5 +161,8 @@ def _record(
         found, expected = f"{log.size} rows", f"{FEWEST} rows or more"
         raise SurveyError(Problem("the log is too short to diagnose", log.path, found, expected))
     mine = tuple(effect for effect in own if effect.subject == kind)
-    made = compass_record(log, mine) if kind == "compass" else tilt_record(log, mine)
-    return made, log
+    used = log.thinned(MOST_ROWS)
+    made = compass_record(used, mine) if kind == "compass" else tilt_record(used, mine)
+    every = -(-log.size // used.size)
+    gross = tuple((row * every, size) for row, size in made.gross)
+    return replace(made, gross=gross), replace(log, warnings=used.warnings)

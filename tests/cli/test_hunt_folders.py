@@ -4,12 +4,12 @@ from pathlib import Path
 
 import pytest
 
-from surveyapp.cli.export import FORMATS
+from surveyapp.io.exporters.catalogue import EXPORTERS
 from tests.cli.command import good_project, run
 
 
 @pytest.mark.parametrize("name", ["absent", "empty", "a file"])
-@pytest.mark.parametrize("form", sorted(FORMATS))
+@pytest.mark.parametrize("form", sorted(item.id for item in EXPORTERS))
 def test_export_of_what_is_no_project_is_refused(tmp_path: Path, form: str, name: str) -> None:
     (tmp_path / "empty").mkdir()
     (tmp_path / "a file").write_text("x", encoding="utf-8")

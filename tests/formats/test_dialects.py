@@ -25,7 +25,7 @@ def _near(found: float | None, wanted: float | None, tolerance: float) -> bool:
 @pytest.mark.parametrize("form", list(DIALECTS))
 def test_every_pointing_is_that_of_the_truth(tmp_path: Path, form: str) -> None:
     """80 surveys: names, faces, angles, lengths, heights, coordinates, and which rows are a set."""
-    for seed in range(80):
+    for seed in range(60):
         written = DIALECTS[form](random.Random(f"{form}{seed}"))
         file = read(tmp_path / "f", written, written.lines)
         assert len(file.pointings) == len(written.shots), written.dialect
@@ -88,7 +88,7 @@ that is gone, a file of two readings. ``python -m bench field_damage`` draws 200
 def test_damage_is_named_or_does_no_harm(tmp_path: Path, form: str) -> None:
     r = random.Random(form)
     found: Counter[str] = Counter()
-    for seed in range(40):
+    for seed in range(20):
         written = DIALECTS[form](random.Random(f"d{form}{seed}"))
         if len(written.lines) < 5:
             continue

@@ -271,6 +271,23 @@ def test_names_are_never_cut(tmp_path: Path, form: str) -> None:
     assert run("export", form, str(folder), str(tmp_path / "o")).code == 2
 
 
+def test_names_that_gsi_cannot_tell_apart_are_refused(tmp_path: Path) -> None:
+    more = "".join(f'[[station]]\nname = "{name}"\ne = 1.0\nn = 2.0\n' for name in ("7", "007"))
+    folder = project(tmp_path / "p", more)
+    result = run("export", "gsi", str(folder), str(tmp_path / "o"), "--json")
+    assert result.code == 2
+    assert "7, 007" in result.out
+    assert not (tmp_path / "o").exists()
+    assert run("export", "sdr", str(folder), str(tmp_path / "o")).code == 0
+
+
+def test_letters_beyond_the_first_plane_keep_their_number(tmp_path: Path) -> None:
+    """U+20BB7, a name of Japan, in UTF-16: D842 DFB7 (Unicode standard, table 3-5)."""
+    folder = project(tmp_path / "p", '[[station]]\nname = "\U00020bb7"\ne = 1.0\nn = 2.0\n')
+    assert run("export", "dxf", str(folder), str(tmp_path / "o")).code == 0
+    assert "\\U+D842\\U+DFB7" in (tmp_path / "o").read_text(encoding="ascii")
+
+
 def test_names_of_starnet_stay_apart(tmp_path: Path) -> None:
     more = "".join(
         f'[[station]]\nname = "{name}"\ne = 1.0\nn = 2.0\n' for name in ("A 1", "A-1", "a_1", "Ö")

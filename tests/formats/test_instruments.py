@@ -118,27 +118,41 @@ def test_a_turning_point_is_followed() -> None:
     assert turn["readings"] >= 15
 
 
+def _followed(g: np.random.Generator, half: float, hand: tuple[float, float], deg: float) -> float:
+    """Error over sigma of one turn of a damped swing of 400 s, read ten times a second.
+
+    y = A exp(-d t) cos(w t) turns at tan(w t) = -d / w; ``hand``: seconds of arc, correlation from
+    one reading to the next.
+    """
+    arc, w, d = math.pi / 648000.0, 2.0 * math.pi / 400.0, 0.02 / 400.0
+    top = math.atan2(-d, w) / w
+    truth = math.radians(deg) * math.exp(-d * top) * math.cos(w * top)
+    moment = g.uniform(0.7, 1.3) * half
+    t = np.arange(0.0, 2.0 * half, 0.1)
+    noise = g.normal(size=len(t))
+    for i in range(1, len(t)):
+        noise[i] = hand[1] * noise[i - 1] + math.sqrt(1.0 - hand[1] ** 2) * noise[i]
+    since = t - moment + top
+    swing = math.radians(deg) * np.exp(-d * since) * np.cos(w * since)
+    turn = followed_turn(t.tolist(), (3.0 + swing + hand[0] * arc * noise).tolist())
+    assert abs(turn.moment_s - moment) < 6.0 * turn.moment_sigma_s
+    return (turn.value - 3.0 - truth) / turn.sigma
+
+
 @pytest.mark.statistical
-def test_the_sigma_of_a_followed_turn_holds_for_correlated_hands() -> None:
-    """400 turns, 20 s to either side, AR(1) errors of 6 arc-seconds: chi-square of the values."""
+@pytest.mark.parametrize(
+    ("half", "hand", "deg"),
+    [(15.0, (6.0, 0.6), 3.0), (20.0, (6.0, 0.0), 0.5), (60.0, (6.0, 0.6), 3.0)],
+)
+def test_the_sigma_of_a_followed_turn_holds(
+    half: float, hand: tuple[float, float], deg: float
+) -> None:
+    """A swing is no parabola: 60 s to either side of a turn of 3 degrees bend by 30" more."""
     g = np.random.default_rng(11)
-    t = np.arange(0.0, 40.0, 0.1)
-    arc = math.pi / 648000.0
-    for correlation in (0.0, 0.6):
-        scores = []
-        for _ in range(400):
-            noise = np.empty(len(t))
-            noise[0] = g.normal()
-            for i in range(1, len(t)):
-                noise[i] = correlation * noise[i - 1] + math.sqrt(1 - correlation**2) * g.normal()
-            moment = g.uniform(12.0, 28.0)
-            swing = math.radians(0.5) * np.cos(2.0 * math.pi / 400.0 * (t - moment))
-            turn = followed_turn(t.tolist(), (3.0 + swing + 6.0 * arc * noise).tolist())
-            truth = 3.0 + math.radians(0.5)
-            scores.append(((turn.value - truth) / turn.sigma) ** 2)
-            assert abs(turn.moment_s - moment) < 6.0 * turn.moment_sigma_s
-        # chi-square with 400 degrees of freedom: 1 +- 0.07; 4 sigma and the bias of the curve
-        assert 0.72 < float(np.mean(scores)) < 1.35
+    scores = np.array([_followed(g, half, hand, deg) for _ in range(120)])
+    # binomial(120, 0.95): 99.9 % from 105 on; chi-square with 120 degrees of freedom: 1 +- 0.13
+    assert int((np.abs(scores) < 1.96).sum()) >= 105
+    assert 0.5 < float(np.mean(scores**2)) < 1.45
 
 
 def test_a_straight_line_is_no_turn() -> None:

@@ -21,7 +21,7 @@ def test_mutated_networks_are_no_fault_of_the_program(
     api.export_gkf(make_network(tmp_path / "p"), sound)
     rng = random.Random(13)
     path = tmp_path / "mutated.gkf"
-    for number in range(150):
+    for number in range(75):
         path.write_bytes(mutated(sound.read_bytes(), rng))
         code = main(["adjust", str(path), "--json"])
         out = capsys.readouterr().out

@@ -12,74 +12,28 @@ from surveyapp.core.network import adjust
 from surveyapp.core.network.quality import confidence_scale, ellipse, family_critical, global_test
 from surveyapp.core.network.variance_components import variance_components
 from surveyapp.domain.observations import ObservationKind
-from surveyapp.domain.traverse import Network, Status
+from surveyapp.domain.traverse import Network
 from tests.network.network_factory import ARC, make
+from tests.network.repetitions import covariances, global_tests_failed
 
 K = ObservationKind
 
 
-def disturbed(network: Network, rng: np.random.Generator) -> Network:
-    """Fresh noise on a noise-free network, correlated where the network says so."""
-    noise = np.array([o.sigma for o in network.observations]) * rng.normal(
-        size=len(network.observations)
-    )
-    for block in network.blocks:
-        root = np.linalg.cholesky(np.array(block.covariance))
-        noise[list(block.members)] = root @ rng.normal(size=len(block.members))
-    constants = tuple(
-        replace(c, value=25 * ARC + (c.sigma or 0.0) * float(rng.normal()))
-        for c in network.constants
-    )
-    observations = tuple(
-        replace(o, value=o.value + float(e))
-        for o, e in zip(network.observations, noise, strict=True)
-    )
-    return replace(network, observations=observations, constants=constants)
-
-
 @pytest.mark.statistical
-def test_covariances_hold_in_two_thousand_repetitions() -> None:
-    base, truth = make(9, ("direction", "distance", "gyro"), points=5, correlated=True, noise=False)
-    rng = np.random.default_rng(20)
-    free = [p.name for p in base.points if p.status_e is Status.FREE]
-    runs, distance, squares, dof = 2000, 0.0, 0.0, 0
-    sums = np.zeros((len(free), 2, 2))
-    weight = None
-    for _ in range(runs):
-        result = adjust(disturbed(base, rng), relative=False)
-        dof = result.dof
-        squares += result.global_test.sum_of_squares
-        for i, name in enumerate(free):
-            point = result.point(name)
-            error = np.array([(point.e or 0) - truth[name][0], (point.n or 0) - truth[name][1]])
-            sums[i] += np.outer(error, error)
-            covariance = np.array(point.covariance)[:2, :2]
-            distance += float(error @ np.linalg.solve(covariance, error))
-            weight = covariance
-    # v'Pv summed over the runs is chi-square with runs * dof, here nearly normal
-    total = runs * dof
-    assert abs(squares - total) < 3.3 * math.sqrt(2.0 * total)
-    # one point's e' Q^-1 e is chi-square with 2; the points of a run are correlated, so the sum
-    # has at most len(free) times the variance of independent ones
-    mean = 2.0 * len(free) * runs
-    assert abs(distance - mean) < 3.3 * math.sqrt(4.0 * len(free) ** 2 * runs)
-    empirical = sums[-1] / runs
-    assert weight is not None
-    whitened = np.linalg.solve(np.linalg.cholesky(weight), empirical)
-    eigen = np.linalg.eigvals(np.linalg.solve(np.linalg.cholesky(weight), whitened.T)).real
+def test_covariances_hold_in_repetitions() -> None:
+    """250 of the 2000 of ``python -m bench repetitions``; the bounds follow from the number."""
+    runs = 250
+    found = covariances(runs, seed=20)
+    assert abs(found.squares - found.total) < 3.3 * found.squares_sigma
+    assert abs(found.distance - found.mean) < 3.3 * found.distance_sigma
     # eigenvalues of a Wishart matrix / runs: 1 +- a few sqrt(2 / runs)
-    assert np.all(np.abs(eigen - 1.0) < 5.0 * math.sqrt(2.0 / runs))
+    assert np.all(np.abs(found.eigenvalues - 1.0) < 5.0 * math.sqrt(2.0 / runs))
 
 
 @pytest.mark.statistical
 def test_the_global_test_fails_as_often_as_it_says() -> None:
-    base, _ = make(14, ("angle", "distance"), points=5, noise=False)
-    rng = np.random.default_rng(5)
-    failed = sum(
-        adjust(disturbed(base, rng), relative=False).global_test.passed is False for _ in range(400)
-    )
-    # binomial(400, 0.05): 99.9 % within 7 .. 36
-    assert 7 <= failed <= 36
+    # binomial(150, 0.05): 99.9 % within 1 .. 17; bench repetitions draws 2000
+    assert 1 <= global_tests_failed(150, seed=5) <= 17
 
 
 def moved(network: Network, turn: float, east: float, north: float) -> Network:

@@ -39,7 +39,7 @@ def diagnosed(seed: int, stops: int, **sizes: float) -> Diagnosis:
     run = replace(hand_run({**sizes, "stops": float(stops)}, rng), interval_s=0.04, warmth=0.0)
     found, turns, _ = stops_of(as_read(hand_held_log(run, rng)), latitude=run.latitude)
     assert (len(found), len(turns)) == (stops, stops - 1)
-    return diagnose(rate_case(found, turns, identity="unit"))
+    return diagnose(rate_case(found, turns, identity="unit"), advise=False)
 
 
 def named(found: Diagnosis) -> list[str]:
@@ -47,8 +47,11 @@ def named(found: Diagnosis) -> list[str]:
 
 
 def test_clean_stops_stay_adequate() -> None:
-    """rate.md: .03 to .10 detected; six records, more than two has p = .02 at .07."""
-    assert sum(diagnosed(k, 18).verdict != "adequate" for k in range(6)) <= 2
+    """rate.md: .03 to .10 detected; of six records four and more have p = .0003 at .07.
+
+    Of 300 records .06 at 18 stops and .053 at 12 (bench rate_loop).
+    """
+    assert sum(diagnosed(k, 18).verdict != "adequate" for k in range(6)) <= 3
 
 
 def test_g_sensitivity_is_named_and_left_out_stops_are_predicted_better() -> None:
@@ -72,12 +75,12 @@ def test_an_asymmetric_scale_shows_in_the_turns_by_hand() -> None:
 def test_a_ramp_is_named_and_a_walk_is_seldom_taken_for_one() -> None:
     """rate.md: a ramp of .02 deg/s per minute; a walk wrongly named in .15 at most.
 
-    Bounds: 3 and more of 8 at .15 have p = .1, 5 and more p = .003.
+    Bounds: 3 and more of 6 at .15 have p = .05, 4 and more p = .006.
     """
     ramps = [diagnosed(seed, 18, bias_ramp=0.02 * DEG * 106.0 / 60.0) for seed in range(4)]
     assert sum(named(one) == ["bias_ramp"] for one in ramps) >= 2
-    walks = [diagnosed(seed, 18, random_walk=0.006 * DEG) for seed in range(8)]
-    assert sum(bool(named(one)) for one in walks) <= 4
+    walks = [diagnosed(seed, 18, random_walk=0.006 * DEG) for seed in range(6)]
+    assert sum(bool(named(one)) for one in walks) <= 3
 
 
 def test_the_rows_of_a_turn_are_derivatives_of_what_the_gyros_carry() -> None:

@@ -21,9 +21,9 @@ from surveyapp.core.sensors.rate.six_position_log import (
     calibrate_six_positions,
 )
 from surveyapp.core.sensors.rate.temperature_log import (
-    TemperatureOptions,
     calibrate_temperature,
 )
+from surveyapp.core.sensors.rate.temperature_nodes import TemperatureOptions
 from surveyapp.core.simulate.rate.log import SimulatedLog
 from surveyapp.core.simulate.rate.recipes import example_unit, simulate_rate
 from surveyapp.core.simulate.rate.table_programmes import (

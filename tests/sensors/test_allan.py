@@ -2,17 +2,22 @@
 
 import json
 import math
+import os
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from surveyapp import api
+from surveyapp.api.sensors import LogOptions
 from surveyapp.cli.main import main
 from surveyapp.core.sensors.allan import allan_curve, allan_variances, octaves
 from surveyapp.core.sensors.noise_coefficients import coefficients_of
 from surveyapp_models.arrays import Floats
 
 allantools = pytest.importorskip("allantools")
+SHARED = Path(os.environ.get("SURVEYAPP_DATA", Path(__file__).parents[2] / "../shared/data"))
+STATIC = SHARED / "mpu6050_static/example_data_static_449s.csv"
 
 
 def flicker(n: int, rng: np.random.Generator) -> Floats:
@@ -147,3 +152,21 @@ def test_the_command_and_its_units(tmp_path: Path, capsys: pytest.CaptureFixture
     assert main([*command, "--taus", "0.001,1e9"]) == 2
     assert main(["allan", str(path), "--rate-hz", "100", "--column", "gxx"]) == 2
     assert main(["allan", str(path)]) == 2
+
+
+@pytest.mark.shared_data
+@pytest.mark.skipif(not STATIC.exists(), reason="measured records are not there")
+def test_six_measured_channels_have_white_noise_and_what_else_can_be_told() -> None:
+    """MPU-6050 at rest, 449 s: gy rises after 30 s; whether it wanders or flickers is not told."""
+    counts = {f"g{a}": 1.0 / 131.0 for a in "xyz"} | {f"a{a}": 1.0 / 16384.0 for a in "xyz"}
+    columns = {f"gyr_{a}_rad_s": f"g{a}" for a in "xyz"} | {f"acc_{a}_m_s2": f"a{a}" for a in "xyz"}
+    units = {f"g{a}": "deg/s" for a in "xyz"} | {f"a{a}": "g" for a in "xyz"}
+    options = LogOptions(columns, units, counts, 100.0, 4)
+    channels = api.allan(STATIC, log=options).to_dict()["channels"]
+    assert len(channels) == 6
+    for channel in channels:
+        found = {c["symbol"]: c for c in channel["coefficients"]}
+        assert found["N"]["value"] > 50.0 * found["N"]["sigma"]
+        assert all(c["value"] is not None or c["reason"] for c in channel["coefficients"])
+        if channel["name"] == "gyr_y_rad_s":
+            assert {found["B"]["reason"], found["K"]["reason"]} == {"not_separable"}

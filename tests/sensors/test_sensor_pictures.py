@@ -68,7 +68,12 @@ def test_a_compass_is_drawn_before_and_after(tmp_path: Path) -> None:
 
 def test_an_axis_without_a_number_has_words_and_a_path_one_scale() -> None:
     states = tuple(MotionSegment(k, k + 1.0, "turning") for k in (0.0, 1.0))
-    square = ((0, 0, 0, 0, 0), (1, 1, 0, 0.1, 0.1), (2, 1, 1, 0.1, 0.1), (3, 0, 1, 0.2, 0.2))
+    square = (
+        (0, 0, 0, 0, 0, 0),
+        (1, 1, 0, 0.1, 0.1, 0),
+        (2, 1, 1, 0.1, 0.1, 0),
+        (3, 0, 1, 0.2, 0.1, 0.02),
+    )
     path = DrivenPath("inertial", 0.5, (0.0, 1.0), (1.0,), square, 3.0)
     drawn = motion_charts(Motion("log", 9, 10.0, states, 0.01, {}, {}, path=path))
     first, way, sigma = drawn
@@ -77,6 +82,12 @@ def test_an_axis_without_a_number_has_words_and_a_path_one_scale() -> None:
     assert isinstance(way, Chart)
     assert way.square
     assert "0.500" in way.note
+    ellipses = [s for s in way.series if s.style == "bound"]
+    assert len(ellipses) == 3
+    reach = [math.hypot(x - 1.0, y) for x, y in ellipses[0].points]
+    assert reach == pytest.approx([0.2447747] * len(reach))  # a circle: 0.1 by sqrt(chi-square)
+    # fully correlated: nothing across the line of 0.2 east to 0.1 north
+    assert all(abs((y - 1.0) - 0.5 * x) < 1e-9 for x, y in ellipses[-1].points)
     assert isinstance(sigma, Chart)
     assert sigma.series[0].points[1][1] == pytest.approx(math.hypot(0.1, 0.1))
     frame = chart_figure(way)

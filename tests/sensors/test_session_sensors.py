@@ -133,6 +133,25 @@ def test_without_a_stated_declination_the_model_serves_for_place_and_day(tmp_pat
     assert aimed["declination_source"] == "stated"
 
 
+def test_the_place_of_the_model_comes_through_the_grid(tmp_path: Path) -> None:
+    """Longitude 9 is the central meridian of EPSG:25832: e = 500 km; n of latitude 47."""
+    pytest.importorskip("pygeomag")
+    known = session(tmp_path / "a", day="")
+    book = (known / "s.csv").read_text().splitlines()
+    timed = [line.replace(",,", ",2026-05-01T08:00:00+02:00,", 1) for line in book[1:2]]
+    (known / "s.csv").write_text("\n".join([book[0], *timed, *book[2:]]) + "\n")
+    project = known / "project.toml"
+    stated = api.orient(known).to_dict()["sessions"][0]["pre_orientation"]
+    text = project.read_text()
+    assert "lat = 47.0\nlon = 9.0\n" in text
+    grid = text.replace("lat = 47.0\nlon = 9.0\n", "e = 500000.0\nn = 5205164.11\n", 1)
+    project.write_text(grid.replace("format = 1\n", 'format = 1\ncrs = "EPSG:25832"\n'))
+    found = api.orient(known).to_dict()["sessions"][0]["pre_orientation"]
+    assert found["declination_source"] == "model"
+    # the day stands in the book alone, the place in the grid alone
+    assert found["declination_deg"] == pytest.approx(stated["declination_deg"], abs=1e-4)
+
+
 def test_the_rows_say_what_was_levelled_and_where_to_turn_the_alidade(tmp_path: Path) -> None:
     from surveyapp.report.sections.session_sensors import blocks
     from surveyapp.report.text import blocks_text

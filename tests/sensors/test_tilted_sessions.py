@@ -16,7 +16,7 @@ from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
 from tests.sensors.test_levelling import exact_reading
 
-SESSIONS = 60
+SESSIONS = 24
 ELEVATION = math.radians(60.0)
 TILT = 10.0
 CONSTANT = 12.0
@@ -80,18 +80,20 @@ book = "s{number}.csv"
     return tables, "\n".join(book) + "\n"
 
 
-def azimuths(folder: Path, *, levels: bool) -> tuple[Floats, Floats]:
+def azimuths(
+    folder: Path, *, levels: bool, count: int = SESSIONS, seed: int = 16
+) -> tuple[Floats, Floats]:
     """Errors and sigmas of all azimuths ["]."""
     folder.mkdir()
-    rng = np.random.default_rng(16)
+    rng = np.random.default_rng(seed)
     tables = 'format = 1\nname = "simulated, not observed"\n'
-    for number in range(SESSIONS):
+    for number in range(count):
         text, book = session(number, rng, levels=levels)
         tables += text
         (folder / f"s{number}.csv").write_text(book)
     (folder / "project.toml").write_text(tables)
     lines = api.orient(folder).to_dict()["lines"]
-    assert len(lines) == SESSIONS
+    assert len(lines) == count
     errors = [(line["true_azimuth"]["deg"] - TRUE_AZIMUTH) * 3600.0 for line in lines]
     return np.array(errors), np.array([line["true_azimuth"]["sigma_arcsec"] for line in lines])
 
@@ -102,15 +104,16 @@ def test_a_tilted_axis_is_corrected_or_stands_in_the_sigma(tmp_path: Path) -> No
 
     Who ignores the tilt holds the truth in .740 of the 95 % intervals; the program without level
     rows takes the tilt that the card's level allows into the sigma, and with them corrects it.
-    Bounds: binomial of 60 at .95 has .88 and more with p = .98, at .740 .61 to .87 with p = .97.
+    Bounds: binomial of 24 at .95 has 20 and more with p = .994, at .740 13 to 22 with p = .98. The
+    whole campaign is ``python -m bench tilted_sessions``.
     """
     raw, wide = azimuths(tmp_path / "without", levels=False)
     corrected, sigma = azimuths(tmp_path / "with", levels=True)
     ignored = np.mean(np.abs(raw) <= 1.96 * sigma)
-    assert 0.61 <= ignored <= 0.87
-    assert np.mean(np.abs(raw) <= 1.96 * wide) >= 0.88
-    assert np.mean(np.abs(corrected) <= 1.96 * sigma) >= 0.88
-    # sums of 60 squares: chi-square, rms within 25 % at p = .99
+    assert 13 / 24 <= ignored <= 22 / 24
+    assert np.mean(np.abs(raw) <= 1.96 * wide) >= 20 / 24
+    assert np.mean(np.abs(corrected) <= 1.96 * sigma) >= 20 / 24
+    # sums of 24 squares: chi-square, rms within 37 % at p = .99
     rms = [math.sqrt(float(np.mean(e**2))) for e in (raw, corrected)]
-    assert rms[0] == pytest.approx(math.hypot(17.32, 12.0), rel=0.25)
-    assert rms[1] == pytest.approx(12.0, rel=0.25)
+    assert rms[0] == pytest.approx(math.hypot(17.32, 12.0), rel=0.37)
+    assert rms[1] == pytest.approx(12.0, rel=0.37)

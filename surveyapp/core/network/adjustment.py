@@ -15,6 +15,7 @@ from surveyapp.core.network import quality as q
 from surveyapp.core.network.angle_pairs import fold
 from surveyapp.core.network.closures import network_closures
 from surveyapp.core.network.collector import paused_collection
+from surveyapp.core.network.estimated_sigmas import shares
 from surveyapp.core.network.gaussnewton import Converged
 from surveyapp.core.network.gross import without_gross
 from surveyapp.core.network.level_distances import with_level_distances
@@ -112,17 +113,18 @@ def _result(
     family_level, relative = options
     solved = state.solved
     dof = len(model.observations) - model.structure.count + solved.defect
+    coordinate = np.append(state.model.slot_of < model.coordinate_slots, 0.0).astype(np.float64)
+    checked = q.assess(state.groups, solved.cofactor, len(state.model.value), coordinate)
+    checked = fold(state.model, checked, len(model.observations))
     test = q.global_test(
         state.sum_of_squares,
         dof,
         sigma_apriori=network.sigma_apriori,
         probability=network.confidence,
+        estimated=shares(model.observations, q.control(checked.mdb), dof),
     )
     estimated = network.scaled_by_residuals and test.ratio is not None
     scale = float(test.ratio or 1.0) if estimated else 1.0
-    coordinate = np.append(state.model.slot_of < model.coordinate_slots, 0.0).astype(np.float64)
-    checked = q.assess(state.groups, solved.cofactor, len(state.model.value), coordinate)
-    checked = fold(state.model, checked, len(model.observations))
     warnings = (*warnings, *_unsound(float(checked.redundancy.sum()), dof))
     return AdjustmentResult(
         points=_points(network, model, state, scale),
@@ -137,7 +139,9 @@ def _result(
         closures=network_closures(network),
         shared=_shared(model, state, scale),
         relative=_relative(network, model, state, scale) if relative else (),
-        snooping=_snooping(model, checked, scale, (family_level, dof if estimated else None)),
+        snooping=_snooping(
+            model, checked, scale, (family_level, dof if estimated else None, test.sigma_dof)
+        ),
         warnings=warnings,
     )
 
@@ -287,12 +291,12 @@ def _relative(
 
 
 def _snooping(
-    model: Model, checked: q.Quality, scale: float, options: tuple[float, int | None]
+    model: Model, checked: q.Quality, scale: float, options: tuple[float, int | None, float | None]
 ) -> Snooping:
-    level, dof = options
+    level, dof, sigma_dof = options
     tests = q.distinct_tests(checked.standardized)
-    critical = q.family_critical(tests, level, dof)
-    statistic = "normal" if dof is None else "tau"
+    critical = q.family_critical(tests, level, dof, sigma_dof=sigma_dof)
+    statistic = "tau" if dof is not None else "normal" if sigma_dof is None else "student"
     if critical is None or scale <= 0.0:
         return Snooping(statistic, level, tests, None)
     size = np.nan_to_num(np.abs(checked.standardized) / scale)

@@ -151,14 +151,18 @@ def _search(
     return moved, groups, new, 0.0
 
 
-def refuse(network_points: tuple[str, ...], failure: NotConverged) -> SurveyError:
+class UnsettledError(SurveyError):
+    """An adjustment that does not converge: often one observation is grossly wrong."""
+
+
+def refuse(network_points: tuple[str, ...], failure: NotConverged) -> UnsettledError:
     """Error for an iteration that did not settle, naming what moved most."""
     model = failure.model
     coordinates = model.slot_of < model.coordinate_slots
     step = np.where(coordinates & np.isfinite(failure.step), np.abs(failure.step), 0.0)
     worst = int(np.argmax(step))
     name = network_points[model.slot_of[worst] // 3] if coordinates[worst] else "-"
-    return SurveyError(
+    return UnsettledError(
         Problem(
             "The adjustment does not converge",
             f"point {name}",

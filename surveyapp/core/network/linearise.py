@@ -113,23 +113,60 @@ def single(values: Floats, slots: Ints, constant: Floats) -> Linear:
     return Linear(values[slots[:, 0]] + constant, np.ones((len(slots), 1)))
 
 
-LINEARISATION: MappingProxyType[ObservationKind, Kind] = MappingProxyType(
-    {
-        ObservationKind.ANGLE: angle,
-        ObservationKind.DIRECTION: oriented,
-        ObservationKind.DISTANCE: distance,
-        ObservationKind.SLOPE_DISTANCE: slope_distance,
-        ObservationKind.ZENITH: zenith,
-        ObservationKind.HEIGHT_DIFFERENCE: difference,
-        ObservationKind.AZIMUTH: azimuth,
-        ObservationKind.GYRO: oriented,
-        ObservationKind.GYRO_CONSTANT: single,
-        ObservationKind.COORDINATE_E: single,
-        ObservationKind.COORDINATE_N: single,
-        ObservationKind.COORDINATE_H: single,
-        ObservationKind.VECTOR_E: difference,
-        ObservationKind.VECTOR_N: difference,
-        ObservationKind.VECTOR_H: difference,
-    }
+Touched = tuple[tuple[str, int], ...]
+"""Coordinates in the order of the partials: of ``at``, ``back``, ``to``; east, north or height."""
+
+PLANE: Touched = tuple((who, c) for who in ("at", "to") for c in (0, 1))
+SPACE: Touched = tuple((who, c) for who in ("at", "to") for c in (0, 1, 2))
+TURNED: Touched = tuple((who, c) for who in ("at", "back", "to") for c in (0, 1))
+
+
+@dataclass(frozen=True, slots=True)
+class Equation:
+    """The observation equation of one kind.
+
+    Parameters
+    ----------
+    kind : ObservationKind
+    linear : callable
+        Computed value and partials.
+    touches : tuple of (str, int)
+        Coordinates in the order of the partials.
+    shares : bool
+        One more slot behind them: the orientation of a set, or an instrument constant.
+    heights : bool
+        Its constant part is the height of the target minus that of the instrument.
+    """
+
+    kind: ObservationKind
+    linear: Kind
+    touches: Touched
+    shares: bool = False
+    heights: bool = False
+
+
+K = ObservationKind
+EQUATIONS: tuple[Equation, ...] = (
+    Equation(K.ANGLE, angle, TURNED),
+    Equation(K.DIRECTION, oriented, PLANE, shares=True),
+    Equation(K.DISTANCE, distance, PLANE),
+    Equation(K.SLOPE_DISTANCE, slope_distance, SPACE, heights=True),
+    Equation(K.ZENITH, zenith, SPACE, heights=True),
+    Equation(K.HEIGHT_DIFFERENCE, difference, (("at", 2), ("to", 2)), heights=True),
+    Equation(K.AZIMUTH, azimuth, PLANE),
+    Equation(K.GYRO, oriented, PLANE, shares=True),
+    Equation(K.GYRO_CONSTANT, single, (), shares=True),
+    Equation(K.COORDINATE_E, single, (("at", 0),)),
+    Equation(K.COORDINATE_N, single, (("at", 1),)),
+    Equation(K.COORDINATE_H, single, (("at", 2),)),
+    Equation(K.VECTOR_E, difference, (("at", 0), ("to", 0))),
+    Equation(K.VECTOR_N, difference, (("at", 1), ("to", 1))),
+    Equation(K.VECTOR_H, difference, (("at", 2), ("to", 2)), heights=True),
 )
-"""Every kind of observation and its function; a test asks for completeness."""
+"""One equation for every kind of ``domain.observations``; a test asks for completeness."""
+
+LINEARISATION = MappingProxyType({item.kind: item.linear for item in EQUATIONS})
+OFFSETS = MappingProxyType({item.kind: item.touches for item in EQUATIONS})
+SHARING = frozenset(item.kind for item in EQUATIONS if item.shares)
+"""Kinds with one more slot: an orientation or a constant."""
+WITH_HEIGHTS = frozenset(item.kind for item in EQUATIONS if item.heights)

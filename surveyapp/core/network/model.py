@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.core.leastsquares.equations import Ints, Structure
+from surveyapp.core.network.linearise import OFFSETS, WITH_HEIGHTS
 from surveyapp.domain.observations import ANGULAR, CorrelatedBlock, Observation, ObservationKind
 from surveyapp.domain.traverse import Network, Status
 from surveyapp_models.arrays import Floats
@@ -24,33 +25,6 @@ from surveyapp_models.arrays import Floats
 NDBool = NDArray[np.bool_]
 WIDEST = 6
 """Most slots that one observation touches."""
-
-OFFSETS: dict[ObservationKind, tuple[tuple[str, int], ...]] = {
-    ObservationKind.ANGLE: tuple((who, c) for who in ("at", "back", "to") for c in (0, 1)),
-    ObservationKind.DIRECTION: tuple((who, c) for who in ("at", "to") for c in (0, 1)),
-    ObservationKind.DISTANCE: tuple((who, c) for who in ("at", "to") for c in (0, 1)),
-    ObservationKind.SLOPE_DISTANCE: tuple((who, c) for who in ("at", "to") for c in (0, 1, 2)),
-    ObservationKind.ZENITH: tuple((who, c) for who in ("at", "to") for c in (0, 1, 2)),
-    ObservationKind.HEIGHT_DIFFERENCE: (("at", 2), ("to", 2)),
-    ObservationKind.AZIMUTH: tuple((who, c) for who in ("at", "to") for c in (0, 1)),
-    ObservationKind.GYRO: tuple((who, c) for who in ("at", "to") for c in (0, 1)),
-    ObservationKind.GYRO_CONSTANT: (),
-    ObservationKind.COORDINATE_E: (("at", 0),),
-    ObservationKind.COORDINATE_N: (("at", 1),),
-    ObservationKind.COORDINATE_H: (("at", 2),),
-    ObservationKind.VECTOR_E: (("at", 0), ("to", 0)),
-    ObservationKind.VECTOR_N: (("at", 1), ("to", 1)),
-    ObservationKind.VECTOR_H: (("at", 2), ("to", 2)),
-}
-
-_WITH_HEIGHTS = frozenset(
-    {
-        ObservationKind.SLOPE_DISTANCE,
-        ObservationKind.ZENITH,
-        ObservationKind.HEIGHT_DIFFERENCE,
-        ObservationKind.VECTOR_H,
-    }
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,12 +111,6 @@ class Model:
         return len(self.unknown_of) - 1 - len(self.orientations) - len(self.constants)
 
 
-SHARING = frozenset(
-    {ObservationKind.DIRECTION, ObservationKind.GYRO, ObservationKind.GYRO_CONSTANT}
-)
-"""Kinds with one more slot: an orientation or a constant."""
-
-
 def _select(network: Network) -> tuple[list[Observation], list[int], list[int]]:
     """Used observations with their places, and the places of the skipped ones."""
     usable = {
@@ -193,7 +161,7 @@ def _slots(
 
 def _constant(obs: Observation) -> float:
     """Known part of the computed value."""
-    if obs.kind in _WITH_HEIGHTS:
+    if obs.kind in WITH_HEIGHTS:
         return obs.ht - obs.hi
     return obs.convergence if obs.kind is ObservationKind.GYRO else 0.0
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from surveyapp.core.leastsquares.equations import ElementGroup
-from surveyapp.core.network.linearise import LINEARISATION
-from surveyapp.core.network.model import OFFSETS, SHARING, WIDEST, Model
+from surveyapp.core.network.linearise import LINEARISATION, OFFSETS, SHARING
+from surveyapp.core.network.model import WIDEST, Model
 from surveyapp_models.angles import wrap_pi_array
 from surveyapp_models.arrays import Floats
 

@@ -18,6 +18,7 @@ import numpy as np
 
 from surveyapp.core.leastsquares.equations import ElementGroup
 from surveyapp.core.leastsquares.solution import Cofactor
+from surveyapp.core.network.estimated_sigmas import Share, bounds, degrees
 from surveyapp.domain.adjustment import Ellipse, GlobalTest
 from surveyapp_models.arrays import Floats
 
@@ -108,10 +109,20 @@ def assess(
     return Quality(*result)
 
 
+def control(mdb: Floats) -> Floats:
+    """Diagonal of P Qvv P from smallest detectable biases; nan = uncontrolled."""
+    return np.asarray((noncentrality() / mdb) ** 2, dtype=np.float64)
+
+
 def global_test(
-    sum_of_squares: float, dof: int, *, sigma_apriori: float, probability: float
+    sum_of_squares: float,
+    dof: int,
+    *,
+    sigma_apriori: float,
+    probability: float,
+    estimated: Sequence[Share] = (),
 ) -> GlobalTest:
-    """Chi-square test of the whole adjustment, two-sided.
+    """Test of the whole adjustment, two-sided: chi-square, or F where sigmas were estimated.
 
     Parameters
     ----------
@@ -119,6 +130,8 @@ def global_test(
         Of whitened residuals.
     dof : int
     sigma_apriori, probability : float
+    estimated : sequence of Share
+        Of sigmas that were estimated from a few readings.
 
     Returns
     -------
@@ -131,6 +144,18 @@ def global_test(
     from scipy.special import chdtri
 
     ratio = math.sqrt(sum_of_squares / dof)
+    if estimated:
+        lower, upper = bounds(estimated, dof, probability)
+        return GlobalTest(
+            total,
+            sigma_apriori,
+            ratio,
+            lower,
+            upper,
+            probability,
+            lower <= ratio <= upper,
+            degrees(estimated),
+        )
     alpha = 1.0 - probability
     lower = math.sqrt(float(chdtri(dof, 1.0 - alpha / 2.0)) / dof)
     upper = math.sqrt(float(chdtri(dof, alpha / 2.0)) / dof)
@@ -155,7 +180,9 @@ def confidence_scale(probability: float, dof: int | None) -> float | None:
     return math.sqrt(dof * ((1.0 - probability) ** (-2.0 / dof) - 1.0))
 
 
-def family_critical(tests: int, level: float, dof: int | None) -> float | None:
+def family_critical(
+    tests: int, level: float, dof: int | None, *, sigma_dof: float | None = None
+) -> float | None:
     """Critical value of the largest of many standardized residuals.
 
     Parameters
@@ -167,6 +194,8 @@ def family_critical(tests: int, level: float, dof: int | None) -> float | None:
         bound over the tests: it holds whatever their correlation).
     dof : int or None
         Degrees of freedom where sigma0 is estimated from the same residuals (tau), else None.
+    sigma_dof : float or None
+        Degrees of freedom of sigmas that were estimated beforehand (Student), None where known.
 
     Returns
     -------
@@ -175,11 +204,14 @@ def family_critical(tests: int, level: float, dof: int | None) -> float | None:
     """
     if tests <= 0:
         return None
-    if dof is None:
+    if dof is None and sigma_dof is None:
         return NormalDist().inv_cdf(1.0 - level / (2.0 * tests))
-    if dof <= 1:
+    if dof is not None and dof <= 1:
         return None
     from scipy.special import stdtrit
+
+    if dof is None:
+        return float(stdtrit(sigma_dof, 1.0 - level / (2.0 * tests)))
 
     t = float(stdtrit(dof - 1, 1.0 - level / (2.0 * tests)))
     return math.sqrt(dof) * t / math.sqrt(dof - 1 + t * t)  # Pope (1976)

@@ -2,22 +2,19 @@
 
 Gives every observation the sigma of its traverse and its centring, and every gyro row the value of
 its sessions. It does not adjust anything.
-
-A sigma in a row is the surveyor's statement about that observation and is taken as it stands;
-centring is added to the header's sigmas only.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
-from surveyapp.core.network.centring import angle_centring, direction_centring
-from surveyapp.core.network.setups import Lengths, as_blocks, setup_blocks
+from surveyapp.core.network.setups import as_blocks, setup_blocks
+from surveyapp.core.network.stated_sigmas import estimated_part, row_sigma, side_lengths
 from surveyapp.core.network.touched import touched
 from surveyapp.domain.observations import CorrelatedBlock, Observation, ObservationKind
 from surveyapp.domain.project import Project, ResultWarning, Station
@@ -32,60 +29,6 @@ K = ObservationKind
 MM: Final = 1e-3
 _HORIZONTAL = frozenset({K.ANGLE, K.DIRECTION, K.AZIMUTH, K.GYRO})
 _LENGTHS = frozenset({K.DISTANCE, K.SLOPE_DISTANCE})
-
-
-def _lengths(
-    rows: Sequence[TraverseRow], stations: Mapping[str, Station]
-) -> dict[tuple[str, str], float]:
-    """Horizontal side lengths by two stations, from distances and, failing those, coordinates."""
-    zeniths = {(row.at, row.to): row.value for row in rows if row.kind is K.ZENITH}
-    found: dict[tuple[str, str], float] = {}
-    for row in rows:
-        if row.kind not in _LENGTHS or row.value is None or row.value <= 0.0:
-            continue
-        steep = zeniths.get((row.at, row.to)) if row.kind is K.SLOPE_DISTANCE else None
-        length = row.value * (1.0 if steep is None else math.sin(steep))
-        found[row.at, row.to] = found[row.to, row.at] = length
-    for row in rows:
-        for name in (row.to, row.back):
-            a, b = stations.get(row.at), stations.get(name)
-            if a is None or b is None or (row.at, name) in found:
-                continue
-            if a.e is None or a.n is None or b.e is None or b.n is None:
-                continue
-            if (length := math.hypot(b.e - a.e, b.n - a.n)) > 0.0:
-                found[row.at, name] = length
-    return found
-
-
-def _sigma(row: TraverseRow, header: Traverse, lengths: Lengths) -> float | None:
-    """Standard deviation of a row [rad] or [m], None where nothing states one."""
-    if row.sigma is not None:
-        return row.sigma
-    both = {"instrument_m": header.instrument_m, "target_m": header.target_m}
-    if row.kind in _LENGTHS:
-        if header.sigma_mm is None or header.sigma_ppm is None:
-            return None
-        own = math.hypot(header.sigma_mm * MM, header.sigma_ppm * 1e-6 * (row.value or 0.0))
-        return math.sqrt(own**2 + header.instrument_m**2 + header.target_m**2)
-    if row.kind is K.ZENITH and header.sigma_zenith is not None:
-        return header.sigma_zenith
-    if row.kind in (K.HEIGHT_DIFFERENCE, K.GYRO) or header.sigma_angle is None:
-        return None
-    fore = lengths.get((row.at, row.to))
-    if row.kind is K.ANGLE:
-        back = lengths.get((row.at, row.back))
-        extra = (
-            0.0
-            if back is None or fore is None
-            else angle_centring(back, fore, row.value or 0.0, **both)
-        )
-        return math.sqrt(header.sigma_angle**2 + extra)
-    own = header.sigma_angle / math.sqrt(2.0)  # an angle is the difference of two directions
-    if row.kind is K.ZENITH:
-        return header.sigma_angle
-    extra = 0.0 if fore is None else direction_centring(fore, **both)
-    return math.sqrt(own**2 + extra)
 
 
 def _observation(
@@ -105,6 +48,7 @@ def _observation(
             note=row.note,
             line=row.line,
             length_m=row.length_m,
+            estimated=estimated_part(row, header),
         )
     except SurveyError as refused:
         problems += [
@@ -152,13 +96,13 @@ def book_observations(
     observations, problems
         A row without a standard deviation, or with a value that cannot be, is a problem.
     """
-    lengths = _lengths(traverse.rows, {station.name: station for station in stations})
+    lengths = side_lengths(traverse.rows, {station.name: station for station in stations})
     observations: dict[int, Observation] = {}
     problems: list[Problem] = []
     for place, row in enumerate(traverse.rows):
         if row.kind is K.GYRO:
             continue
-        sigma = _sigma(row, traverse, lengths)
+        sigma = row_sigma(row, traverse, lengths)
         if sigma is None:
             where = said("{book}, line {line}", book=traverse.book, line=row.line)
             expected = said(
@@ -188,7 +132,7 @@ def _collect(
     before (``done``, which grows): an azimuth is one observation however often it is named.
     """
     known, problems = book_observations(traverse, project.stations)
-    lengths = _lengths(traverse.rows, {station.name: station for station in project.stations})
+    lengths = side_lengths(traverse.rows, {station.name: station for station in project.stations})
     known, blocks = setup_blocks(traverse, known, lengths)
     member_of: dict[int, int] = {}
     observations: list[Observation] = []

@@ -69,7 +69,7 @@ def _scaled(network: Network, factors: dict[str, float]) -> Network:
     """The network with each group's sigmas multiplied by its factor."""
     each = [factors.get(obs.group or str(obs.kind), 1.0) for obs in network.observations]
     observations = tuple(
-        replace(obs, sigma=obs.sigma * factor) if factor != 1.0 else obs
+        replace(obs, sigma=obs.sigma * factor, estimated=None) if factor != 1.0 else obs
         for obs, factor in zip(network.observations, each, strict=True)
     )
     blocks = tuple(

@@ -5,7 +5,9 @@ deflection, the rotation of the grid, a known azimuth behind every constant, the
 instrument) does not average down, and does not count in the test of their agreement.
 
 Source: Koch, K.-R. (1999), Parameter Estimation and Hypothesis Testing in Linear Models, 3.2.3
-(best linear unbiased estimate) and 4.2 (quadratic form of the residuals).
+(best linear unbiased estimate) and 4.2 (quadratic form of the residuals). Fai, A. H.-T. &
+Cornelius, P. L. (1996), Approximate F-tests of multiple degree of freedom hypotheses in generalized
+least squares analyses, J. Statist. Comput. Simul. 54, 363-378 (degrees of freedom of the test).
 """
 
 from __future__ import annotations
@@ -27,6 +29,8 @@ from surveyapp.domain.combined_result import CombinedPart, CombinedResult
 Floats = NDArray[np.float64]
 SINGULAR = 1e-12
 """Share of the largest own variance below which a difference of lines has no error of its own."""
+LEAST_DOF = 2.0
+"""Degrees of freedom up to which a squared t has no mean."""
 
 
 def combined_lines(
@@ -138,18 +142,32 @@ def _weights(items: Sequence[Uncertain], inverse: Floats) -> list[float]:
 def _agreement(items: Sequence[Uncertain], inverse: Floats) -> tuple[float, float]:
     """Quadratic form of the residuals and its probability if the lines agree.
 
-    Compared with F: its denominator is the effective number of degrees of freedom of the residuals.
+    Compared with F. The residuals of one mean are not independent: the degrees of freedom of the
+    denominator come from differences of the lines that are.
     """
     raw = inverse.sum(axis=0)
-    weights = [float(weight) for weight in raw / raw.sum()]
-    best = combine(zip(weights, items, strict=True))
-    residuals = [item - best for item in items]
-    vector = np.array([residual.value for residual in residuals])
+    values = np.array([item.value for item in items])
+    vector = values - float(raw @ values) / float(raw.sum())
     statistic = float(vector @ inverse @ vector)
-    total = math.fsum(residual.variance for residual in residuals)
-    parts = math.fsum(
-        residual.variance**2 / residual.dof for residual in residuals if residual.dof < math.inf
-    )
-    denominator = total**2 / parts if parts > 0.0 else math.inf
     dof = len(items) - 1
-    return statistic, f_tail(statistic / dof, dof_numerator=dof, dof_denominator=denominator)
+    tail = f_tail(statistic / dof, dof_numerator=dof, dof_denominator=_denominator(items))
+    return statistic, tail
+
+
+def _denominator(items: Sequence[Uncertain]) -> float:
+    """Degrees of freedom behind the test that the lines agree (Fai and Cornelius).
+
+    The differences to the first line are turned into independent ones; each has the degrees of
+    freedom of Welch and Satterthwaite, and together they have those with which F has the mean of
+    the sum of their squared t. With two lines: those of their difference.
+    """
+    differences = [item - items[0] for item in items[1:]]
+    _, axes = np.linalg.eigh(_covariance(differences))
+    independent = [combine(zip(axis.tolist(), differences, strict=True)) for axis in axes.T]
+    own = [max(item.dof, 1.0) for item in independent]
+    if len(own) == 1 or min(own) <= LEAST_DOF:
+        return min(own)
+    if min(own) == math.inf:
+        return math.inf
+    expected = math.fsum(dof / (dof - 2.0) if dof < math.inf else 1.0 for dof in own)
+    return 2.0 * expected / (expected - len(own))

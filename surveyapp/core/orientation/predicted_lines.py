@@ -9,7 +9,7 @@ from surveyapp.core.geodesy import Position
 from surveyapp.core.orientation.circumstances import Circumstances, facts_of
 from surveyapp.core.orientation.instrument_constant import InstrumentConstant
 from surveyapp.core.orientation.predicted_constant import predict_constants, predictable
-from surveyapp.core.orientation.prediction_notes import Wanted
+from surveyapp.core.orientation.prediction_notes import Wanted, too_few
 from surveyapp.core.statistics.repeated import RunScatter, run_scatter, weights_of
 from surveyapp.core.swing.session import ReducedSession
 from surveyapp.core.uncertain import Uncertain, aligned
@@ -65,10 +65,12 @@ def predicted_lines(
     lines: dict[Key, PredictedLine] = {}
     warnings: list[ResultWarning] = []
     for constant in constants:
+        name = constant.instrument.id
         if not predictable(constant):
             found.append(constant)
+            if any(instrument == name for _, _, instrument in groups):
+                warnings += too_few(constant)
             continue
-        name = constant.instrument.id
         facts = facts_of(reduced, name, positions)
         own = {key: members for key, members in groups.items() if key[2] == name}
         wanted = [_wanted(key, members, facts) for key, members in own.items()]

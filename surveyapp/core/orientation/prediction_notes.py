@@ -6,11 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from surveyapp.core.orientation.circumstances import Circumstances
+from surveyapp.core.orientation.instrument_constant import InstrumentConstant
 from surveyapp.core.uncertain import Uncertain
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.station_line import StationLine
 from surveyapp.domain.subject import Subject
-from surveyapp.languages import joined, listed, said
+from surveyapp.languages import counted, joined, listed, said
 from surveyapp_models.angles import RHO_ARCSEC
 
 ONE_TEMPERATURE_K = 3.0
@@ -78,6 +79,30 @@ def one_block(instrument: str, known: Sequence[Circumstances], wanted: bool) -> 
         instrument=instrument,
     )
     return [ResultWarning("one_block", text)]
+
+
+def too_few(constant: InstrumentConstant) -> list[ResultWarning]:
+    """Tell that a constant rests on too few determinations to show what changes it.
+
+    Nothing is told where it rests on something else: a constant known beforehand, what the archive
+    of the instrument has taught; and where the prediction that was asked for tells it already.
+    """
+    instrument, count = constant.instrument, len(constant.calibrations)
+    choice = instrument.constant_choice
+    archived = instrument.priors is not None and instrument.priors.scatter
+    if not count or archived or (choice is not None and choice.kind in ("known", "predicted")):
+        return []
+    text = counted(
+        "instrument {id}: its constant rests on {count} determination and its stated sigma; what "
+        "changes it between then and the line (transport, temperature, time) is not in the "
+        "interval: four determinations or more show it",
+        "instrument {id}: its constant rests on {count} determinations and their stated sigmas; "
+        "what changes it between them and the line (transport, temperature, time) is not in the "
+        "interval: four determinations or more show it",
+        count=count,
+        id=instrument.id,
+    )
+    return [ResultWarning("few_determinations", text, Subject.of("instrument", instrument.id))]
 
 
 def _lacks(visit: Circumstances, name: str) -> bool:

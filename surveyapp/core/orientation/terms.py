@@ -27,13 +27,15 @@ TERMS: Final[dict[str, str]] = {
     "scatter of determinations": "repeated sessions that state no sigma",
     "run-to-run scatter": "repeated sessions of one line",
     "centring": "centring_mm over the length of the line",
-    "known azimuth": "azimuth_known_sigma_arcsec, else sigma_m of the stations over the length",
+    "known azimuth": "azimuth_known_sigma_arcsec, else sigma_m of the stations (assumed 5 mm) over "
+    "the length",
     "known constant": "constant.sigma_arcsec of the instrument",
     "constant instability": "lines or epochs that disagree",
     "temperature of the constant": "sigma.temperature_arcsec_per_c of the card",
     "latitude of the constant": "sigma.latitude_arcsec of the card, times sec(latitude)",
     "adopted effect": "covariance of the adopted effect",
-    "deflection": "deflection of the stations or the region, with its correlation length",
+    "deflection": 'deflection of the stations or the region (assumed 5" and 20 km, values of '
+    "reason)",
     "printed convergence": "convergence_sigma_arcsec, else the last printed digit",
     "rotation of the mine grid": "grid.rotation_sigma_arcsec",
 }

@@ -31,6 +31,7 @@ from surveyapp.domain.calibration import (
 )
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.arrays import Floats
 from surveyapp_models.compass.heading import DEFAULT_DIP, dip_of
 
@@ -39,6 +40,9 @@ UNDERSTATED: Final = 2.0
 
 OFFSET_LIMIT_UT: Final = 2.0
 """Sigma of a hard iron up to which it counts as determined (levelling.md)."""
+
+MOST_UNEQUAL: Final = 4.0
+"""Scales of the axes that differ by more are units: one axis in mG beside uT is 10."""
 
 FEWEST_ROWS: Final = 20
 AZIMUTHS, BANDS = 12, 6
@@ -69,7 +73,30 @@ def calibrate_ellipsoid(log: SensorLog, *, limit: float) -> Calibration:
     sigmas = [_judged(trial, dip) for trial in trials]
     chosen, sigma = _gate(trials, chosen, (sigmas, dip, limit))
     verdict, known = _verdict(trials[chosen], sigma, limit)
+    if verdict != "refused":
+        _refuse_other_units(trials[chosen].fit, log.path)
     return _result(log, points, (trials, chosen, sigmas), (verdict, known, sigma, dip))
+
+
+def _refuse_other_units(fit: Ellipsoid, where: str) -> None:
+    """Axes whose scales differ by more than iron can make them.
+
+    Raises
+    ------
+    SurveyError
+    """
+    scales = np.diag(fit.soft)
+    if float(scales.max()) <= MOST_UNEQUAL * float(scales.min()):
+        return
+    raise SurveyError(
+        Problem(
+            "mag_x/y/z are in different units",
+            where,
+            "scales " + ", ".join(f"{a} {1.0 / s:.3g}" for a, s in zip("xyz", scales, strict=True)),
+            f"scales within a factor of {MOST_UNEQUAL:g}: iron makes no more",
+            "give each its own: --unit COLUMN=... or --scale COLUMN=VALUE",
+        )
+    )
 
 
 def _gate(
@@ -162,7 +189,7 @@ NAMES: Final = (
 UNITS: Final = ("uT", "uT", "uT", *("1",) * 6, "uT")
 
 
-def _parameters(fit: Ellipsoid, known: list[bool]) -> tuple[SensorParameter, ...]:
+def _parameters(fit: Ellipsoid, known: list[bool], *, refused: bool) -> tuple[SensorParameter, ...]:
     w, b = fit.soft, fit.offset
     values = [*b, w[0, 0], w[1, 1], w[2, 2], w[0, 1], w[0, 2], w[1, 2], fit.field]
     covariance = _derived_covariance(fit)
@@ -170,7 +197,8 @@ def _parameters(fit: Ellipsoid, known: list[bool]) -> tuple[SensorParameter, ...
     found = []
     for index, (name, unit) in enumerate(zip(NAMES, UNITS, strict=True)):
         if not known[index]:
-            found.append(SensorParameter(name, None, None, unit))
+            why = "refused" if refused else "sigma_above_2_uT"
+            found.append(SensorParameter(name, None, None, unit, why))
         elif absent[index]:
             found.append(SensorParameter(name, round(float(values[index]), 12), None, unit))
         else:
@@ -194,7 +222,7 @@ def _result(
     trials, chosen, sigmas = found
     verdict, known, sigma, dip = judged
     fit, plain = trials[chosen].fit, trials[0]
-    parameters = _parameters(fit, known)
+    parameters = _parameters(fit, known, refused=verdict == "refused")
     undetermined = tuple(p.name for p in parameters if p.value is None)
     models = tuple(
         CalibrationModel(t.fit.model, t.fit.rms, t.held_rms, i == chosen and verdict != "refused")
@@ -308,6 +336,12 @@ def _warnings(
     if log.vector("acc") is None:
         text = "no specific force: the dip is taken as 65 degrees"
         found.append(ResultWarning("dip_assumed", text))
+    elif trials[chosen].fit.converged and record_dip(log, trials[chosen].fit) < 0.0:
+        text = (
+            "the field points upwards, as it does south of the magnetic equator: elsewhere acc_* "
+            "is gravity and not specific force (+g on the axis that is up); --scale COLUMN=-1"
+        )
+        found.append(ResultWarning("field_points_up", text))
     return found
 
 

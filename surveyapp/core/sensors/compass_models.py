@@ -92,15 +92,15 @@ def choose(points: Floats, trials: list[ModelTrial]) -> int:
     for index in range(1, len(trials)):
         if not trials[index].fit.converged:
             continue
-        if not _gains(trials[chosen].blocks - trials[index].blocks, BETTER):
+        if not gains(trials[chosen].blocks - trials[index].blocks, BETTER):
             continue
         gain = tenths(points, trials[chosen].fit) - tenths(points, trials[index].fit)
-        if _gains(gain, FORESEEN):
+        if gains(gain, FORESEEN):
             chosen = index
     return chosen
 
 
-def _gains(gain: Floats, errors: float) -> bool:
+def gains(gain: Floats, errors: float) -> bool:
     """Whether the mean of a gain exceeds so many standard errors."""
     if gain.size < 2:
         return False

@@ -14,6 +14,8 @@ from typing import Final
 
 import numpy as np
 
+from surveyapp.core.sensors.compass_attitude import NAMES as MISALIGNMENT
+from surveyapp.core.sensors.compass_attitude import turned_back
 from surveyapp.domain.sensor_card import SensorCard
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
@@ -126,7 +128,7 @@ def compensate_compass(
 
 
 def _corrected_field(points: Floats, card: SensorCard, where: str) -> Floats:
-    """W (m - b), with the numbers that the fit used, determined one by one or not [uT]."""
+    """W (m - b) in the body, with the numbers that the fit used, determined or not [uT]."""
     places = ("xx", "yy", "zz", "xy", "xz", "yz")
     hard = [f"hard_iron_{axis}" for axis in BODY]
     soft = [f"soft_iron_{place}" for place in places]
@@ -139,7 +141,9 @@ def _corrected_field(points: Floats, card: SensorCard, where: str) -> Floats:
     numbers = {name: float(value) for name, value in used.items() if value is not None}
     xx, yy, zz, xy, xz, yz = (numbers[name] for name in soft)
     matrix = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    return np.asarray((points - np.array([numbers[name] for name in hard])) @ matrix)
+    field = (points - np.array([numbers[name] for name in hard])) @ matrix
+    turn = [card.constants.get(f"used_{name}", 0.0) for name in MISALIGNMENT]
+    return turned_back(field, np.radians(turn)) if any(turn) else np.asarray(field)
 
 
 def _ellipsoid_sigma(card: SensorCard, field: Floats, up: Floats | None) -> Floats:

@@ -9,6 +9,7 @@ of a residual and the true error of the arcsine stand side by side.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -309,7 +310,7 @@ def _result(
     return Calibration(
         kind="dividing-head",
         source=log.id,
-        parameters=tuple(parameters),
+        parameters=tuple(_with_reason(item, present, first) for item in parameters),
         before=Misfit(
             None if first is None else rms(first.output - first.output.mean()), unit, "static, +-90"
         ),
@@ -329,6 +330,29 @@ def _result(
         covariance=None,
         temperature_c=_temperatures(log),
     )
+
+
+_TEST_OF: Final = {
+    "sensitivity": "static",
+    "zero": "static",
+    "linearity": "static",
+    "transverse": "transverse",
+    "tilt": "reversal",
+    "capacitance": "capacitance",
+    "bandwidth": "dynamic",
+}
+"""First word of a parameter to its test; ``zero_stability`` is of the test ``zero``."""
+
+
+def _with_reason(item: SensorParameter, present: set[str], first: Line | None) -> SensorParameter:
+    """A parameter without a value says whether its test, its scale or rows are missing."""
+    if item.value is not None:
+        return item
+    test = "zero" if item.name.startswith("zero_") else _TEST_OF[item.name.split("_")[0]]
+    if test not in present:
+        return replace(item, reason="test_absent")
+    scaled = test in ("transverse", "zero", "reversal")
+    return replace(item, reason="no_scale" if first is None and scaled else "too_few_rows")
 
 
 def _has_set(log: SensorLog, number: int) -> bool:

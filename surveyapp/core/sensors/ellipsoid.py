@@ -97,44 +97,48 @@ def matrix_of(theta: Floats) -> Floats:
     return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 
+def _length(vectors: Floats) -> Floats:
+    return np.asarray(np.sqrt(np.einsum("ni,ni->n", vectors, vectors)))
+
+
 def distances(points: Floats, theta: Floats) -> Floats:
     """Sampson distance of points from the surface, shape (n,) [uT]."""
     matrix = matrix_of(theta)
     u = (points - theta[:3]) @ matrix
-    s = np.linalg.norm(u, axis=1)
-    g = np.linalg.norm(u @ matrix, axis=1) / s
+    s = _length(u)
+    g = _length(u @ matrix) / s
     return np.asarray((s - 1.0) / g)
 
 
+_FIRST: Final = np.array([i for i, _ in _PLACES])
+_SECOND: Final = np.array([j for _, j in _PLACES])
+_SHARE: Final = np.where(_FIRST == _SECOND, 0.5, 1.0)
+
+
+def _symmetric(a: Floats, b: Floats) -> Floats:
+    """Derivatives of a A b with respect to the six terms of a symmetric A, shape (n, 6)."""
+    return np.asarray(_SHARE * (a[:, _FIRST] * b[:, _SECOND] + a[:, _SECOND] * b[:, _FIRST]))
+
+
 def _linearised(points: Floats, theta: Floats) -> tuple[Floats, Floats]:
-    """Distances and their derivatives with respect to theta, shapes (n,) and (n, 9)."""
+    """Distances and their derivatives with respect to theta, shapes (n,) and (n, 9).
+
+    With n = u / s, w = A n, g = |w|: ds = n du, dg = (w dA n + (A w) (du - n ds) / s) / g.
+    """
     matrix = matrix_of(theta)
     d = points - theta[:3]
     u = d @ matrix
-    s = np.linalg.norm(u, axis=1)
+    s = _length(u)
     n = u / s[:, None]
     w = n @ matrix
-    g = np.linalg.norm(w, axis=1)
+    g = _length(w)
     r = (s - 1.0) / g
-    jacobian = np.empty((points.shape[0], 9))
     wm = w @ matrix
-    for k in range(9):
-        change = np.zeros_like(w)
-        if k < 3:
-            du = np.broadcast_to(-matrix[k], d.shape)
-        else:
-            i, j = _PLACES[k - 3]
-            du = np.zeros_like(d)
-            du[:, i] += d[:, j]
-            change[:, i] += n[:, j]
-            if i != j:
-                du[:, j] += d[:, i]
-                change[:, j] += n[:, i]
-        ds = np.sum(n * du, axis=1)
-        dn = (du - n * ds[:, None]) / s[:, None]
-        dg = (np.sum(w * change, axis=1) + np.sum(wm * dn, axis=1)) / g
-        jacobian[:, k] = (ds - r * dg) / g
-    return r, jacobian
+    ds = np.concatenate([-w, _symmetric(n, d)], axis=1)
+    turned = np.concatenate([-(wm @ matrix), _symmetric(wm, d)], axis=1)
+    dg = (turned - (g**2)[:, None] * ds) / s[:, None]
+    dg[:, 3:] += _symmetric(w, n)
+    return r, np.asarray((ds - (r / g)[:, None] * dg) / g[:, None])
 
 
 def _active(model: str) -> Floats:

@@ -105,11 +105,14 @@ def unit_powers(frequency: Floats, interval: float) -> Floats:
     )
 
 
+@lru_cache(maxsize=2)
 def sine_tapers(n: int) -> Floats:
-    """The first sine tapers, shape (TAPERS, n)."""
+    """The first sine tapers, shape (TAPERS, n); not to be written into."""
     t = np.arange(1, n + 1)
     k = np.arange(1, TAPERS + 1)[:, None]
-    return np.asarray(np.sqrt(2.0 / (n + 1)) * np.sin(np.pi * k * t / (n + 1)))
+    found: Floats = np.sqrt(2.0 / (n + 1)) * np.sin(np.pi * k * t / (n + 1))
+    found.flags.writeable = False
+    return found
 
 
 def _neighbours(largest: int) -> Floats:

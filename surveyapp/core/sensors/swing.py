@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from surveyapp.core.sensors.compass_axes import refuse_mirrored
 from surveyapp.core.sensors.linear import LinearFit, alternate_blocks, fit_linear, rms
 from surveyapp.domain.calibration import (
     Calibration,
@@ -89,6 +90,7 @@ def calibrate_swing(log: SensorLog, *, limit: float) -> Calibration:
     """
     psi = np.radians(log.columns["heading_deg"])
     shown = shown_heading(log)
+    refuse_mirrored(psi, shown, log.path)
     deviation = (psi - shown + np.pi) % (2.0 * np.pi) - np.pi
     middle = math.atan2(float(np.mean(np.sin(deviation))), float(np.mean(np.cos(deviation))))
     deviation = middle + (deviation - middle + np.pi) % (2.0 * np.pi) - np.pi

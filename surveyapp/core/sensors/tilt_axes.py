@@ -27,6 +27,10 @@ from surveyapp.errors import Problem, SurveyError
 AXES: Final = ("along", "across")
 TERMS: Final = ("zero", "scale", "cross", "temperature")
 UNITS: Final = {"zero": "arcsec", "scale": "1", "cross": "1", "temperature": "arcsec/K"}
+FEWEST_ROWS: Final = 5
+SCALES: Final = (0.2, 5.0)
+"""A scale factor beyond these is another unit: arc-minutes, degrees, counts."""
+
 BLOCK_ROWS: Final = 7
 """Rows of a held-out block (levelling.md: tilt 7 rows)."""
 
@@ -67,12 +71,13 @@ def calibrate_tilt_axes(log: SensorLog, *, reference_temperature_c: float = 20.0
         If the references do not determine zero, scale and cross axis, or the axes are exchanged.
     """
     temperature = log.columns.get("temperature_c")
-    usable = temperature is not None and bool(np.all(np.isfinite(temperature)))
-    theta = temperature - reference_temperature_c if temperature is not None and usable else None
-    if theta is not None and float(np.ptp(theta)) == 0.0:
-        theta = None
+    theta = None
+    if temperature is not None and not bool(np.all(np.isnan(temperature))):
+        _refuse_gaps(log, temperature)
+        theta = temperature - reference_temperature_c if np.ptp(temperature) > 0.0 else None
     fits = [_fit_axis(log, axis, theta) for axis in AXES]
     _refuse_exchanged(log, fits)
+    _refuse_other_unit(log, fits)
     return _result(log, fits, theta, reference_temperature_c)
 
 
@@ -89,7 +94,7 @@ def _fit_axis(log: SensorLog, axis: str, theta: Array | None) -> AxisFit:
         design = design[:, :3]
         fit = fit_linear(design, reading, correlated=True)
     plain = fit_linear(design[:, :2], reading)
-    if fit is None or plain is None:
+    if fit is None or plain is None or log.size < FEWEST_ROWS:
         raise SurveyError(
             Problem(
                 f"the references do not determine the axis {axis}",
@@ -128,6 +133,41 @@ def _refuse_exchanged(log: SensorLog, fits: list[AxisFit]) -> None:
         )
 
 
+def _refuse_other_unit(log: SensorLog, fits: list[AxisFit]) -> None:
+    """A reading that changes by another unit than its reference."""
+    problems = []
+    for item in fits:
+        scale = abs(float(item.fit.x[1]))
+        if SCALES[0] <= scale <= SCALES[1]:
+            continue
+        hint = f"--unit COLUMN=... for tilt_{item.axis}_arcsec, or --scale for counts"
+        problems.append(
+            Problem(
+                f"the axis {item.axis} is in another unit than its reference",
+                log.path,
+                f"it changes by {scale:.4g} for each arc-second of the reference",
+                f"{SCALES[0]:g} to {SCALES[1]:g}",
+                hint,
+            )
+        )
+    if problems:
+        raise SurveyError(problems)
+
+
+def _refuse_gaps(log: SensorLog, temperature: Array) -> None:
+    missing = int(np.count_nonzero(np.isnan(temperature)))
+    if missing:
+        raise SurveyError(
+            Problem(
+                "temperature_c is not a number in some rows",
+                log.path,
+                f"{missing} of {log.size} rows",
+                "a temperature in each row, or no such column",
+                "leave these rows out",
+            )
+        )
+
+
 def _result(
     log: SensorLog, fits: list[AxisFit], theta: Array | None, reference_c: float
 ) -> Calibration:
@@ -138,7 +178,10 @@ def _result(
             if term in item.terms:
                 index = item.terms.index(term)
                 value, sigma = float(item.fit.x[index]), float(item.fit.sigma[index])
-            parameters.append(SensorParameter(f"{term}_{item.axis}", value, sigma, UNITS[term]))
+            why = "no_temperature" if value is None else None
+            parameters.append(
+                SensorParameter(f"{term}_{item.axis}", value, sigma, UNITS[term], why)
+            )
     undetermined = tuple(p.name for p in parameters if p.value is None)
     raw = np.concatenate(
         [log.columns[f"tilt_{a}_arcsec"] - log.columns[f"ref_{a}_arcsec"] for a in AXES]

@@ -148,9 +148,11 @@ def student_quantile(probability: float, dof: float) -> float:
     if dof >= MANY_DOF and normal <= MOST_NORMAL:
         return near
     tail = 1.0 - probability
+    if dof >= FEW_DOF:
+        polished = _polished(near, tail, dof)
+        if polished is not None:
+            return polished
     low, high = 0.0, normal + 1.0
-    if dof >= FEW_DOF and student_tail(0.99 * near, dof) > tail > student_tail(1.01 * near, dof):
-        low, high = 0.99 * near, 1.01 * near
     while student_tail(high, dof) > tail:
         high *= 2.0
     return _root(lambda value: math.log(student_tail(value, dof) / tail), low, high)
@@ -161,6 +163,24 @@ FEW_DOF = 3.0
 MANY_DOF = 1000.0
 MOST_NORMAL = 5.0
 """The first term left out is below 1e-12 of the quantile there."""
+
+
+def _polished(near: float, tail: float, dof: float) -> float | None:
+    """Quantile from an approximate one by Halley's method; None where that does not settle."""
+    log_front = math.lgamma(0.5 * (dof + 1.0)) - math.lgamma(0.5 * dof)
+    log_front -= 0.5 * math.log(dof * math.pi)
+    value = near
+    for _ in range(6):
+        density = math.exp(log_front - 0.5 * (dof + 1.0) * math.log1p(value * value / dof))
+        newton = (student_tail(value, dof) - tail) / density
+        bend = 0.5 * (dof + 1.0) * value / (dof + value * value)
+        step = newton * (1.0 + newton * bend)
+        if not abs(step) < 0.1 * near:
+            return None
+        value += step
+        if abs(step) ** 3 <= 1e-15:  # the next step is of this order
+            return value
+    return None
 
 
 def _student_series(z: float, dof: float) -> float:

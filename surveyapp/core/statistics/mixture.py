@@ -18,7 +18,7 @@ import numpy as np
 from surveyapp_models.arrays import Floats
 
 PROBABILITY = 0.95
-TIGHT, CLOSE = 1e-6, 1e-7
+TIGHT, CLOSE = 1e-9, 1e-9
 """Relative width of a half-width, and its probability, at which its search ends."""
 MOST_MEMBERS = 600
 LEAST_WEIGHT = 1e-6
@@ -73,33 +73,23 @@ class Mixture:
         return self._cache[beside]
 
     def _half_width(self, beside: float) -> float:
+        """Newton's method within a bracket; the probability within grows with the half-width."""
         weights, offsets = self.weights, self.offsets
         scales = np.sqrt(np.maximum(self.variances + beside, 1e-300))
-
-        def missing(half: float) -> float:
-            ends = np.stack([half - offsets, -half - offsets]) / scales
-            below = student_cdf(ends, self.dof)
-            return PROBABILITY - float(weights @ (below[0] - below[1]))
-
         low, high = 0.0, float(np.max(np.abs(offsets) + 6.0 * scales))
-        above, under = PROBABILITY, missing(high)
         # twice the standard deviation of the whole is a good first guess
-        guess = min(2.0 * math.sqrt(float(weights @ (scales**2 + offsets**2))), 0.999 * high)
+        half = min(2.0 * math.sqrt(float(weights @ (scales**2 + offsets**2))), 0.999 * high)
         for _ in range(60):
-            value = missing(guess)
-            # Illinois: an end that stays counts half, so that both ends move
-            if value > 0.0:
-                low, above, under = guess, value, 0.5 * under
-            else:
-                high, under, above = guess, value, 0.5 * above
-            if high - low <= TIGHT * high or abs(value) < CLOSE:
+            ends = np.array((half - offsets, -half - offsets)) / scales
+            below, density = _student(ends, self.dof)
+            missing = PROBABILITY - float(weights @ (below[0] - below[1]))
+            slope = float((weights / scales) @ (density[0] + density[1]))
+            low, high = (half, high) if missing > 0.0 else (low, half)
+            if high - low <= TIGHT * high or abs(missing) < CLOSE:
                 break
-            guess = (
-                low + (high - low) * above / (above - under)
-                if above > under
-                else 0.5 * (low + high)
-            )
-        return guess
+            step = half + missing / slope if slope > 0.0 else math.nan
+            half = step if low < step < high else 0.5 * (low + high)
+        return half
 
 
 def half_widths(weights: Floats, means: Floats, variance: Floats, dof: float) -> Floats:
@@ -132,18 +122,30 @@ def half_widths(weights: Floats, means: Floats, variance: Floats, dof: float) ->
 
 def normal_cdf(z: Floats) -> Floats:
     """Normal distribution function, error below 1e-7."""
-    x = np.abs(z) / math.sqrt(2.0)
+    return _normal(z)[0]
+
+
+def _normal(z: Floats) -> tuple[Floats, Floats]:
+    """Normal distribution function and density."""
+    x = np.abs(z) * math.sqrt(0.5)
+    bell = np.exp(-x * x)
     t = 1.0 / (1.0 + 0.3275911 * x)
     poly = t * (
         0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429)))
     )
-    upper = 0.5 * poly * np.exp(-x * x)
-    return np.asarray(np.where(z >= 0.0, 1.0 - upper, upper))
+    upper = 0.5 * poly * bell
+    return np.where(z >= 0.0, 1.0 - upper, upper), bell * (1.0 / math.sqrt(2.0 * math.pi))
 
 
 def student_cdf(t: Floats, dof: float) -> Floats:
     """Student distribution function by Wallace's transformation to the normal one."""
+    return _student(t, dof)[0]
+
+
+def _student(t: Floats, dof: float) -> tuple[Floats, Floats]:
+    """Student distribution function and nearly its density: a slope for Newton's method."""
     if math.isinf(dof):
-        return normal_cdf(t)
-    z = np.sign(t) * np.sqrt(dof * np.log1p(t * t / dof)) * (8.0 * dof + 1.0) / (8.0 * dof + 3.0)
-    return normal_cdf(z)
+        return _normal(t)
+    shrunk = math.sqrt(dof) * (8.0 * dof + 1.0) / (8.0 * dof + 3.0)
+    below, bell = _normal(np.copysign(np.sqrt(np.log1p(t * t / dof)), t) * shrunk)
+    return below, bell / np.sqrt(1.0 + t * t / dof)

@@ -20,19 +20,21 @@ from operator import mul
 from surveyapp.core.statistics.distributions import chi_square_quantile, f_tail
 from surveyapp.core.uncertain import Source, Uncertain, combine
 
-SHARED = (
-    "centring",
-    "deflection",
-    "known azimuth",
-    "torsion ratio",
-    "known constant",
-    "adopted effect",
-    "lateral refraction",
-    "observer",
-    "temperature of the constant",
-    "latitude of the constant",
-    "printed convergence",
-    "rotation of the mine grid",
+SHARED = frozenset(
+    {
+        "centring",
+        "deflection",
+        "known azimuth",
+        "torsion ratio",
+        "known constant",
+        "adopted effect",
+        "lateral refraction",
+        "observer",
+        "temperature of the constant",
+        "latitude of the constant",
+        "printed convergence",
+        "rotation of the mine grid",
+    }
 )
 """Sources that repeated determinations of one line share: they do not average down."""
 
@@ -44,8 +46,11 @@ LEAST_REPETITIONS = 2
 
 def own_variance(item: Uncertain) -> float:
     """Variance [rad^2] of what belongs to one determination alone, as weights are made of it."""
-    own = item.without(*SHARED)
-    return math.fsum((part * source.weight_ratio) ** 2 for source, part in own.parts.items())
+    return math.fsum(
+        (part * source.weight_ratio) ** 2
+        for source, part in item.parts.items()
+        if source.name not in SHARED
+    )
 
 
 def weights_of(items: Sequence[Uncertain]) -> list[float]:
@@ -97,7 +102,7 @@ def consistency(groups: Sequence[Sequence[Uncertain]]) -> Consistency | None:
     the determinations.
     """
     squares, dof = 0.0, 0
-    variance_sum, variance_parts = 0.0, 0.0
+    sources: dict[Source, float] = {}
     for group in groups:
         usable = [item for item in group if 0.0 < own_variance(item) < math.inf]
         if len(usable) < 2:
@@ -106,12 +111,11 @@ def consistency(groups: Sequence[Sequence[Uncertain]]) -> Consistency | None:
         squares += math.fsum((item.value - mean) ** 2 / own_variance(item) for item in usable)
         dof += len(usable) - 1
         for item in usable:
-            own = item.without(*SHARED)
-            variance_sum += own.variance
-            variance_parts += own.variance**2 / own.dof if own.dof < math.inf else 0.0
+            for source, part in item.without(*SHARED).parts.items():
+                sources[source] = math.hypot(sources.get(source, 0.0), part)
     if dof == 0:
         return None
-    denominator = variance_sum**2 / variance_parts if variance_parts > 0.0 else math.inf
+    denominator = Uncertain(0.0, sources).dof  # a pooled estimate counts once for all of them
     probability = f_tail(squares / dof, dof_numerator=dof, dof_denominator=denominator)
     return Consistency(squares / dof, dof, probability)
 
@@ -137,15 +141,16 @@ def between_variance(groups: Sequence[Sequence[Uncertain]], *, probability: floa
         if len(group) >= 2 and all(0.0 < v < math.inf for v in variances)
     ]
 
-    def statistic(extra: float) -> float:
-        total = 0.0
+    def statistic(extra: float) -> tuple[float, float]:
+        """Sum of squares beside a further variance, and its derivative."""
+        total = slope = 0.0
         for variances, values in usable:
             weights = [1.0 / (v + extra) for v in variances]
             mean = math.fsum(map(mul, weights, values)) / math.fsum(weights)
-            total += math.fsum(
-                w * (value - mean) ** 2 for w, value in zip(weights, values, strict=True)
-            )
-        return total
+            squares = [w * (value - mean) ** 2 for w, value in zip(weights, values, strict=True)]
+            total += math.fsum(squares)
+            slope -= math.fsum(map(mul, weights, squares))
+        return total, slope
 
     dof = sum(len(values) - 1 for _, values in usable)
     if dof == 0:
@@ -153,17 +158,17 @@ def between_variance(groups: Sequence[Sequence[Uncertain]], *, probability: floa
     middle = float(dof)
     if dof >= LEAST_REPETITIONS:
         middle -= (dof - chi_square_quantile(0.5, dof)) * min(1.0, 2.0 * probability)
-    if statistic(0.0) <= middle:
-        return 0.0
-    low, high = 0.0, max(v for variances, _ in usable for v in variances)
-    while statistic(high) > middle:
-        high *= 4.0
+    # the sum is convex and falls: from below every step of Newton stays below
+    extra = 0.0
     for _ in range(200):
-        half = 0.5 * (low + high)
-        low, high = (half, high) if statistic(half) > middle else (low, half)
-        if high - low <= 1e-12 * high:
+        total, slope = statistic(extra)
+        if total <= middle:
             break
-    return high
+        step = (middle - total) / slope
+        extra += step
+        if step <= 1e-13 * extra:
+            break
+    return extra
 
 
 @dataclass(frozen=True, slots=True)

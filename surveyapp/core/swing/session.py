@@ -270,8 +270,9 @@ def reduce_targets(
     """Gyro azimuth of every target of a session."""
     results = []
     if reduction.azimuth is not None:
-        for target in azimuth_targets(session):
-            own = reduce_automatic(session, card, target=target).azimuth
+        for place, target in enumerate(azimuth_targets(session)):
+            first = place == 0
+            own = reduction.azimuth if first else _azimuth_of(session, card, target)
             correction, spread = _delivered_eccentric(session, target, sights, stations)
             if own is not None:
                 own = own.shifted(correction)
@@ -295,6 +296,11 @@ def reduce_targets(
         azimuth = None if reduction.north is None else reading - reduction.north
         results.append(TargetReduction(target, item, reading, correction, azimuth, level))
     return tuple(results)
+
+
+def _azimuth_of(session: OrientationSession, card: InstrumentCard, target: str) -> Uncertain | None:
+    """Delivered azimuth of a further target."""
+    return reduce_automatic(session, card, target=target).azimuth
 
 
 def _levelling(

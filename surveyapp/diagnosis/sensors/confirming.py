@@ -55,7 +55,7 @@ def confirmed(record: SensorRecord, fit: LoopFit, second: SensorRecord) -> Confi
     kept = tuple(c for c in fit.chosen if c.candidate.id not in names)
     after = fit
     if names:
-        after = fit_model(record.observed, record.base, kept) or fit
+        after = fit_model(record.data, kept) or fit
     parts = [
         part
         for c in after.chosen

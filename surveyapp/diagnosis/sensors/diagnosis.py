@@ -13,6 +13,7 @@ from typing import Any, Final
 import numpy as np
 
 from surveyapp.core.sensors.linear import alternate_blocks
+from surveyapp.diagnosis.result import Verdict
 from surveyapp.diagnosis.sensors.confirming import confirmed
 from surveyapp.diagnosis.sensors.document import (
     adopted_of,
@@ -40,6 +41,10 @@ from surveyapp_models.arrays import Floats
 ROOM_GRADIENT_UT: Final = 3.0
 """What the field of a room changes over the reach of an arm: without the attitude an effect on
 the size of the field that is smaller cannot be told from it (BROAD 01: 1.3 uT)."""
+
+MANY: Final = 3
+"""So many effects that together change the field by less than a room does, without the place: the
+record asks for something that none of them is (BROAD 01 without its place: four, 1.6 uT)."""
 
 SIZE_MARGIN: Final = 40.0
 """BIC that an effect on the size of the field must gain where what remains is not white: random
@@ -115,7 +120,7 @@ def diagnose_sensor(
     data_sha256 : str
         Of the log.
     """
-    found = run_loop(record.observed, record.base, record.candidates)
+    found = run_loop(record.data, record.candidates)
     found = _doubted(record, found)
     after = _refined(record, found.after)
     proof = None if second is None else confirmed(record, after, second)
@@ -125,7 +130,7 @@ def diagnose_sensor(
         notes += [ResultWarning("not_adopted", f"{n}: {why}") for n, why in proof.refused]
     best = _refined(record, found.best) if found.ambiguous else after
     fits = {"before": found.before, "after": after, "after_best": best}
-    verdict = _verdict(record, found)
+    verdict: Verdict = _verdict(record, found)
     if proof is not None and proof.refused and not found.ambiguous:
         verdict = "unattributed"
     adopted = [adopted_of(record, found, after, c) for c in after.chosen]
@@ -197,15 +202,16 @@ def _doubted(record: SensorRecord, found: LoopResult) -> LoopResult:
     if record.mode == "size" and found.after.chosen and found.after.noise != "white":
         weak = (found.steps[0].gain or 0.0) < SIZE_MARGIN
         if weak or _contribution(record, found.after) < ROOM_GRADIENT_UT:
-            first = found.steps[0]
-            rivals = (first, Trial("field_gradient", first.gain, 0.0, 1, first.noise))
-            return LoopResult(
-                found.before, found.before, found.after, found.trials, rivals, found.steps
-            )
+            return _perhaps_the_room(found)
+        return found
+    placeless = any(identity == "field_gradient" for identity, _ in record.missing)
+    if record.mode == "vector" and placeless and len(found.after.chosen) >= MANY:
+        if _contribution(record, found.after) < ROOM_GRADIENT_UT:
+            return _perhaps_the_room(found)
         return found
     if found.after.noise == "white" or found.ambiguous or found.after.chosen:
         return found
-    plain = fit_model(record.observed, record.base, found.after.chosen, only_white=True)
+    plain = fit_model(record.data, found.after.chosen, only_white=True)
     if plain is None:
         return found
     best: Trial | None = None
@@ -214,7 +220,7 @@ def _doubted(record: SensorRecord, found: LoopResult) -> LoopResult:
             continue
         for grid, design in candidate.designs(plain.residual):
             chosen_ = (*found.after.chosen, Chosen(candidate, grid, design))
-            fit = fit_model(record.observed, record.base, chosen_, only_white=True)
+            fit = fit_model(record.data, chosen_, only_white=True)
             if fit is not None and plain.bic - fit.bic > MARGIN:
                 trial = Trial(candidate.id, plain.bic - fit.bic)
                 if best is None or (trial.gain or 0.0) > (best.gain or 0.0):
@@ -225,12 +231,21 @@ def _doubted(record: SensorRecord, found: LoopResult) -> LoopResult:
     return LoopResult(found.before, found.after, found.after, found.trials, rivals, found.steps)
 
 
+def _perhaps_the_room(found: LoopResult) -> LoopResult:
+    """Nothing named: the first effect and the gradient of the room are not told apart."""
+    first = found.steps[0]
+    rivals = (first, Trial("field_gradient", first.gain, 0.0, 1, first.noise))
+    return LoopResult(found.before, found.before, found.after, found.trials, rivals, found.steps)
+
+
 def _contribution(record: SensorRecord, fit: LoopFit) -> float:
-    """Rms of what all effects together add to the observations, about its mean."""
+    """Rms of what all effects together add; of a size about its mean, which the base takes."""
     start = record.base.shape[2]
     design = np.concatenate([c.design for c in fit.chosen], axis=2)
     part = design @ fit.x[start:]
-    return float(np.sqrt(np.mean(np.sum((part - part.mean(axis=0)) ** 2, axis=1))))
+    if record.mode == "size":
+        part = part - part.mean(axis=0)
+    return float(np.sqrt(np.mean(np.sum(part**2, axis=1))))
 
 
 def _refined(record: SensorRecord, fit: LoopFit) -> LoopFit:
@@ -249,9 +264,7 @@ def _refined(record: SensorRecord, fit: LoopFit) -> LoopFit:
         moved = Chosen(
             chosen.candidate, {"on_s": on, "off_s": off}, block_means(rows, record.block)
         )
-        trial = fit_model(
-            record.observed, record.base, (*fit.chosen[:index], moved, *fit.chosen[index + 1 :])
-        )
+        trial = fit_model(record.data, (*fit.chosen[:index], moved, *fit.chosen[index + 1 :]))
         if trial is None or trial.bic > fit.bic + 6.0:
             return fit
         fit = trial
@@ -259,7 +272,7 @@ def _refined(record: SensorRecord, fit: LoopFit) -> LoopFit:
 
 
 def _row_residual(record: SensorRecord, fit: LoopFit, *, without: str = "") -> Floats:
-    """Residual row by row of base and switch; effects that are slow stay as block means."""
+    """Residual row by row of base and effects."""
     size = record.base.shape[2]
     residual = record.rows - record.base_rows @ fit.x[:size]
     start = size
@@ -272,6 +285,8 @@ def _row_residual(record: SensorRecord, fit: LoopFit, *, without: str = "") -> F
         if chosen.candidate.id == "interference_step" and record.step_rows is not None:
             on, off = chosen.grid["on_s"], chosen.grid["off_s"]
             residual = residual - (record.step_rows @ x) * switched(record.time, on, off)[:, None]
+        elif chosen.candidate.rows is not None:
+            residual = residual - chosen.candidate.rows(chosen.grid) @ x
         else:
             residual = residual - (chosen.design @ x)[record.block]
     return np.asarray(residual)
@@ -304,7 +319,7 @@ def _edges(record: SensorRecord, fit: LoopFit, chosen: Chosen) -> tuple[float, f
     return float(record.time[first]), off
 
 
-def _verdict(record: SensorRecord, found: LoopResult) -> str:
+def _verdict(record: SensorRecord, found: LoopResult) -> Verdict:
     if found.ambiguous:
         return "not_separable"
     if found.after.chosen or record.gross:
@@ -314,7 +329,7 @@ def _verdict(record: SensorRecord, found: LoopResult) -> str:
 
 def _plain(record: SensorRecord, fit: LoopFit) -> LoopFit:
     """The same model by plain least squares: what its smallest residuals are."""
-    return fit_model(record.observed, record.base, fit.chosen, only_white=True) or fit
+    return fit_model(record.data, fit.chosen, only_white=True) or fit
 
 
 def _model(record: SensorRecord, fit: LoopFit) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from surveyapp.diagnosis.result import CandidateVerdict
 from surveyapp.diagnosis.sensors.loop import Chosen, LoopFit, LoopResult, Trial
 from surveyapp.diagnosis.sensors.records import SensorRecord
 from surveyapp_models.effects import of_subject
@@ -55,6 +56,7 @@ def adopted_of(
     grid = [
         {"name": name, "value": value if math.isfinite(value) else None, "unit": "s"}
         for name, value in chosen.grid.items()
+        if name not in candidate.names
     ]
     if candidate.id == "interference_step":
         coefficients += [{**g, "sigma": None} for g in grid]
@@ -112,7 +114,7 @@ def candidates_of(found: LoopResult, record: SensorRecord) -> list[dict[str, Any
     rows = []
     for candidate in record.candidates:
         trial = last.get(candidate.id)
-        verdict = "not_significant"
+        verdict: CandidateVerdict = "not_significant"
         if candidate.id in found.after.ids:
             verdict = "adopted"
         elif candidate.id in ambiguous:

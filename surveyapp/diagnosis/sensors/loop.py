@@ -9,13 +9,13 @@ comes as near, neither is named.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
 
-from surveyapp.diagnosis.sensors.noise import Whitener, bic, whiteners
+from surveyapp.diagnosis.sensors.noise import Whitener, bic
 from surveyapp_models.arrays import Floats
 
 MARGIN: Final = 12.0
@@ -25,6 +25,23 @@ NEAR: Final = 6.0
 """Effects whose BIC differs by less cannot be told apart."""
 
 MOST_EFFECTS: Final = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Data:
+    """What the loop fits.
+
+    Parameters
+    ----------
+    observed : ndarray, shape (n, d)
+    base : ndarray, shape (n, d, p)
+    rivals : tuple of Whitener
+        Noise under which every model is fitted; the first is white.
+    """
+
+    observed: Floats
+    base: Floats
+    rivals: tuple[Whitener, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,8 +58,11 @@ class Candidate:
         Of the k coefficients.
     searched : int
         Parameters of the grid.
-    scale : tuple of float
+    scale : float
         Printed value = coefficient times scale.
+    rows : callable or None
+        The design of a grid point row by row, shape (m, d, k); None = what holds for a block holds
+        for each of its rows.
     """
 
     id: str
@@ -51,6 +71,7 @@ class Candidate:
     unit: str
     searched: int = 0
     scale: float = 1.0
+    rows: Callable[[Mapping[str, float]], Floats] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,17 +147,18 @@ class LoopResult:
 
 
 def fit_model(
-    observed: Floats, base: Floats, chosen: tuple[Chosen, ...], *, only_white: bool = False
+    data: Data, chosen: tuple[Chosen, ...], *, only_white: bool = False
 ) -> LoopFit | None:
     """Fit under every noise and keep the best by BIC; None where the design has a defect."""
+    observed = data.observed
     n, d = observed.shape
-    design = np.concatenate([base, *(c.design for c in chosen)], axis=2)
+    design = np.concatenate([data.base, *(c.design for c in chosen)], axis=2)
     p = design.shape[2]
     if n * d <= p + 2:
         return None
     searched = sum(c.candidate.searched for c in chosen)
     best: tuple[float, Whitener, Floats, Floats, float] | None = None
-    for white in whiteners(n)[: 1 if only_white else None]:
+    for white in data.rivals[: 1 if only_white else None]:
         a = white.apply(design).reshape(n * d, p)
         y = white.apply(observed).reshape(n * d)
         scale = np.sqrt(np.sum(a**2, axis=0))
@@ -163,27 +185,26 @@ def fit_model(
     )
 
 
-def run_loop(observed: Floats, base: Floats, candidates: Sequence[Candidate]) -> LoopResult:
+def run_loop(data: Data, candidates: Sequence[Candidate]) -> LoopResult:
     """Search the effects of a record.
 
     Parameters
     ----------
-    observed : ndarray, shape (n, d)
-    base : ndarray, shape (n, d, p)
+    data : Data
     candidates : sequence of Candidate
 
     Returns
     -------
     LoopResult
     """
-    current = fit_model(observed, base, ())
+    current = fit_model(data, ())
     if current is None:
         raise ValueError("the base model has a defect")
     before, history, steps = current, [], []
     ambiguous: tuple[Trial, ...] = ()
     best = current
     for _ in range(MOST_EFFECTS):
-        fits = _tried(observed, base, candidates, current)
+        fits = _tried(data, candidates, current)
         trials = tuple(_trial(current, cid, fit) for cid, fit in fits.items())
         history.append(trials)
         ranked = sorted((t for t in trials if t.gain is not None), key=lambda t: -(t.gain or 0.0))
@@ -193,17 +214,17 @@ def run_loop(observed: Floats, base: Floats, candidates: Sequence[Candidate]) ->
         top = fits[ranked[0].id]
         if top is None:
             break
-        if len(near) > 1 and not _both(observed, base, candidates, (top, near[1].id)):
+        if len(near) > 1 and not _both(data, candidates, (top, near[1].id)):
             ambiguous, best = near, top
             break
         steps.append(ranked[0])
         current = best = top
-        current = best = _pruned(observed, base, current)
+        current = best = _pruned(data, current)
     return LoopResult(before, current, best, tuple(history), ambiguous, tuple(steps))
 
 
 def _tried(
-    observed: Floats, base: Floats, candidates: Sequence[Candidate], current: LoopFit
+    data: Data, candidates: Sequence[Candidate], current: LoopFit
 ) -> dict[str, LoopFit | None]:
     found: dict[str, LoopFit | None] = {}
     for candidate in candidates:
@@ -211,7 +232,7 @@ def _tried(
             continue
         best: LoopFit | None = None
         for grid, design in candidate.designs(current.residual):
-            fit = fit_model(observed, base, (*current.chosen, Chosen(candidate, grid, design)))
+            fit = fit_model(data, (*current.chosen, Chosen(candidate, grid, design)))
             if fit is not None and (best is None or fit.bic < best.bic):
                 best = fit
         found[candidate.id] = best
@@ -227,24 +248,19 @@ def _trial(current: LoopFit, identity: str, fit: LoopFit | None) -> Trial:
     return Trial(identity, gain, ratio, max(extra, 1), fit.noise)
 
 
-def _both(
-    observed: Floats,
-    base: Floats,
-    candidates: Sequence[Candidate],
-    pair: tuple[LoopFit, str],
-) -> bool:
+def _both(data: Data, candidates: Sequence[Candidate], pair: tuple[LoopFit, str]) -> bool:
     """Whether the second effect is still there once the first is in the model."""
     first, second = pair
     candidate = next(c for c in candidates if c.id == second)
-    fit = _tried(observed, base, [candidate], first)[second]
+    fit = _tried(data, [candidate], first)[second]
     return fit is not None and first.bic - fit.bic > MARGIN
 
 
-def _pruned(observed: Floats, base: Floats, fit: LoopFit) -> LoopFit:
+def _pruned(data: Data, fit: LoopFit) -> LoopFit:
     """Without what a later effect has made needless."""
     for index in range(len(fit.chosen) - 1):
         rest = (*fit.chosen[:index], *fit.chosen[index + 1 :])
-        without = fit_model(observed, base, rest)
+        without = fit_model(data, rest)
         if without is not None and without.bic < fit.bic + MARGIN:
-            return _pruned(observed, base, without)
+            return _pruned(data, without)
     return fit

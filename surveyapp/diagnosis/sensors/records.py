@@ -15,7 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.diagnosis.candidates import missing_columns
-from surveyapp.diagnosis.sensors.loop import Candidate
+from surveyapp.diagnosis.sensors.loop import Candidate, Data
+from surveyapp.diagnosis.sensors.noise import whiteners
+from surveyapp.diagnosis.sensors.turn import turn
 from surveyapp.diagnosis.sensors.windows import Blocks, block_means, blocks_of, switch
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp_models.arrays import Floats
@@ -24,8 +26,8 @@ from surveyapp_models.effects.effect import Effect
 
 Mask = NDArray[np.bool_]
 
-SPECIAL: Final = frozenset({"interference_step"})
-"""Effects whose grid is refined to the row and not scanned as it stands."""
+SPECIAL: Final = frozenset({"interference_step", "misalignment"})
+"""Effects that are searched for in ways of their own: to the row, and about the turn found."""
 
 MOST_GROSS: Final = 0.01
 """Share of the rows above which they are no gross errors but how the record is."""
@@ -88,6 +90,11 @@ class SensorRecord:
     scale: float = 1.0
     missing: tuple[tuple[str, str], ...] = ()
     own: tuple[Effect, ...] = ()
+
+    @property
+    def data(self) -> Data:
+        """What the loop fits."""
+        return Data(self.observed, self.base, whiteners(len(self.observed)))
 
 
 def rotation_matrices(q: Floats) -> Floats:
@@ -193,15 +200,18 @@ def _candidate(
 ) -> Candidate:
     made: list[tuple[dict[str, float], Floats]] = []
 
+    def rows(point: Mapping[str, float]) -> Floats:
+        basis = effect.basis(columns, **point)
+        whole = basis.reshape(block.size, -1, basis.shape[1])
+        if along is None:
+            return np.asarray(whole)
+        return np.asarray(np.einsum("nd,ndk->nk", along, whole)[:, None, :])
+
     def designs(residual: Floats) -> Sequence[tuple[dict[str, float], Floats]]:
         del residual
         if not made:
-            for point in effect.grid_points(columns):
-                basis = effect.basis(columns, **point)
-                rows = basis.reshape(block.size, -1, basis.shape[1])
-                if along is not None:
-                    rows = np.einsum("nd,ndk->nk", along, rows)[:, None, :]
-                made.append((point, block_means(rows, block)))
+            points = effect.grid_points(columns)
+            made.extend((point, block_means(rows(point), block)) for point in points)
         return made
 
     return Candidate(
@@ -211,6 +221,7 @@ def _candidate(
         effect.coefficients[0].unit,
         len(effect.grid),
         1.0 / effect.coefficients[0].scale,
+        rows,
     )
 
 
@@ -228,6 +239,7 @@ def _vector_record(log: SensorLog, matrices: Floats, effects: tuple[Effect, ...]
     columns = _axis_columns(log, kept, (base_rows @ level)[kept])
     columns |= {f"level_{a}": base_rows[kept][:, :, j].ravel() for j, a in enumerate("xyz")}
     candidates, missing = _catalogued(effects, columns, block, None)
+    candidates.append(turn((base_rows @ level)[kept], base_rows[kept], block))
     used = log.columns["time_s"][kept]
     eye = np.tile(np.eye(3), (used.size, 1, 1))
     candidates.append(
@@ -282,7 +294,7 @@ def _size_candidates(
         warmer = (theta[::3] - theta.mean())[:, None, None]
         design = np.concatenate([warmer * m, warmer**2], axis=2)
         names = (*(f"temperature_{a}" for a in "xyz"), "temperature_square")
-        found.append(_plain("temperature", block_means(design, block), (names, "uT/K", 1.0)))
+        found.append(_plain("temperature", (design, block), names, "uT/K"))
     else:
         missing.append(("temperature", "no temperature_c [degree Celsius] that varies"))
     if place is not None and np.all(np.isfinite(place)):
@@ -290,8 +302,7 @@ def _size_candidates(
         squares = np.column_stack([at, at**2, at[:, [0]] * at[:, [1]], at[:, [0]] * at[:, [2]],
                                    at[:, [1]] * at[:, [2]]])  # fmt: skip
         names = tuple(f"gradient_{s}" for s in ("x", "y", "z", "xx", "yy", "zz", "xy", "xz", "yz"))
-        design = block_means(squares[:, None, :], block)
-        found.append(_plain("field_gradient", design, (names, "uT/m", 1.0)))
+        found.append(_plain("field_gradient", (squares[:, None, :], block), names, "uT/m"))
     else:
         missing.append(("field_gradient", "no place (ref_px_m, ref_py_m, ref_pz_m)"))
     return found
@@ -351,11 +362,14 @@ def _outliers(residual: Floats) -> list[tuple[int, float]]:
 Designs = Callable[[Floats], Sequence[tuple[dict[str, float], Floats]]]
 
 
-def _plain(identity: str, design: Floats, named: tuple[tuple[str, ...], str, float]) -> Candidate:
-    names, unit, scale = named
+def _plain(
+    identity: str, rows: tuple[Floats, Blocks], names: tuple[str, ...], unit: str
+) -> Candidate:
+    design, block = rows
+    means = block_means(design, block)
 
     def designs(residual: Floats) -> Sequence[tuple[dict[str, float], Floats]]:
         del residual
-        return [({}, design)]
+        return [({}, means)]
 
-    return Candidate(identity, designs, names, unit, 0, scale)
+    return Candidate(identity, designs, names, unit, rows=lambda _: design)

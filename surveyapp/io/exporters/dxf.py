@@ -23,7 +23,13 @@ Pair = tuple[int, str]
 
 def _ascii(text: str) -> str:
     """Text of R12: other letters by their number, which readers turn back."""
-    return "".join(c if " " <= c <= "~" else f"\\U+{ord(c) & 0xFFFF:04X}" for c in text)
+    return "".join(c if " " <= c <= "~" else _code(c) for c in text)
+
+
+def _code(c: str) -> str:
+    """A letter by the numbers of its UTF-16 units, four hexadecimal digits each."""
+    data = c.encode("utf-16-be")
+    return "".join(f"\\U+{data[i] << 8 | data[i + 1]:04X}" for i in range(0, len(data), 2))
 
 
 def _place(e: float, n: float, h: float | None, first: int = 10) -> list[Pair]:

@@ -37,6 +37,26 @@ def _names(points: Sequence[ExportedPoint]) -> list[ResultWarning]:
     return [ResultWarning("leading_zeros", text)]
 
 
+def _apart(points: Sequence[ExportedPoint]) -> None:
+    """Refuse names that GSI cannot tell apart: padding with zeros makes 7 and 007 one point."""
+    found: dict[str, list[str]] = {}
+    for point in points:
+        found.setdefault(point.name.lstrip("0") or "0", []).append(point.name)
+    problems = [
+        Problem(
+            "names become one, for GSI pads them with zeros",
+            "stations",
+            ", ".join(names),
+            "names that differ otherwise than by zeros in front",
+            "rename one of the stations for this export",
+        )
+        for names in found.values()
+        if len(names) > 1
+    ]
+    if problems:
+        raise SurveyError(problems)
+
+
 def _word(index: str, value: float) -> str:
     digits = round(abs(value) * 10_000)
     sign = "-" if value < 0.0 and digits else "+"
@@ -52,6 +72,7 @@ def gsi_text(survey: ExportedSurvey) -> Written:
         For names that 16 characters of ASCII cannot hold.
     """
     told = _names(survey.points)
+    _apart(survey.points)
     lines = []
     for number, point in enumerate(survey.points, start=1):
         text = f"*11{number % 10000:04d}+{point.name:0>16} " + _word("81", point.e)

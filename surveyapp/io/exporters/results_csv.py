@@ -12,6 +12,7 @@ from surveyapp.domain.records import flat
 from surveyapp.domain.results import OrientationResult
 
 TABLES: Final = ("lines", "sessions", "constants", "checks", "all")
+_NUMBER: Final = "+-.0123456789"
 _LONG: Final = ("table", "row", "quantity", "value")
 
 
@@ -52,7 +53,8 @@ def _cell(value: object) -> str:
     if isinstance(value, int | float):
         return repr(value)
     text = str(value)
-    return f"'{text}" if text[:1] in ("=", "+", "@", "\t") else text
+    formula = text[:1] in ("=", "+", "@", "\t", "\r") or (text[:1] == "-" and text.strip(_NUMBER))
+    return f"'{text}" if formula else text
 
 
 def _text(columns: Sequence[str], rows: Sequence[Mapping[str, str]]) -> str:

@@ -17,7 +17,8 @@ from surveyapp.domain.project import Project, ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.fieldbook.rows import COLUMNS
 from surveyapp.io.files import shown
-from surveyapp.io.importers.fieldfiles.gyrocsv import GyroReading, read_gyro_csv
+from surveyapp.io.importers.fieldfiles.catalogue import importer_of
+from surveyapp.io.importers.fieldfiles.gyrocsv import GyroReading
 from surveyapp.io.importers.fieldfiles.lines import field_digest
 from surveyapp.io.importing.stations import check_names, match_stations
 from surveyapp.io.importing.texts import RAW_COLUMNS, csv_text, degrees, plain
@@ -28,12 +29,16 @@ from surveyapp_models.angles import RHO_ARCSEC
 _UNSAFE: Final = '/\\:*?"<>| '
 
 
-def plan_gyro(project: Project, file: Path, options: ImportOptions, instrument: str) -> Planned:
+def plan_gyro(
+    project: Project, form: str, file: Path, options: ImportOptions, *, instrument: str
+) -> Planned:
     """Everything that an import of azimuths would write into a project.
 
     Parameters
     ----------
     project : Project
+    form : str
+        Id of an importer of azimuths.
     file : Path
     options : ImportOptions
         ``traverse`` names the readings as read.
@@ -48,7 +53,12 @@ def plan_gyro(project: Project, file: Path, options: ImportOptions, instrument: 
     folder = Path(project.path)
     name = traverse_name(options, file)
     copied = FileCopy(file, field_digest(file))
-    read = read_gyro_csv(file, options.read)
+    reader = importer_of(form).azimuths
+    if reader is None:
+        raise SurveyError(
+            Problem("this format holds no azimuths", "import", shown(form), "a table of a gyro")
+        )
+    read = reader(file, options.read)
     readings = [_composed(reading) for reading in read.readings]
     lines: dict[tuple[str, str], list[GyroReading]] = {}
     for reading in readings:
@@ -71,7 +81,7 @@ def plan_gyro(project: Project, file: Path, options: ImportOptions, instrument: 
     if problems:
         raise SurveyError(problems)
     result = ImportResult(
-        format="gyro-csv",
+        format=form,
         variant=read.variant,
         file=stored,
         sha256=copied.sha256,

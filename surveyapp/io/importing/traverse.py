@@ -19,9 +19,9 @@ from surveyapp.core.fieldfile.reduction import reduce_file
 from surveyapp.core.network.collector import paused_collection
 from surveyapp.domain.fieldfile import FieldFile, ImportResult, KnownPoint, ReducedSet
 from surveyapp.domain.project import Project, ResultWarning
-from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import shown
-from surveyapp.io.importers.fieldfiles.catalogue import IMPORTERS
+from surveyapp.io.importers.fieldfiles.catalogue import importer_of
 from surveyapp.io.importers.fieldfiles.gathering import ReadOptions
 from surveyapp.io.importers.fieldfiles.lines import field_digest
 from surveyapp.io.importing.stations import check_names, match_stations
@@ -117,15 +117,12 @@ def read_traverse_file(form: str, file: Path, options: ReadOptions) -> FieldFile
     SurveyError
         For an unknown format and whatever is wrong with the file.
     """
-    found = next((item for item in IMPORTERS if item.id == form), None)
-    if found is None:
-        known = [*(item.id for item in IMPORTERS), "gyro-csv"]
+    read = importer_of(form).pointings
+    if read is None:
         raise SurveyError(
-            Problem(
-                "there is no such format", "import", shown(form), "", nearest_names(form, known)
-            )
+            Problem("this format holds no pointings", "import", shown(form), "a traverse file")
         )
-    return _composed(found.read(file, options))
+    return _composed(read(file, options))
 
 
 def _sigmas(
@@ -134,12 +131,14 @@ def _sigmas(
     """Sigmas of the header: told, from the file itself, or assumed and told as such."""
     faces, zeniths = face_precision(sets), zenith_precision(sets)
     both = circle_precision(sets) if faces is None or zeniths is None else None
+    lengths = distance_precision(sets)
+    dof = _degrees(options, (faces, zeniths, both), lengths)
     if both is not None:
         faces = faces or both
         zeniths = zeniths or (both.direction, both.dof)
     angle, first = _angle_sigma(options.sigma_angle_arcsec, faces)
     zenith, more = _zenith_sigma(options.sigma_angle_arcsec, zeniths)
-    distance, second = _distance_sigma(options.sigma_distance, distance_precision(sets))
+    distance, second = _distance_sigma(options.sigma_distance, lengths)
     centring = (
         f"{ASSUMED_CENTRING_MM:g} mm are assumed for centring and for the height of instrument and "
         "target, each once for a set-up"
@@ -148,10 +147,30 @@ def _sigmas(
         "sigma_angle_arcsec": float(angle),
         **({} if zenith is None else {"sigma_zenith_arcsec": zenith}),
         "sigma_distance": {"mm": float(distance[0]), "ppm": float(distance[1])},
+        **({"sigma_dof": dof} if dof else {}),
         "centring_mm": {"instrument": ASSUMED_CENTRING_MM, "target": ASSUMED_CENTRING_MM},
         "sigma_height_mm": {"instrument": ASSUMED_CENTRING_MM, "target": ASSUMED_CENTRING_MM},
     }
     return table, [*first, *more, *second, ResultWarning("sigma_assumed", centring)]
+
+
+def _degrees(
+    options: ImportOptions,
+    circles: tuple[FacePrecision | None, tuple[float, int] | None, FacePrecision | None],
+    lengths: tuple[float, int] | None,
+) -> dict[str, int]:
+    """Degrees of freedom of the sigmas that the file itself gives, for the global test."""
+    faces, zeniths, both = circles
+    found: dict[str, int] = {}
+    if options.sigma_angle_arcsec is None and both is not None:
+        alone = [x for x in (faces and faces.dof, zeniths and zeniths[1]) if x]
+        found["circles"] = min([both.dof, *alone])
+    elif options.sigma_angle_arcsec is None:
+        found |= {} if faces is None else {"angle": faces.dof}
+        found |= {} if zeniths is None else {"zenith": zeniths[1]}
+    if options.sigma_distance is None and lengths is not None:
+        found["distance"] = lengths[1]
+    return found
 
 
 def _two_digits(value: float) -> float:
@@ -266,7 +285,7 @@ def plan_traverse(project: Project, form: str, file: Path, options: ImportOption
     ----------
     project : Project
     form : str
-        ``gsi`` | ``sdr`` | ``jobxml`` | ``csv``.
+        Id of an importer of pointings.
     file : Path
     options : ImportOptions
 

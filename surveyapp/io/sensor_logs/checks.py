@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 
 from surveyapp.domain.project import ResultWarning
-from surveyapp.domain.sensor_log import SENSOR_COLUMNS, TRIPLES, Array, Gap
+from surveyapp.domain.sensor_log import NUMBER_COLUMNS, SENSOR_COLUMNS, TRIPLES, Array, Gap
 from surveyapp.errors import Problem
 
 GAP_FACTOR: Final = 2.5
@@ -26,6 +26,9 @@ CLIPPED_RATIO: Final = 3.0
 
 LARGEST: Final = 1e20
 """No sensor and no clock gives more in any unit; squares above would leave the range of a float."""
+
+MOST_FIELD_UT: Final = 150.0
+"""Twice the strongest field of the earth at the ground (67 uT), rounded up."""
 
 _PIECE: Final = 1 << 20
 
@@ -177,16 +180,22 @@ def implausible(
 
 
 def unstated_counts(
-    columns: Mapping[str, Array], *, stated: Collection[str], where: str
+    columns: Mapping[str, Array], *, stated: Collection[str], named: Collection[str], where: str
 ) -> list[Problem]:
-    """Gyro columns of whole numbers without a unit: a rate in rad/s is none."""
+    """Sensor columns of whole numbers without a unit.
+
+    A rate in rad/s is never a whole number. Fields, forces and tilts may be rounded to whole units,
+    so they are refused only where no name says the unit either (``named`` are those that do).
+    """
     problems = []
-    for name in TRIPLES["gyr"]:
-        values = columns.get(name)
-        if values is None or name in stated or values.size < 10:
+    for name, values in columns.items():
+        if name not in SENSOR_COLUMNS or name == "output" or name in stated or values.size < 10:
+            continue
+        if name in named and name not in TRIPLES["gyr"]:
             continue
         if _whole(values) and float(np.ptp(values)) > 0.0:
-            hint = "counts take --scale COLUMN=VALUE (and --unit COLUMN=deg/s)"
+            unit = "deg/s" if name in TRIPLES["gyr"] else NUMBER_COLUMNS[name]
+            hint = f"counts take --scale COLUMN=VALUE (and --unit COLUMN={unit})"
             found = f"whole numbers from {values.min():g} to {values.max():g}"
             problems.append(
                 Problem(f"{name} is counts without a unit", where, found, "a unit", hint)
@@ -195,17 +204,24 @@ def unstated_counts(
 
 
 def mixed_units(columns: Mapping[str, Array], *, where: str) -> list[Problem]:
-    """Axes of one vector whose sizes differ by more than a factor of 100: two units in one."""
+    """Axes of one vector whose sizes differ by more than a factor of 100: two units in one.
+
+    An axis that sweeps more than the earth's field does, five times more than the others, is in
+    milligauss or nanotesla.
+    """
     problems = []
     for name in ("mag", "acc"):
         names = TRIPLES[name]
         if not all(column in columns for column in names):
             continue
         sizes = [float(np.median(np.abs(columns[c][:: _stride(columns[c])]))) for c in names]
-        spans = [float(np.ptp(columns[c][:: _stride(columns[c])])) for c in names]
+        spans = [_span(columns[c][:: _stride(columns[c])]) for c in names]
         large = max(range(3), key=lambda i: spans[i])
         others = [spans[i] for i in range(3) if i != large]
-        if min(others) > 0.0 and spans[large] > 100.0 * max(others) and sizes[large] > 100.0:
+        apart = spans[large] > 100.0 * max(others) and sizes[large] > 100.0
+        if name == "mag" and spans[large] > MOST_FIELD_UT:
+            apart = apart or spans[large] > 5.0 * max(others)
+        if min(others) > 0.0 and apart:
             found = ", ".join(f"{c} {s:.4g}" for c, s in zip(names, spans, strict=True))
             problems.append(
                 Problem(
@@ -217,6 +233,12 @@ def mixed_units(columns: Mapping[str, Array], *, where: str) -> list[Problem]:
                 )
             )
     return problems
+
+
+def _span(values: Array) -> float:
+    """Range without the outermost hundredths: gross errors are no unit."""
+    low, high = np.quantile(values, (0.01, 0.99))
+    return float(high - low)
 
 
 def _stride(values: Array) -> int:

@@ -215,7 +215,8 @@ class LogFile:
         problems += checks.mixed_units(columns, where=where)
         if not need.biased or not stated:
             problems += checks.implausible(columns, stated=stated, where=where)
-        problems += checks.unstated_counts(columns, stated=stated, where=where)
+        named = [name for name in columns if self.places[name].name.endswith(_suffix(name))]
+        problems += checks.unstated_counts(columns, stated=stated, named=named, where=where)
         return problems
 
     def _log(
@@ -324,6 +325,14 @@ def _places(request: LogRequest, layout: Layout, problems: list[Problem]) -> dic
         if index not in taken and names.count(name) == 1 and name not in places:
             places[name] = _place(request, name, (name, index), problems)
     return places
+
+
+def _suffix(canonical: str) -> str:
+    """The end of a canonical name that tells its unit: ``_uT``, ``_m_s2``, ``_arcsec``."""
+    for end in ("_uT", "_m_s2", "_rad_s", "_arcsec"):
+        if canonical.endswith(end):
+            return end
+    return canonical
 
 
 def _no_column(column: str, names: Sequence[str], where: str) -> Problem:

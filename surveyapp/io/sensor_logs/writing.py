@@ -2,20 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 
-from surveyapp.io.outputs import write_output
+from surveyapp.io.outputs import check_output
+from surveyapp.io.tomltext import atomic_write
 from surveyapp_models.arrays import Floats
 
+Columns = Mapping[str, Sequence[float] | Sequence[str] | Floats]
 
-def columns_text(columns: Mapping[str, Sequence[float] | Sequence[str] | Floats]) -> str:
+BLOCK_ROWS: Final = 20_000
+"""Rows of which the text is made at once."""
+
+
+def columns_text(columns: Columns) -> str:
     """CSV text: names, then one line a row; NaN as an empty cell.
 
     Numbers are written with twelve digits, words as they are.
     """
+    return _names(columns) + _rows(columns)
+
+
+def _names(columns: Columns) -> str:
+    return ",".join(columns) + "\n"
+
+
+def _rows(columns: Columns) -> str:
     cells = [
         [
             value if isinstance(value, str) else "" if np.isnan(value) else f"{value:.12g}"
@@ -23,16 +38,23 @@ def columns_text(columns: Mapping[str, Sequence[float] | Sequence[str] | Floats]
         ]
         for values in columns.values()
     ]
-    rows = [",".join(row) for row in zip(*cells, strict=True)]
-    return "\n".join([",".join(columns), *rows]) + "\n"
+    return "".join(",".join(row) + "\n" for row in zip(*cells, strict=True))
 
 
-def write_columns(
-    path: Path,
-    columns: Mapping[str, Sequence[float] | Sequence[str] | Floats],
-    *,
-    inputs: Iterable[Path] = (),
-) -> None:
+def _pieces(parts: Iterable[Columns]) -> Iterator[bytes]:
+    """The text block by block; every part has the columns of the first."""
+    begun = False
+    for part in parts:
+        if not begun:
+            yield _names(part).encode()
+            begun = True
+        size = max((len(values) for values in part.values()), default=0)
+        for start in range(0, size, BLOCK_ROWS):
+            block = {name: values[start : start + BLOCK_ROWS] for name, values in part.items()}
+            yield _rows(block).encode()
+
+
+def write_columns(path: Path, columns: Columns, *, inputs: Iterable[Path] = ()) -> None:
     """Write a CSV file as a whole, never over one of the inputs.
 
     Raises
@@ -40,4 +62,16 @@ def write_columns(
     SurveyError
         If an input or the record of a project stands there, or the system refuses.
     """
-    write_output(path, columns_text(columns).encode(), inputs=inputs)
+    write_parts(path, (columns,), inputs=inputs)
+
+
+def write_parts(path: Path, parts: Iterable[Columns], *, inputs: Iterable[Path] = ()) -> None:
+    """Write a CSV file of parts that follow each other; only one of them is in memory.
+
+    Raises
+    ------
+    SurveyError
+        If an input or the record of a project stands there, or the system refuses.
+    """
+    check_output(path, inputs)
+    atomic_write(path, _pieces(parts))

@@ -95,6 +95,20 @@ def _heights(table: Table) -> tuple[float, float]:
     return values[0], values[1]
 
 
+DOF_KEYS = ("angle", "zenith", "distance", "circles")
+_MOST_DOF = 1e7
+
+
+def _sigma_dof(table: Table) -> tuple[tuple[str, float], ...]:
+    """``sigma_dof = { angle, zenith, distance, circles }``: of sigmas that were estimated."""
+    inner = table.table("sigma_dof")
+    if inner is None:
+        return ()
+    found = [(key, inner.number(key, low=1.0, high=_MOST_DOF)) for key in DOF_KEYS]
+    inner.warn_unknown()
+    return tuple((key, dof) for key, dof in found if dof is not None)
+
+
 def _header(table: Table, number: int) -> Traverse:
     name = table.text("name", required=True) or f"number {number}"
     table.where = f"{PROJECT_FILE}, [[traverse]] {name}"
@@ -116,6 +130,7 @@ def _header(table: Table, number: int) -> Traverse:
         table.boolean("constant_applied") if "constant_applied" in table else None,
         _heights(table),
         sigma_zenith=None if zenith is None else zenith * ARCSEC,
+        sigma_dof=_sigma_dof(table),
     )
     for part in (distance, centring):
         if part is not None:

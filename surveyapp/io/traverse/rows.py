@@ -10,7 +10,7 @@ import csv
 import math
 from typing import Final
 
-from surveyapp.domain.observations import ObservationKind
+from surveyapp.domain.observations import ANGULAR, KINDS, ObservationKind
 from surveyapp.domain.traverse_book import TraverseRow
 from surveyapp.errors import Problem, nearest_names
 from surveyapp.io.files import MAX_COLUMNS, shown, too_many_columns, visible
@@ -34,27 +34,8 @@ COLUMNS: Final = (
 OPTIONAL: Final = ("length_m",)
 """Columns that a book may have beside them: length of a levelled section."""
 REQUIRED: Final = ("kind", "at", "to", "value")
-KINDS: Final = {
-    str(kind): kind
-    for kind in (
-        ObservationKind.ANGLE,
-        ObservationKind.DIRECTION,
-        ObservationKind.DISTANCE,
-        ObservationKind.SLOPE_DISTANCE,
-        ObservationKind.ZENITH,
-        ObservationKind.HEIGHT_DIFFERENCE,
-        ObservationKind.AZIMUTH,
-        ObservationKind.GYRO,
-    )
-}
-ANGLES: Final = frozenset(
-    {
-        ObservationKind.ANGLE,
-        ObservationKind.DIRECTION,
-        ObservationKind.ZENITH,
-        ObservationKind.AZIMUTH,
-    }
-)
+BOOK_KINDS: Final = {str(item.kind): item for item in KINDS if item.book}
+"""Kinds that a row may have, by the word in its column."""
 _ANGLE_UNITS: Final = {"dms": AngleUnit.DMS, "gon": AngleUnit.GON, "deg": AngleUnit.DEG}
 MGON: Final = math.pi / 200_000.0
 MM: Final = 1e-3
@@ -94,12 +75,12 @@ class _Row:
 
     def value(self, kind: ObservationKind, default: AngleUnit) -> float | None:
         text, unit = self.cells["value"], self.cells["unit"]
-        if kind is ObservationKind.GYRO:
+        if BOOK_KINDS[kind].book == "none":
             return None
         if not text:
             self.problem("the value is missing", "", "what was observed")
             return None
-        if kind not in ANGLES:
+        if kind not in ANGULAR:
             if unit not in ("", "m"):
                 self.problem(f"{kind} in a wrong unit", unit, "m")
                 return None
@@ -118,8 +99,7 @@ class _Row:
         text, unit = self.cells["sigma"], self.cells["sigma_unit"]
         if not text:
             return None
-        angular = kind in ANGLES or kind is ObservationKind.GYRO
-        allowed = ("arcsec", "mgon") if angular else ("mm", "mm+ppm")
+        allowed = ("arcsec", "mgon") if kind in ANGULAR else ("mm", "mm+ppm")
         unit = unit or allowed[0]
         if unit not in allowed:
             self.problem("the sigma has a wrong unit", unit, " or ".join(allowed))
@@ -153,11 +133,12 @@ class _Row:
 def _read(row: _Row, default: AngleUnit) -> TraverseRow | None:
     before = len(row.problems)
     cells = row.cells
-    kind = KINDS.get(cells["kind"])
-    if kind is None:
-        hint = nearest_names(cells["kind"], KINDS)
+    known = BOOK_KINDS.get(cells["kind"])
+    if known is None:
+        hint = nearest_names(cells["kind"], BOOK_KINDS)
         row.problem("the kind is not known", cells["kind"], "a kind of observation", hint)
         return None
+    kind = known.kind
     value = row.value(kind, default)
     sigma = row.sigma(kind, value)
     hi, ht = row.number("hi") or 0.0, row.number("ht") or 0.0

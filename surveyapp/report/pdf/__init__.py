@@ -47,7 +47,7 @@ from surveyapp.report.blocks import (
 )
 from surveyapp.report.in_words import in_words
 from surveyapp.report.pdf.figures import figure_flowables
-from surveyapp.report.pdf.fonts import Faces, register_faces
+from surveyapp.report.pdf.fonts import BASE, Faces, register_faces
 from surveyapp.report.pdf.style import (
     ACCENT,
     BODY,
@@ -60,7 +60,7 @@ from surveyapp.report.pdf.style import (
     WIDTH,
     style_of,
 )
-from surveyapp.report.pdf.tables import is_tall, table_flowable
+from surveyapp.report.pdf.tables import is_tall, plain_or_wrapped, row_heights, table_flowable
 
 
 @dataclass(frozen=True, slots=True)
@@ -296,23 +296,40 @@ def _paragraph(block: Paragraph, faces: Faces) -> Flowable:
     return Text(faces.markup(block.text), style)
 
 
+_BESIDE: Final = 0.6
+"""Above and below a key and its value [points]."""
+
+
 def _key_values(block: KeyValues, faces: Faces) -> Flowable:
     wanted = max((faces.width(key, CELL + 0.5) for key, _ in block.pairs), default=0.0)
     first = min(wanted + 4.0 * mm, 0.4 * WIDTH)
-    key_style, value_style = style_of(CELL + 0.5, textColor=QUIET), style_of(CELL + 0.5)
+    widths, size = (first, WIDTH - first), CELL + 0.5
+    styles = style_of(size, textColor=QUIET), style_of(size)
     rows = [
-        [Text(faces.markup(key), key_style), Text(faces.markup(value), value_style)]
-        for key, value in block.pairs
+        [
+            plain_or_wrapped(faces, text, width - 2.0, style)
+            for text, width, style in zip(pair, widths, styles, strict=True)
+        ]
+        for pair in block.pairs
     ]
-    tall = is_tall(faces, block.pairs, (first, WIDTH - first), CELL + 0.5)
-    grid = Grid(rows, colWidths=[first, WIDTH - first], hAlign="LEFT", splitInRow=int(tall))
+    tall = is_tall(faces, block.pairs, widths, size)
+    grid = Grid(
+        rows,
+        colWidths=list(widths),
+        rowHeights=row_heights(rows, styles[0].leading, 2.0 * _BESIDE),
+        hAlign="LEFT",
+        splitInRow=int(tall),
+    )
     grid.setStyle(
         [
+            ("FONT", (0, 0), (-1, -1), BASE, size, styles[0].leading),
+            ("TEXTCOLOR", (0, 0), (0, -1), QUIET),
+            ("TEXTCOLOR", (1, 0), (1, -1), INK),
             ("VALIGN", (0, 0), (-1, -1), "TOP"),
             ("LEFTPADDING", (0, 0), (-1, -1), 0),
             ("RIGHTPADDING", (0, 0), (-1, -1), 2),
-            ("TOPPADDING", (0, 0), (-1, -1), 0.6),
-            ("BOTTOMPADDING", (0, 0), (-1, -1), 0.6),
+            ("TOPPADDING", (0, 0), (-1, -1), _BESIDE),
+            ("BOTTOMPADDING", (0, 0), (-1, -1), _BESIDE),
         ]
     )
     return grid

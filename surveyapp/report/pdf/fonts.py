@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Final
 from xml.sax.saxutils import escape
@@ -124,9 +125,23 @@ def face_has(faces: Sequence[Face], code: int) -> bool:
     return any(face.has(code) for face in faces)
 
 
+class _Measured(TTFont):
+    """A face that measures a text once: a cell is asked for its width four times."""
+
+    def __init__(self, name: str, path: str) -> None:
+        super().__init__(name, path)
+        self._unit_width = lru_cache(maxsize=8192)(partial(super().stringWidth, size=UNIT))
+
+    def stringWidth(self, text: str | bytes, size: float, encoding: str = "utf8") -> float:
+        """Width of a text [points]."""
+        if isinstance(text, bytes):
+            text = text.decode(encoding)
+        return float(self._unit_width(text)) * size / UNIT
+
+
 def _register(name: str, path: Path) -> Face:
     try:
-        font = TTFont(name, str(path))
+        font = _Measured(name, str(path))
     except (TTFError, OSError, ValueError, KeyError) as error:
         raise SurveyError(
             Problem(

@@ -7,6 +7,7 @@ from typing import Any, Final
 
 from reportlab.lib.enums import TA_CENTER, TA_RIGHT
 from reportlab.lib.pagesizes import A4
+from reportlab.lib.styles import ParagraphStyle
 from reportlab.lib.units import mm
 from reportlab.platypus import Flowable
 from reportlab.platypus import Paragraph as Text
@@ -48,6 +49,7 @@ def column_widths(natural: Sequence[float], smallest: Sequence[float], room: flo
 _COMFORT: Final = 75.0
 """A column of text [points] is not made narrower than this while there is room."""
 _PADDING: Final = 3.0
+_ABOVE, _BELOW = 1.2, 1.8
 
 
 def table_flowable(block: Table, faces: Faces) -> Flowable:
@@ -74,7 +76,7 @@ def table_flowable(block: Table, faces: Faces) -> Flowable:
     for index, row in enumerate(block.rows):
         mark = "strike" if index in block.struck else None
         rows.append([cell(i, text, mark) for i, text in enumerate(row)])
-    heights = None
+    heights = row_heights(rows, 1.25 * size, _ABOVE + _BELOW)
     if block.row_height_mm is not None:
         heights = [*([None] if headed else []), *[block.row_height_mm * mm] * len(block.rows)]
     tall = is_tall(faces, block.rows, widths, size)
@@ -109,7 +111,7 @@ _LONG_CELL: Final = 200
 def _cell_maker(
     faces: Faces, size: float, align: str, widths: Sequence[float]
 ) -> Callable[[int, str, str | None], object]:
-    """Cells: plain text where it fits and the base face draws it, else a wrapping paragraph."""
+    """Cells of a table, from their column, text and mark."""
     alignment = {"l": 0, "c": TA_CENTER, "r": TA_RIGHT}
     styles = {letter: style_of(size, alignment=value) for letter, value in alignment.items()}
     quiet = {
@@ -121,12 +123,23 @@ def _cell_maker(
         if mark is not None:
             inner = faces.markup(text)
             return Text(f"<strike>{inner}</strike>" if inner else "", quiet[align[column]])
-        fits = faces.width(text, size) + 2 * _PADDING <= widths[column]
-        if fits and faces.is_base(text):
-            return text
-        return Text(faces.markup(text), styles[align[column]])
+        return plain_or_wrapped(faces, text, widths[column] - 2 * _PADDING, styles[align[column]])
 
     return cell
+
+
+def plain_or_wrapped(faces: Faces, text: str, room: float, style: ParagraphStyle) -> str | Flowable:
+    """Plain text where it fits and the base face draws it, else a wrapping paragraph."""
+    fits = faces.width(text, style.fontSize) <= room
+    return text if fits and faces.is_base(text) else Text(faces.markup(text), style)
+
+
+def row_heights(
+    rows: Sequence[Sequence[object]], leading: float, padding: float
+) -> list[float | None]:
+    """Heights of rows of plain text in one line [points], None where a cell has to be wrapped."""
+    plain = [all(isinstance(cell, str) for cell in row) for row in rows]
+    return [leading + padding if one_line else None for one_line in plain]
 
 
 def _table_style(block: Table, align: str, size: float, *, headed: bool) -> list[Any]:
@@ -138,8 +151,8 @@ def _table_style(block: Table, align: str, size: float, *, headed: bool) -> list
         ("VALIGN", (0, 0), (-1, -1), "TOP"),
         ("LEFTPADDING", (0, 0), (-1, -1), _PADDING),
         ("RIGHTPADDING", (0, 0), (-1, -1), _PADDING),
-        ("TOPPADDING", (0, 0), (-1, -1), 1.2),
-        ("BOTTOMPADDING", (0, 0), (-1, -1), 1.8),
+        ("TOPPADDING", (0, 0), (-1, -1), _ABOVE),
+        ("BOTTOMPADDING", (0, 0), (-1, -1), _BELOW),
         ("LINEBELOW", (0, -1), (-1, -1), 0.4, RULE),
     ]
     if headed:

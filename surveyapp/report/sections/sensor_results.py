@@ -18,6 +18,7 @@ from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.languages import joined, said, said_each, term
 from surveyapp.report.blocks import Block, Heading, KeyValues, Paragraph, Table
 from surveyapp.report.numbers import NOTHING, four_digits, plain
+from surveyapp.report.sections.undetermined import undetermined_blocks
 
 PM = "\N{PLUS-MINUS SIGN}"
 
@@ -181,9 +182,7 @@ def north_blocks(result: NorthResult) -> tuple[Block, ...]:
     tracking = result.extra.get("tracking") or ()
     if tracking:
         blocks.append(_tracking(tracking))
-    if result.undetermined:
-        names = ", ".join(result.undetermined)
-        blocks.append(Paragraph(said("Not determined: {names}.", names=names), "warning"))
+    blocks += undetermined_blocks(result.parameters, result.undetermined)
     return (*blocks, *warning_blocks(result.warnings))
 
 

@@ -12,7 +12,7 @@ from surveyapp.domain.calibration import Calibration, SensorParameter
 from surveyapp.domain.noise import AllanChannel, AllanResult
 from surveyapp.domain.project import ResultWarning
 from surveyapp.languages import joined, said, said_each, term
-from surveyapp.report.blocks import Block, Figure, Heading, KeyValues, Paragraph, Table
+from surveyapp.report.blocks import Block, Figure, Heading, KeyValues, Paragraph, Table, Tone
 from surveyapp.report.numbers import NOTHING, four_digits
 from surveyapp.report.plots import Axis, Frame
 
@@ -39,9 +39,10 @@ def calibration_body(result: Calibration) -> tuple[Block, ...]:
     if not result.met:
         text = said("Not determined, refused or inconsistent: no sensor card comes of this log.")
         found.append(Paragraph(text, "warning"))
-    if result.geometry.undetermined:
-        names = ", ".join(result.geometry.undetermined)
-        found.append(Paragraph(said("Not determined: {names}.", names=names), "warning"))
+    for why, names in result.empty.items():
+        tone: Tone = "warning" if set(names) & set(result.geometry.undetermined) else "body"
+        text = said("No value, {why}: {names}.", why=why, names=", ".join(names))
+        found.append(Paragraph(text, tone))
     return (*found, *_warnings(result.warnings))
 
 

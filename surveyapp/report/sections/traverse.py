@@ -113,7 +113,9 @@ def _removals(result: AdjustmentResult) -> tuple[Block, ...]:
     if not rows:
         return ()
     head = said_each("without", "v'Pv", "ratio", "global test", "suspects")
-    title = said("The adjustment without one observation, the removal that helps most first")
+    title = said(
+        "The adjustment without one observation or those of one cause, the best removal first"
+    )
     return (Heading(title, 2), Table(head, rows, "lrrlr"))
 
 
@@ -162,6 +164,11 @@ def _facts(result: AdjustmentResult) -> tuple[tuple[str, str], ...]:
                 ),
             )
         )
+        if test.sigma_dof is not None:
+            text = said(
+                "with {dof:.0f} degrees of freedom: bounds of an F test", dof=test.sigma_dof
+            )
+            facts.append((said("sigmas estimated"), text))
     else:
         facts.append((said("global test"), said("nothing controls this traverse")))
     return (*facts, *_snooping(result))

@@ -7,10 +7,13 @@ import math
 from dataclasses import replace
 from typing import Final
 
+from surveyapp.core.sensors.compass_attitude import with_attitude
+from surveyapp.core.sensors.compass_axes import check_axes
 from surveyapp.core.sensors.compass_calibration import calibrate_ellipsoid
 from surveyapp.core.sensors.declination import model_declination
-from surveyapp.core.sensors.swing import calibrate_swing
+from surveyapp.core.sensors.swing import calibrate_swing, refuse_swapped
 from surveyapp.domain.calibration import Calibration
+from surveyapp.domain.sensor_log import QUATERNION
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.reading import Need
 from surveyapp.workflows.calibrating.request import CalibrationRequest
@@ -29,14 +32,23 @@ def calibrate(request: CalibrationRequest) -> Calibration:
     swing = request.file.has("heading_deg")
     acc = ACC if request.file.has(*ACC) else ()
     heading = ("heading_deg",) if swing else ()
-    log = request.read(
+    log = request.read_adopted(
         Need(
             columns=(*MAG, *acc, *heading),
             varying=(*MAG, *heading),
-            optional=("temperature_c",),
+            optional=("temperature_c", *QUATERNION),
         )
     )
-    result = (calibrate_swing if swing else calibrate_ellipsoid)(log, limit=math.radians(limit))
+    force = log.vector("acc")
+    if swing and force is not None:
+        refuse_swapped(force, log.path)
+    doubts = check_axes(log)
+    if swing:
+        result = calibrate_swing(log, limit=math.radians(limit))
+    else:
+        result = calibrate_ellipsoid(log, limit=math.radians(limit))
+        result = with_attitude(result, log, limit=math.radians(limit))
+    result = replace(result, warnings=(*result.warnings, *doubts))
     declination = request.option("declination")
     if declination is None:
         return result

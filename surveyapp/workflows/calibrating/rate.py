@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -25,13 +26,14 @@ from surveyapp.core.sensors.rate.six_position_log import (
 )
 from surveyapp.core.sensors.rate.temperature_log import (
     CHAMBER,
-    TemperatureOptions,
     calibrate_temperature,
 )
+from surveyapp.core.sensors.rate.temperature_nodes import TemperatureOptions
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.sensor_logs.reading import LogRequest, Need, read_log
+from surveyapp.workflows.adopted_effects import not_taken_out
 from surveyapp.workflows.calibrating.due import with_due_date
 from surveyapp.workflows.calibrating.request import CalibrationRequest
 from surveyapp_models.angles import ARCSEC
@@ -54,7 +56,8 @@ def calibrate(request: CalibrationRequest) -> Calibration:
                 "" if programme is None else nearest_names(str(programme), PROGRAMMES),
             )
         )
-    return with_due_date(PROGRAMMES[programme](request), request)
+    found = with_due_date(PROGRAMMES[programme](request), request)
+    return replace(found, warnings=(*found.warnings, *not_taken_out(request.entry)))
 
 
 def latitude_of(request: CalibrationRequest) -> float | None:

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import date
 from pathlib import Path
+from typing import Final
 
+from surveyapp.core.sensors.adopted_effects import without_events
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
+
+MOST_ROWS: Final = 100_000
+"""Rows of a compass or tilt log that are fitted: a longer one is thinned. Its parameters are known
+to a hundredth of its noise then, and models of 1e7 rows would take gigabytes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +55,14 @@ class CalibrationRequest:
     def read(self, need: Need) -> SensorLog:
         """Read the columns that are needed."""
         return self.file.read(need, progress=self.progress)
+
+    def read_adopted(self, need: Need) -> SensorLog:
+        """The same without adopted events of the log; what was done is in its warnings."""
+        log = self.read(need)
+        if self.entry is None or not self.entry.effects:
+            return log.thinned(MOST_ROWS)
+        log, told = without_events(log, self.entry.effects)
+        return replace(log, warnings=(*log.warnings, *told)).thinned(MOST_ROWS)
 
     def option(self, name: str) -> object:
         """An option of the command line, else of the project's entry; None if neither has it."""

@@ -39,7 +39,7 @@ def calibrate(request: CalibrationRequest) -> Calibration:
     if request.file.has("test"):
         return calibrate_dividing_head(request.read(DIVIDING_HEAD))
     reference = request.number("reference_temperature_c", REFERENCE_TEMPERATURE_C)
-    log = request.read(
+    log = request.read_adopted(
         Need(columns=TWO_AXES, varying=TWO_AXES, optional=("temperature_c",), timed="optional")
     )
     return calibrate_tilt_axes(log, reference_temperature_c=reference or 0.0)

@@ -6,10 +6,12 @@ One line of ``METHODS`` a method; the module behind it holds ``find(request) -> 
 from __future__ import annotations
 
 import importlib
+from dataclasses import replace
 from typing import Final, cast
 
 from surveyapp.domain.north import NorthResult
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.workflows.adopted_effects import not_taken_out
 from surveyapp.workflows.north.request import NorthRequest, declination_problems
 
 METHODS: Final = {
@@ -40,7 +42,8 @@ def find_north(request: NorthRequest) -> NorthResult:
         raise SurveyError([*problems, *error.problems]) from None
     if problems:
         raise SurveyError(problems)
-    return result
+    told = not_taken_out(request.entry)
+    return replace(result, warnings=(*result.warnings, *told)) if told else result
 
 
 __all__ = ["METHODS", "NorthRequest", "NorthResult", "find_north"]

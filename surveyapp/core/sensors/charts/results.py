@@ -13,13 +13,17 @@ from surveyapp.core.sensors.rate.stop_plan import StopPlan
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.chart import MOST_POINTS, Chart, Picture, Series
 from surveyapp.domain.line_spectrum import LineSpectrum
-from surveyapp.domain.motion import STATES, Motion
+from surveyapp.domain.motion import STATES, Motion, Path
 from surveyapp.domain.noise import AllanChannel, AllanResult, FilterResult
 
 TIME: Final = "time [s]"
 TAU: Final = "averaging time [s]"
 SLOPES: Final = {"Q": -1.0, "N": -0.5, "B": 0.0, "K": 0.5, "R": 1.0}
 """Slope of the Allan deviation that each coefficient makes (IEEE 952, annex C)."""
+
+PLANE_95: Final = math.sqrt(5.991464547)
+"""Standard ellipse to the 95 % ellipse of a plane: chi-square of two degrees of freedom."""
+ELLIPSES: Final = 12
 
 Points = tuple[tuple[float, float], ...]
 
@@ -151,14 +155,31 @@ def motion_charts(result: Motion) -> tuple[Picture, ...]:
         places = pairs((p[1] for p in path.points), (p[2] for p in path.points))
         ends = "its end is {:.3f} m from its beginning, or from the point that was stated"
         closes = "" if path.closure_m is None else f"; {ends.format(path.closure_m)}"
-        note = f"{path.mode}: {path.length_m:.2f} m{closes}"
+        note = f"{path.mode}: {path.length_m:.2f} m{closes}; 95 % ellipses"
         marks = (Series("begin", places[:1], "dots"), Series("end", places[-1:], "dots"))
-        series = (Series("path", places), *marks)
+        series = (Series("path", places), *marks, *_ellipses(path))
         found.append(Chart("Path", "east [m]", "north [m]", series, square=True, note=note))
         sigma = [math.hypot(p[3], p[4]) for p in path.points]
         along = pairs((p[0] for p in path.points), sigma)
         title = "Uncertainty of the place along the path"
         found.append(Chart(title, "along [m]", "sigma [m]", (Series("sigma", along),)))
+    return tuple(found)
+
+
+def _ellipses(path: Path) -> tuple[Series, ...]:
+    """95 % ellipses of the place, evenly along the path and at its end."""
+    count = min(ELLIPSES, len(path.points) - 1)
+    rows = np.unique(np.linspace(0, len(path.points) - 1, count + 1).astype(np.intp))[1:]
+    angle = np.linspace(0.0, 2.0 * math.pi, 49)
+    ring = np.array([np.cos(angle), np.sin(angle)])
+    found = []
+    for row in rows.tolist():
+        _, east, north, sigma_e, sigma_n, cross = path.points[row]
+        covariance = np.array([[sigma_e**2, cross], [cross, sigma_n**2]])
+        size, axes = np.linalg.eigh(covariance)
+        edge = axes @ (np.sqrt(np.maximum(size, 0.0))[:, None] * ring) * PLANE_95
+        points = pairs((edge[0] + east).tolist(), (edge[1] + north).tolist())
+        found.append(Series("95 %", points, "bound"))
     return tuple(found)
 
 

@@ -14,14 +14,27 @@ from typing import Final
 
 import numpy as np
 
+from surveyapp.core.sensors.rate.needed import (
+    CROSS_TOLERANCE,
+    NORMAL_95,
+    SCALE_TOLERANCE,
+    ZERO_TOLERANCE,
+    covariance_of,
+)
 from surveyapp.domain.programme import Known, Programme, Row
+from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2
 from surveyapp_models.arrays import Floats
 from surveyapp_models.compass.deviation import COEFFICIENTS, deviation_basis
 
-WEAKEST: Final = 0.03
+WEAKEST: Final = 1e-6
 """A combination of parameters that the design sees with less than this share of the strongest one
-counts as not seen: its error is that of the strongest times thirty and more. Designs of settings
-are exact and have nothing between; attitudes of hand-held stops do."""
+counts as not seen: rounding. Designs of settings are exact and have nothing between; attitudes of
+hand-held stops do, and are judged by ``Part.needs``."""
+STOP_NOISE: Final = 1e-3
+"""Of the size of gravity at a stop by hand, relative: a centimetre per second squared."""
+TURN_NOISE: Final = math.radians(0.2)
+"""Of the direction of gravity after a turn by hand [rad]: the measured record of Tedaldi, Pretto
+and Menegatti shows .13 degrees with everything modelled."""
 NOTHING: Final = 1e-9
 """A column of the design this much smaller than the largest is rounding: sin 180 is not 0."""
 AXES: Final = "xyz"
@@ -44,6 +57,9 @@ class Part:
         What takes every unknown of the part.
     requires : tuple of str
         Parameters of other parts without which nothing here has a scale.
+    needs : tuple of float
+        Half the 95 % interval that each unknown needs, with rows of noise 1; empty = the rank of
+        the design decides.
     """
 
     names: tuple[str, ...]
@@ -51,6 +67,7 @@ class Part:
     redundant: tuple[str, ...] = ()
     whole: tuple[str, ...] = ()
     requires: tuple[str, ...] = ()
+    needs: tuple[float, ...] = ()
 
 
 def known_of(programme: Programme, rows: Sequence[Row]) -> Known:
@@ -89,6 +106,12 @@ def _determined(part: Part) -> tuple[dict[str, bool], int]:
     k = len(part.names)
     if part.matrix.shape[0] == 0:
         return dict.fromkeys(part.names, False), 0
+    if part.needs:
+        half = NORMAL_95 * np.sqrt(np.diag(covariance_of(part.matrix)))
+        known = {
+            n: bool(h <= need) for n, h, need in zip(part.names, half, part.needs, strict=True)
+        }
+        return known, sum(known.values())
     size = np.linalg.norm(part.matrix, axis=0)
     size[size < NOTHING * float(size.max())] = 0.0
     scaled = part.matrix / np.where(size > 0.0, size, math.inf)
@@ -292,9 +315,12 @@ def _multi_position(rows: Sequence[Row]) -> list[Part]:
         f"scale_factor_{i}" if i == j else f"misalignment_{i}{j}" for i in AXES for j in AXES
     )
     biases = tuple(f"bias_{a}" for a in AXES)
+    crosses = [SCALE_TOLERANCE if i == j else CROSS_TOLERANCE for i in AXES for j in AXES]
+    zero = ZERO_TOLERANCE / STANDARD_GRAVITY_M_S2
+    needs = (*(zero,) * 3, *(SCALE_TOLERANCE,) * 3, *(CROSS_TOLERANCE,) * 3)
     return [
-        Part(names, design),
-        Part(elements, matrix),
+        Part(names, design / STOP_NOISE, needs=needs),
+        Part(elements, matrix / TURN_NOISE, needs=tuple(crosses)),
         Part(biases, np.vstack([np.eye(3)] * len(rows)) if len(rows) else np.zeros((0, 3))),
     ]
 

@@ -2,7 +2,8 @@
 
 Output i = K_i (f_i + sum_j M_ij f_j) + B_i. Six positions determine all twelve parameters. One
 position per direction has rank nine: bias and scale factor then need the misalignments from
-elsewhere (a room-temperature log), and without them stand on the assumption that there are none.
+elsewhere (a room-temperature log). Without them they stand on the assumption that there are none,
+and their sigma holds misalignments as large as the positions themselves show them.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp_models.arrays import Floats
 
 
@@ -41,6 +43,8 @@ class AccelerometerTriad:
     misalignment : ndarray, shape (3, 3)
         M_ij [rad], diagonal NaN.
     sigma_bias, sigma_scale, sigma_misalignment : ndarray
+    tilt_bias, tilt_scale : ndarray, shape (3,)
+        What the misalignments' own uncertainty has in these sigmas: common to all nodes.
     rank : int
         Of the twelve unknowns from these positions alone.
     """
@@ -51,11 +55,13 @@ class AccelerometerTriad:
     sigma_bias: Floats
     sigma_scale: Floats
     sigma_misalignment: Floats
+    tilt_bias: Floats
+    tilt_scale: Floats
     rank: int
 
 
 def solve_accelerometers(
-    resting: Sequence[Resting], *, gravity: float, misalignment: Floats | None = None
+    resting: Sequence[Resting], *, gravity: float, room: AccelerometerTriad | None = None
 ) -> AccelerometerTriad:
     """Solve what the positions determine, axis by axis.
 
@@ -64,38 +70,107 @@ def solve_accelerometers(
     resting : sequence of Resting
     gravity : float
         Local acceleration of free fall [m/s2].
-    misalignment : ndarray, shape (3, 3), optional
-        From elsewhere [rad]; without it and without full rank it counts as zero and stays
-        undetermined.
+    room : AccelerometerTriad, optional
+        Misalignments from elsewhere with their sigmas; without them and without full rank they
+        count as zero and stay undetermined.
     """
-    forces = np.array([r.force(gravity) for r in resting])
-    outputs = np.array([r.mean for r in resting])
-    sigmas = np.array([r.sigma for r in resting])
+    forces = np.array([r.force(gravity) for r in resting]).reshape(-1, 3)
+    outputs = np.array([r.mean for r in resting]).reshape(-1, 3)
+    sigmas = np.array([r.sigma for r in resting]).reshape(-1, 3)
     design = np.column_stack([forces, np.ones(len(resting))])
     rank_one = int(np.linalg.matrix_rank(design)) if len(resting) else 0
-    nan3, nan33 = np.full(3, np.nan), np.full((3, 3), np.nan)
-    bias, scale, s_bias, s_scale = nan3.copy(), nan3.copy(), nan3.copy(), nan3.copy()
-    tilt, s_tilt = nan33.copy(), nan33.copy()
+    found = _nothing(3 * rank_one)
+    reduced = []
     for i in range(3):
         if rank_one == 4:
             solution, spread = _weighted(design, outputs[:, i], sigmas[:, i])
-            scale[i], bias[i] = solution[i] - 1.0, solution[3]
-            s_scale[i], s_bias[i] = spread[i], spread[3]
+            _filled(found, i, solution[i], solution[3], spread=(spread[i], spread[3]))
             for j in range(3):
                 if j != i:
-                    tilt[i, j], s_tilt[i, j] = solution[j] / solution[i], spread[j] / solution[i]
+                    found.misalignment[i, j] = solution[j] / solution[i]
+                    found.sigma_misalignment[i, j] = spread[j] / solution[i]
             continue
-        across = np.zeros(3) if misalignment is None else np.nan_to_num(misalignment[i])
+        across = np.zeros(3) if room is None else np.nan_to_num(room.misalignment[i])
         across[i] = 1.0
-        reduced = np.column_stack([forces @ across, np.ones(len(resting))])
-        if np.linalg.matrix_rank(reduced) < 2:
+        columns = np.column_stack([forces @ across, np.ones(len(resting))])
+        if np.linalg.matrix_rank(columns) == 2:
+            solution, spread = _weighted(columns, outputs[:, i], sigmas[:, i])
+            _filled(found, i, solution[0], solution[1], spread=(spread[0], spread[1]))
+            reduced.append((i, columns))
+    if room is not None and rank_one < 4:
+        found.misalignment[:] = room.misalignment
+        found.sigma_misalignment[:] = room.sigma_misalignment
+        tilts = room.sigma_misalignment
+    else:
+        tilts = np.full((3, 3), _shown_tilt(found, [i for i, _ in reduced], forces, outputs))
+    for i, columns in reduced:
+        _with_tilts(found, i, columns, forces, sigma=(sigmas[:, i], tilts[i]))
+    return found
+
+
+def _nothing(rank: int) -> AccelerometerTriad:
+    """A triad of which nothing is known yet, to be filled."""
+    three, nine = np.full(3, np.nan), np.full((3, 3), np.nan)
+    return AccelerometerTriad(
+        bias=three.copy(),
+        scale=three.copy(),
+        misalignment=nine.copy(),
+        sigma_bias=three.copy(),
+        sigma_scale=three.copy(),
+        sigma_misalignment=nine.copy(),
+        tilt_bias=np.zeros(3),
+        tilt_scale=np.zeros(3),
+        rank=rank,
+    )
+
+
+def _filled(
+    triad: AccelerometerTriad, i: int, scale: float, bias: float, *, spread: tuple[float, float]
+) -> None:
+    triad.scale[i], triad.bias[i] = scale - 1.0, bias
+    triad.sigma_scale[i], triad.sigma_bias[i] = spread
+
+
+def _shown_tilt(
+    triad: AccelerometerTriad, axes: Sequence[int], forces: Floats, outputs: Floats
+) -> float:
+    """Standard deviation of a misalignment [rad] from what the assumption of none leaves.
+
+    With x, y and z up once each, output i in the other two positions is K (g M) + B: their
+    difference shows two misalignments against each other, three such differences their size.
+    Few degrees of freedom: widened so that 1.96 of it is the 95 % interval.
+    """
+    squares, count = 0.0, 0
+    for i in axes:
+        scale = 1.0 + triad.scale[i]
+        rest = outputs[:, i] - scale * forces[:, i] - triad.bias[i]
+        squares += float(rest @ rest) / float(scale**2 * np.max(np.abs(forces)) ** 2)
+        count += rest.size - 2
+    if count < 1:
+        return 0.0
+    widened = student_quantile(0.975, count) / student_quantile(0.975, 1e6)
+    return float(np.sqrt(squares / count)) * widened
+
+
+def _with_tilts(
+    triad: AccelerometerTriad,
+    i: int,
+    columns: Floats,
+    forces: Floats,
+    *,
+    sigma: tuple[Floats, Floats],
+) -> None:
+    """Add what the misalignments' own uncertainty does to scale factor and bias of an axis."""
+    weight = 1.0 / np.maximum(sigma[0], 1e-12)
+    for j in range(3):
+        if j == i or not np.isfinite(sigma[1][j]):
             continue
-        solution, spread = _weighted(reduced, outputs[:, i], sigmas[:, i])
-        scale[i], bias[i] = solution[0] - 1.0, solution[1]
-        s_scale[i], s_bias[i] = spread[0], spread[1]
-    if misalignment is not None and rank_one < 4:
-        tilt = misalignment.copy()
-    return AccelerometerTriad(bias, scale, tilt, s_bias, s_scale, s_tilt, 3 * rank_one)
+        pull = -(1.0 + triad.scale[i]) * forces[:, j] * sigma[1][j]
+        moved = np.linalg.lstsq(columns * weight[:, None], pull * weight, rcond=None)[0]
+        triad.tilt_scale[i] = np.hypot(triad.tilt_scale[i], moved[0])
+        triad.tilt_bias[i] = np.hypot(triad.tilt_bias[i], moved[1])
+    triad.sigma_scale[i] = np.hypot(triad.sigma_scale[i], triad.tilt_scale[i])
+    triad.sigma_bias[i] = np.hypot(triad.sigma_bias[i], triad.tilt_bias[i])
 
 
 def _weighted(design: Floats, values: Floats, sigma: Floats) -> tuple[Floats, Floats]:

@@ -9,11 +9,12 @@ import numpy as np
 
 from surveyapp.core.sensors.rate.fog_north import FogNorth, Position, solve_north
 from surveyapp.core.sensors.rate.parameters import DEG_H
-from surveyapp.domain.calibration import SensorParameter
+from surveyapp.domain.calibration import SensorParameter, with_reasons
 from surveyapp.domain.north import NorthDirection, NorthResult
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, wrap_pi
 
 NEEDED = ("gyr_x_rad_s", "horizontal_circle_deg", "face")
@@ -48,6 +49,14 @@ class FogNorthOptions:
     rule: str | None = None
 
 
+_WHY = {
+    "bias": said("positions east and west tell bias and collimation apart"),
+    "elevation": said("no position of the other face, and no constant with its circle readings"),
+    "collimation": said("positions east and west tell bias and collimation apart"),
+}
+"""Why a parameter has no value."""
+
+
 def find_north(log: SensorLog, options: FogNorthOptions) -> NorthResult:
     """North of the horizontal circle from the rows of a log.
 
@@ -78,6 +87,7 @@ def find_north(log: SensorLog, options: FogNorthOptions) -> NorthResult:
             ("collimation", solved.collimation, solved.sigmas[1], ARCSEC, "arcsec"),
         )
     )
+    parameters = with_reasons(parameters, _WHY.__getitem__)
     missing = tuple("gyro_north" if n == "north" else n for n in solved.undetermined)
     return NorthResult(
         method="fog-station",

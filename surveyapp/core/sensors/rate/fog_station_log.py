@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -24,10 +24,17 @@ from surveyapp.core.sensors.rate.table_log import (
     stretches_of,
     usable,
 )
-from surveyapp.domain.calibration import Calibration, Geometry, Misfit, SensorParameter
+from surveyapp.domain.calibration import (
+    Calibration,
+    Geometry,
+    Misfit,
+    SensorParameter,
+    with_reasons,
+)
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC
 
 GYRO = "gyr_x_rad_s"
@@ -211,13 +218,14 @@ def _calibration(
     warnings: list[ResultWarning],
 ) -> Calibration:
     constant = None if found.constant is None else math.degrees(found.constant)
-    parameters = (
+    known = (
         SensorParameter(
             "elevation", found.elevation / ARCSEC, found.sigma_elevation / ARCSEC, "arcsec"
         ),
         SensorParameter("instrument_constant", constant, _scaled(found.sigma_constant), "deg"),
         SensorParameter("scale_factor", _ppm(found.scale), _ppm(found.sigma_scale), "ppm"),
     )
+    parameters = with_reasons(known, _WHY.__getitem__)
     undetermined = ("instrument_constant",) if constant is None else ()
     scatter = found.scatter
     first = [s.elevation for s in sets]
@@ -247,6 +255,14 @@ def _calibration(
             "sets": [_set_dict(s, rule, relative or 0.0) for s in sets],
         },
     )
+
+
+_WHY: Final = {
+    "elevation": said("no turns both ways"),
+    "instrument_constant": said("the log has no reading of the vertical circle"),
+    "scale_factor": said("one pass, or two at one reading: it takes two passes"),
+}
+"""Why a parameter has no value."""
 
 
 def _scaled(sigma: float | None) -> float | None:

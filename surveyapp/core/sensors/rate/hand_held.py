@@ -10,17 +10,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
+from surveyapp.core.sensors.rate.needed import (
+    CROSS_TOLERANCE,
+    NORMAL_95,
+    SCALE_TOLERANCE,
+    covariance_of,
+)
 from surveyapp_models.arrays import Floats
 from surveyapp_models.rate import quaternions
-
-LEVELS = ("bias_scale", "three_scales", "misalignment")
-"""Accelerometer models, each with more parameters: 4, 6, 9."""
-PARAMETERS = {"bias_scale": 4, "three_scales": 6, "misalignment": 9}
-_ITERATIONS = 40
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,160 +43,6 @@ class HeldStop:
     force: Floats
     rate: Floats
     time_s: float
-
-
-@dataclass(frozen=True, slots=True)
-class ForceModel:
-    """True force = matrix (output - bias).
-
-    Parameters
-    ----------
-    level : str
-    bias : ndarray, shape (3,)
-        [m/s2]
-    matrix : ndarray, shape (3, 3)
-    vector : ndarray, shape (p,)
-        The parameters as fitted: bias, then scales, then the three lower elements.
-    covariance : ndarray, shape (p, p)
-        From the residuals.
-    rms : float
-        Of the size of gravity [m/s2].
-    dof : int
-    """
-
-    level: str
-    bias: Floats
-    matrix: Floats
-    vector: Floats
-    covariance: Floats
-    rms: float
-    dof: int
-
-    def corrected(self, force: Floats) -> Floats:
-        """True forces of outputs, shape (..., 3)."""
-        return np.asarray((force - self.bias) @ self.matrix.T)
-
-
-def _parts(level: str, vector: Floats) -> tuple[Floats, Floats]:
-    """Bias and output matrix K (1 + M) of a parameter vector."""
-    bias = vector[:3]
-    if level == "bias_scale":
-        return bias, np.eye(3) * vector[3]
-    out = np.diag(vector[3:6])
-    if level == "misalignment":
-        out = out.copy()
-        out[1, 0] = vector[6] * vector[4]
-        out[2, 0], out[2, 1] = vector[7] * vector[5], vector[8] * vector[5]
-    return bias, out
-
-
-def shifted_forces(model: ForceModel) -> list[ForceModel]:
-    """The model with each parameter off by its standard deviation, in turn."""
-    found = []
-    for k, sigma in enumerate(np.sqrt(np.maximum(np.diag(model.covariance), 0.0))):
-        vector = model.vector.copy()
-        vector[k] += sigma
-        bias, out = _parts(model.level, vector)
-        inverse = np.asarray(np.linalg.inv(out), dtype=np.float64)
-        found.append(replace(model, bias=bias, matrix=inverse, vector=vector))
-    return found
-
-
-def fit_forces(
-    forces: Floats, *, level: str, gravity: float, start: Floats | None = None
-) -> ForceModel:
-    """Fit one model to the stops' outputs, by Levenberg and Marquardt.
-
-    Parameters
-    ----------
-    forces : ndarray, shape (n, 3)
-        Outputs [m/s2].
-    level : str
-    gravity : float
-        [m/s2]
-    start : ndarray, shape (p,), optional
-        Parameters to begin with.
-    """
-    vector = _first_guess(forces, level, gravity) if start is None else start
-    count = PARAMETERS[level]
-    damping = 1e-6
-    rest, jacobian = _misfit(forces, level, vector, gravity)
-    for _ in range(_ITERATIONS):
-        size = np.maximum(np.linalg.norm(jacobian, axis=0), 1e-12)
-        rows = np.vstack([jacobian / size, math.sqrt(damping) * np.eye(count)])
-        step = np.linalg.lstsq(rows, np.append(-rest, np.zeros(count)), rcond=None)[0] / size
-        after, slope = _misfit(forces, level, vector + step, gravity)
-        if float(after @ after) <= float(rest @ rest) + 1e-18:
-            done = float(np.abs(step).max()) < 1e-12
-            vector, rest, jacobian = vector + step, after, slope
-            damping = max(damping * 0.1, 1e-12)
-            if done:
-                break
-        else:
-            damping = min(damping * 10.0, 1e3)
-    bias, out = _parts(level, vector)
-    dof = forces.shape[0] - count
-    scale = float(rest @ rest) / max(dof, 1)
-    covariance = np.linalg.pinv(jacobian.T @ jacobian) * scale
-    rms = math.sqrt(float(np.mean(rest**2)))
-    inverse = np.asarray(np.linalg.inv(out), dtype=np.float64)
-    return ForceModel(level, bias, inverse, vector, covariance, rms, dof)
-
-
-def _misfit(forces: Floats, level: str, vector: Floats, gravity: float) -> tuple[Floats, Floats]:
-    """Size of the true force less gravity (n,), and its derivatives (n, p)."""
-    bias, out = _parts(level, vector)
-    inverse = np.linalg.inv(out)
-    true = (forces - bias) @ inverse.T
-    size = np.linalg.norm(true, axis=1)
-    # d|true| = -(K^-T true / |true|) . (d bias + dK true)
-    along = -(true / np.maximum(size, 1e-12)[:, None]) @ inverse
-    scales = along * true
-    if level == "bias_scale":
-        columns = [along, scales.sum(axis=1)[:, None]]
-    elif level == "three_scales":
-        columns = [along, scales]
-    else:
-        yx, zx, zy = vector[6:]
-        scales = scales.copy()
-        scales[:, 1] += yx * along[:, 1] * true[:, 0]
-        scales[:, 2] += along[:, 2] * (zx * true[:, 0] + zy * true[:, 1])
-        tilts = np.column_stack(
-            [
-                vector[4] * along[:, 1] * true[:, 0],
-                vector[5] * along[:, 2] * true[:, 0],
-                vector[5] * along[:, 2] * true[:, 1],
-            ]
-        )
-        columns = [along, scales, tilts]
-    return size - gravity, np.hstack(columns)
-
-
-def _first_guess(forces: Floats, level: str, gravity: float) -> Floats:
-    """Centre and radius of the sphere through the stops, by linear least squares."""
-    design = np.column_stack([2.0 * forces, np.ones(forces.shape[0])])
-    solution, *_ = np.linalg.lstsq(design, np.sum(forces**2, axis=1), rcond=None)
-    centre = solution[:3]
-    radius = math.sqrt(max(float(solution[3] + centre @ centre), 1e-6))
-    if np.linalg.cond(design / np.linalg.norm(design, axis=0)) > 1e8:
-        centre, radius = np.zeros(3), gravity
-    scale = radius / gravity
-    tail = {"bias_scale": [scale], "three_scales": [scale] * 3}.get(level, [scale] * 3 + [0.0] * 3)
-    return np.concatenate([centre, tail])
-
-
-def left_out(forces: Floats, *, level: str, gravity: float) -> float | None:
-    """Root mean square of the size of gravity at stops that had no part in the fit [m/s2]."""
-    count = forces.shape[0]
-    if count <= PARAMETERS[level] + 1:
-        return None
-    rest = []
-    start = fit_forces(forces, level=level, gravity=gravity).vector
-    for k in range(count):
-        keep = np.arange(count) != k
-        model = fit_forces(forces[keep], level=level, gravity=gravity, start=start)
-        rest.append(float(np.linalg.norm(model.corrected(forces[k]))) - gravity)
-    return math.sqrt(float(np.mean(np.square(rest))))
 
 
 @dataclass(frozen=True, slots=True)
@@ -331,18 +178,24 @@ def fit_rates(turns: Sequence[Turn]) -> RateModel:
     inverse = np.eye(3)
     before = direction_errors(turns, inverse)
     times = np.repeat([t.rates.shape[0] * t.interval_s for t in turns], 2)
+    own = np.where(np.eye(3) > 0.0, SCALE_TOLERANCE, CROSS_TOLERANCE)
+    tolerances = own.ravel() / NORMAL_95
     for _ in range(12):
         rows = [turn_rows(turn, inverse) for turn in turns]
         angles = times * np.concatenate([r.error for r in rows])
         jacobian = times[:, None] * np.concatenate([r.rate.reshape(2, 9) for r in rows])
-        change = np.linalg.lstsq(jacobian, -angles, rcond=1e-10)[0].reshape(3, 3)
+        # what the turns do not tell stays nominal: any unit's tolerance beside their noise
+        weight = math.sqrt(float(np.mean(angles**2))) / tolerances
+        held = np.vstack([jacobian, np.diag(weight)])
+        target = np.append(-angles, -weight * (inverse - np.eye(3)).ravel())
+        change = np.linalg.lstsq(held, target, rcond=None)[0].reshape(3, 3)
         inverse = inverse + change @ inverse
         if float(np.abs(change).max()) < 1e-10:
             break
     rest = direction_errors(turns, inverse)
     dof = 2 * len(turns) - 9
     scale = float(np.sum(rest**2)) / max(dof, 1)
-    of_change = np.linalg.pinv(jacobian.T @ jacobian) * scale
+    of_change = covariance_of(jacobian) * scale
     output = np.asarray(np.linalg.inv(inverse), dtype=np.float64)
     chain = -np.kron(output, np.eye(3))  # d(output) = -output change
     return RateModel(
@@ -353,36 +206,6 @@ def fit_rates(turns: Sequence[Turn]) -> RateModel:
         _rms(rest),
         dof,
     )
-
-
-def with_frame(
-    gyro: RateModel, turns: Sequence[Turn], shifted: Sequence[Sequence[Turn]], covariance: Floats
-) -> RateModel:
-    """The gyros' model with the uncertainty of the accelerometers, whose triad is their frame.
-
-    Parameters
-    ----------
-    gyro : RateModel
-        From the turns.
-    turns : sequence of Turn
-    shifted : sequence of sequence of Turn, length p
-        The same turns with one parameter of the accelerometers off by its standard deviation.
-    covariance : ndarray, shape (p, p)
-        Of these parameters in units of their standard deviations.
-    """
-    rows = [turn_rows(turn, gyro.matrix) for turn in turns]
-    times = np.repeat([t.rates.shape[0] * t.interval_s for t in turns], 2)
-    jacobian = times[:, None] * np.concatenate([r.rate.reshape(2, 9) for r in rows])
-    base = np.concatenate([r.error for r in rows])
-    moved = np.column_stack(
-        [
-            times * (np.concatenate([turn_rows(t, gyro.matrix).error for t in one]) - base)
-            for one in shifted
-        ]
-    )
-    # change = - J+ error, d(output) = -output change
-    slope = np.kron(gyro.output, np.eye(3)) @ np.linalg.lstsq(jacobian, moved, rcond=1e-10)[0]
-    return replace(gyro, covariance=gyro.covariance + slope @ covariance @ slope.T)
 
 
 def _rms(errors: Floats) -> float:

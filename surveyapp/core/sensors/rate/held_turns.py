@@ -9,7 +9,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from surveyapp.core.sensors.rate.hand_held import ForceModel, HeldStop, Turn
+from surveyapp.core.sensors.rate.hand_forces import ForceModel
+from surveyapp.core.sensors.rate.hand_held import HeldStop, RateModel, Turn, turn_rows
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp_models.arrays import Floats
 from surveyapp_models.constants import EARTH_RATE
@@ -100,3 +101,33 @@ def with_g_sensitivity(
         rest = 0.5 * (rests[k] + rests[k + 1])
         found.append(replace(turn, rates=turn.rates - (inside - rest) @ pull))
     return found
+
+
+def with_frame(
+    gyro: RateModel, turns: Sequence[Turn], shifted: Sequence[Sequence[Turn]], covariance: Floats
+) -> RateModel:
+    """The gyros' model with the uncertainty of the accelerometers, whose triad is their frame.
+
+    Parameters
+    ----------
+    gyro : RateModel
+        From the turns.
+    turns : sequence of Turn
+    shifted : sequence of sequence of Turn, length p
+        The same turns with one parameter of the accelerometers off by its standard deviation.
+    covariance : ndarray, shape (p, p)
+        Of these parameters in units of their standard deviations.
+    """
+    rows = [turn_rows(turn, gyro.matrix) for turn in turns]
+    times = np.repeat([t.rates.shape[0] * t.interval_s for t in turns], 2)
+    jacobian = times[:, None] * np.concatenate([r.rate.reshape(2, 9) for r in rows])
+    base = np.concatenate([r.error for r in rows])
+    moved = np.column_stack(
+        [
+            times * (np.concatenate([turn_rows(t, gyro.matrix).error for t in one]) - base)
+            for one in shifted
+        ]
+    )
+    # change = - J+ error, d(output) = -output change
+    slope = np.kron(gyro.output, np.eye(3)) @ np.linalg.lstsq(jacobian, moved, rcond=1e-10)[0]
+    return replace(gyro, covariance=gyro.covariance + slope @ covariance @ slope.T)

@@ -14,11 +14,12 @@ from surveyapp.core.sensors.rate.bias_track import Tracked, track_bias
 from surveyapp.core.sensors.rate.indexing import solve_indexing
 from surveyapp.core.sensors.rate.indexing_values import Indexed, Root, Setting, Stop
 from surveyapp.core.sensors.rate.parameters import DEG_H
-from surveyapp.domain.calibration import SensorParameter
+from surveyapp.domain.calibration import SensorParameter, with_reasons
 from surveyapp.domain.north import NorthDirection, NorthResult
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
 from surveyapp_models.constants import EARTH_RATE
@@ -214,6 +215,8 @@ def _result(
         value = float(best.bias[k]) / DEG_H if known else None
         one = float(spread[3 + k]) / DEG_H if known else None
         parameters.append(SensorParameter(f"bias_{letter}", value, one, "deg/h"))
+    why = said("the index positions leave it open: the heading is {verdict}", verdict=found.verdict)
+    parameters = list(with_reasons(parameters, lambda _: why))
     missing += tuple(p.name for p in parameters if p.value is None and p.name not in missing)
     direction = NorthDirection(
         math.degrees(best.heading) if resolved else None,

@@ -3,33 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Literal
 
 import numpy as np
 
-from surveyapp.core.sensors.rate.motion_states import (
-    Thresholds,
-    forward_and_turn,
-    segments_of,
-    thresholds_of,
+from surveyapp.core.sensors.rate.motion_pieces import (
+    ACCELEROMETERS,
+    GYROS,
+    States,
+    states_of,
 )
+from surveyapp.core.sensors.rate.motion_states import Thresholds
 from surveyapp.core.sensors.rate.odometer_path import Driven, Reckoned, reckon, snap
 from surveyapp.core.sensors.rate.still import (
     FALSE_ALARM,
-    WINDOW_S,
     Gate,
     Mask,
-    RestNoise,
-    bridged,
-    kappa,
-    motion_gate,
-    norm_and_rate,
-    rest_noise,
     runs_of,
-    statistic,
 )
 from surveyapp.core.sensors.rate.zero_velocity import BOUND, TOLERATED, InertialPath, inertial_path
 from surveyapp.domain.motion import Motion, MotionSegment, Path, Snapped
@@ -38,8 +31,6 @@ from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.arrays import Floats
 
-GYROS = ("gyr_x_rad_s", "gyr_y_rad_s", "gyr_z_rad_s")
-ACCELEROMETERS = ("acc_x_m_s2", "acc_y_m_s2", "acc_z_m_s2")
 NEEDED = (*GYROS, *ACCELEROMETERS)
 OPTIONAL = ("odometer_m", "power_cycle", "heading_deg", "temperature_c")
 SAME_STOP_M = 0.03
@@ -88,29 +79,11 @@ def judge_motion(log: SensorLog, options: MotionOptions) -> Motion:
     if log.size < LEAST_ROWS:
         found = f"{log.size} rows"
         raise SurveyError(Problem("the record is too short", log.path, found, "100 rows or more"))
-    force = np.column_stack([log.columns[c] for c in ACCELEROMETERS])
-    rate = np.column_stack([log.columns[c] for c in GYROS])
-    time = log.columns["time_s"]
     interval = 1.0 / (log.rate_hz or 100.0)
-    noise = rest_noise(force, rate, rate_hz=1.0 / interval)
-    window = max(round(WINDOW_S / interval), 3)
-    values = statistic(force, rate, noise, window=window)
-    gate = motion_gate(
-        values,
-        window=window,
-        false_alarm=options.false_alarm,
-        factor=options.still_gate_factor,
-    )
-    still = bridged(values <= gate.threshold, rate_hz=1.0 / interval)
-    forward, turn = forward_and_turn(force, rate, still, noise, interval_s=interval)
-    limits = thresholds_of(force, rate, still, interval_s=interval, false_alarm=options.false_alarm)
-    segments = segments_of(time, still, forward, turn, limits=limits)
-    other = bridged(
-        norm_and_rate(force, rate, noise, false_alarm=options.false_alarm), rate_hz=1.0 / interval
-    )
-    record = _Record(log, force, rate, still, noise, interval)
-    path, snapped, zero, warnings = _path(record, options)
-    unseen = _unseen(time, still, interval) if path is not None else None
+    states = states_of(log, false_alarm=options.false_alarm, factor=options.still_gate_factor)
+    path, snapped, zero, warnings = _path(_Record(log, states, interval), options)
+    time = log.columns["time_s"]
+    unseen = _unseen(time, states.still, interval) if path is not None else None
     if unseen is not None:
         warnings = [*warnings, unseen]
     consistent = unseen is None and (zero is None or zero["verdict"] == "consistent")
@@ -118,18 +91,18 @@ def judge_motion(log: SensorLog, options: MotionOptions) -> Motion:
         source=log.id,
         n=log.size,
         rate_hz=1.0 / interval,
-        segments=tuple(segments),
+        segments=states.segments,
         false_alarm=options.false_alarm,
-        thresholds=_thresholds(gate, limits),
+        thresholds=_thresholds(states.gate, states.limits),
         detectors={
-            "likelihood_ratio_still": float(np.mean(still)),
-            "norm_and_rate_still": float(np.mean(other)),
-            "kappa": kappa(still, other),
+            "likelihood_ratio_still": states.still_share,
+            "norm_and_rate_still": states.other_share,
+            "kappa": states.kappa,
         },
         path=path,
         zero_velocity=zero,
         snapped=tuple(snapped),
-        warnings=(*log.warnings, *warnings, *_told(segments, zero)),
+        warnings=(*log.warnings, *warnings, *_told(states.segments, zero)),
         met=consistent,
         sha256=log.sha256,
     )
@@ -161,14 +134,20 @@ def _thresholds(gate: Gate, limits: Thresholds) -> dict[str, float]:
 
 @dataclass(frozen=True, slots=True)
 class _Record:
-    """The columns as arrays, what was found at rest, and the interval [s]."""
+    """A log, what was found of its states, and the interval [s]."""
 
     log: SensorLog
-    force: Floats
-    rate: Floats
-    still: Mask
-    noise: RestNoise
+    states: States
     interval: float
+
+    @property
+    def still(self) -> Mask:
+        """Rows at rest."""
+        return self.states.still
+
+    def vectors(self, names: Sequence[str]) -> Floats:
+        """Columns side by side, shape (n, 3)."""
+        return np.column_stack([self.log.columns[c] for c in names])
 
 
 def _path(
@@ -194,7 +173,10 @@ def _path(
         )
         warnings.append(ResultWarning("before_first_stop", text))
     found = inertial_path(
-        record.force[begun:], record.rate[begun:], record.still[begun:], interval_s=record.interval
+        record.vectors(ACCELEROMETERS)[begun:],
+        record.vectors(GYROS)[begun:],
+        record.still[begun:],
+        interval_s=record.interval,
     )
     zero = _zero_velocity(found)
     return _inertial(found, record.still[begun:], options), [], zero, warnings
@@ -212,7 +194,7 @@ def _zero_velocity(found: InertialPath) -> dict[str, Any]:
 
 
 def _inertial(found: InertialPath, still: Mask, options: MotionOptions) -> Path:
-    place = found.position
+    place, level = found.position, found.covariance[:2, :2]
     if options.begin is not None:
         e, n, azimuth = options.begin
         c, s = math.cos(azimuth), math.sin(azimuth)
@@ -220,6 +202,8 @@ def _inertial(found: InertialPath, still: Mask, options: MotionOptions) -> Path:
         turned[:, 0] = e + c * place[:, 0] + s * place[:, 1]
         turned[:, 1] = n - s * place[:, 0] + c * place[:, 1]
         place = turned
+        axes = np.array([[c, s], [-s, c]])
+        level = axes @ level @ axes.T
     stops = _stop_places(place, still)
     target = place[0].copy()
     if options.end is not None:
@@ -231,10 +215,11 @@ def _inertial(found: InertialPath, still: Mask, options: MotionOptions) -> Path:
         [[0.0], np.cumsum(np.linalg.norm(np.diff(place[:, :2], axis=0), axis=1))]
     )
     rows = np.unique(np.searchsorted(along, np.arange(0.0, along[-1], 0.05)))
+    spread = np.sqrt(np.maximum(np.diag(level), 0.0))
     share = rows / max(place.shape[0] - 1, 1)
     points = tuple(
         (float(along[k]), float(place[k, 0]), float(place[k, 1]),
-         float(found.sigma[0] * math.sqrt(r)), float(found.sigma[1] * math.sqrt(r)))
+         float(spread[0] * math.sqrt(r)), float(spread[1] * math.sqrt(r)), float(level[0, 1] * r))
         for k, r in zip(rows.tolist(), share.tolist(), strict=True)
     )  # fmt: skip
     return Path(
@@ -268,7 +253,7 @@ def _by_odometer(record: _Record, options: MotionOptions) -> tuple[Path, list[Sn
     speed = max(
         float(driven.distance[-1] - driven.distance[0]) / float(np.ptp(log.columns["time_s"])), 0.01
     )
-    walk = float(record.noise.rate[2]) * math.sqrt(record.interval / speed)
+    walk = float(record.states.noise.rate[2]) * math.sqrt(record.interval / speed)
     found = reckon(driven, start=begin[:2], heading_walk=walk, heading_sigma=BEGIN_SIGMA)
     end = found.place[-1]
     target = options.end if options.end is not None else begin[:2]
@@ -279,9 +264,9 @@ def _by_odometer(record: _Record, options: MotionOptions) -> tuple[Path, list[Sn
 def _driven(record: _Record, azimuth: float) -> Driven:
     """Odometer and integrated heading; biases from every rest, so that the earth cancels too."""
     log = record.log
-    up = 1.0 if float(np.median(record.force[:, 2])) >= 0.0 else -1.0
+    up = 1.0 if float(np.median(log.columns[ACCELEROMETERS[2]])) >= 0.0 else -1.0
     bias = _bias_at_rest(record)
-    turn = -up * (record.rate[:, 2] - bias)
+    turn = -up * (log.columns[GYROS[2]] - bias)
     turn[record.still] = 0.0
     heading = azimuth + np.concatenate([[0.0], np.cumsum(turn[:-1]) * record.interval])
     known = log.columns.get("heading_deg", np.full(log.size, np.nan))
@@ -294,9 +279,9 @@ def _bias_at_rest(record: _Record) -> Floats:
     """Mean vertical rate of each rest, joined by straight lines, shape (n,)."""
     runs = [r for r in runs_of(record.still) if r[1] - r[0] >= round(0.5 / record.interval)]
     if not runs:
-        return np.full(record.still.size, float(record.noise.bias[2]))
+        return np.full(record.still.size, float(record.states.noise.bias[2]))
     middle = np.array([0.5 * (a + b) for a, b in runs])
-    means = np.array([float(record.rate[a:b, 2].mean()) for a, b in runs])
+    means = np.array([float(record.log.columns[GYROS[2]][a:b].mean()) for a, b in runs])
     return np.asarray(np.interp(np.arange(record.still.size), middle, means))
 
 
@@ -310,14 +295,14 @@ def _odometer_path(found: Reckoned, driven: Driven, closure: float) -> Path:
             stops.append(here)
     sigma = np.sqrt(np.maximum(np.diagonal(found.covariance, axis1=1, axis2=2), 0.0))
     points = tuple(
-        (float(d), float(p[0]), float(p[1]), float(s[0]), float(s[1]))
-        for d, p, s in zip(found.distance, found.place, sigma, strict=True)
+        (float(d), float(p[0]), float(p[1]), float(s[0]), float(s[1]), float(c[0, 1]))
+        for d, p, s, c in zip(found.distance, found.place, sigma, found.covariance, strict=True)
     )
     end = (float(found.place[-1, 0]), float(found.place[-1, 1]), 0.0)
     return Path("odometer", closure, end, _sides(stops), points, float(found.distance[-1]))
 
 
-def _told(segments: list[MotionSegment], zero: Mapping[str, Any] | None) -> list[ResultWarning]:
+def _told(segments: Sequence[MotionSegment], zero: Mapping[str, Any] | None) -> list[ResultWarning]:
     warnings = []
     if zero is not None and zero["verdict"] == "inconsistent":
         text = (

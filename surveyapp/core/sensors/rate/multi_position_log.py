@@ -5,22 +5,28 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from surveyapp.core.sensors.rate.hand_held import (
+from surveyapp.core.sensors.rate.hand_forces import (
     LEVELS,
     PARAMETERS,
     ForceModel,
-    HeldStop,
-    RateModel,
-    Turn,
+    covariance_with_omitted,
     fit_forces,
-    fit_rates,
     left_out,
     shifted_forces,
-    with_frame,
+)
+from surveyapp.core.sensors.rate.hand_held import HeldStop, RateModel, Turn, fit_rates
+from surveyapp.core.sensors.rate.hand_parameters import (
+    LEAST_TURNS,
+    force_parameters,
+    needed,
+    rate_parameters,
+    why_none,
+    widened,
 )
 from surveyapp.core.sensors.rate.held_turns import (
     ACCELEROMETERS,
@@ -28,9 +34,15 @@ from surveyapp.core.sensors.rate.held_turns import (
     rest_rates,
     turns_between,
     ups_of,
+    with_frame,
     with_g_sensitivity,
 )
-from surveyapp.core.sensors.rate.parameters import DEG_H, PPM
+from surveyapp.core.sensors.rate.needed import (
+    CROSS_TOLERANCE,
+    NORMAL_95,
+    SCALE_TOLERANCE,
+    ZERO_TOLERANCE,
+)
 from surveyapp.core.sensors.rate.still import (
     FALSE_ALARM,
     WINDOW_S,
@@ -40,19 +52,17 @@ from surveyapp.core.sensors.rate.still import (
     runs_of,
     statistic,
 )
-from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp.domain.calibration import (
     Calibration,
     CalibrationModel,
     Geometry,
     HeldOut,
     Misfit,
-    SensorParameter,
+    with_reasons,
 )
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2, SensorLog
 from surveyapp.errors import Problem, SurveyError
-from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
 
 NEEDED = (*GYROS, *ACCELEROMETERS)
@@ -60,8 +70,6 @@ LEAST_STOP_S = 1.0
 """A shorter stop does not average the noise of a hand."""
 LEAST_STOPS = 5
 """Stops below which no model is determined: one more than bias and scale need."""
-LEAST_TURNS = 6
-"""Turns below which the nine elements of the gyros are not determined."""
 GUARD_S = 0.1
 FEW_DOF = 3
 
@@ -126,13 +134,16 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
     models = _force_models(forces, options.gravity)
     held = {m.level: left_out(forces, level=m.level, gravity=options.gravity) for m in models}
     chosen = _chosen(models, held)
+    covariance = covariance_with_omitted(forces, chosen, gravity=options.gravity)
     turns = turns_between(log, stops, chosen, options.latitude)
     bias, sigma_bias = _bias(stops, chosen, options)
     gyro = _fitted(stops, chosen, turns) if len(turns) >= LEAST_TURNS else None
     parameters = (
-        *_force_parameters(chosen),
-        *_rate_parameters(gyro, bias, sigma_bias),
+        *needed(force_parameters(chosen, covariance), len(stops), "stops"),
+        *needed(rate_parameters(gyro, bias, sigma_bias), len(turns), "turns"),
     )
+    why = partial(why_none, model=chosen, stops=len(stops), turns=len(turns))
+    parameters = with_reasons(parameters, why)
     missing = tuple(p.name for p in parameters if p.value is None)
     raw = np.linalg.norm(forces, axis=1) - options.gravity
     return Calibration(
@@ -172,18 +183,24 @@ def _fitted(stops: Sequence[HeldStop], model: ForceModel, turns: Sequence[Turn])
     if model.dof < 1:
         return gyro
     forces = np.array([s.force for s in stops])
+    covariance = _with_tolerances(model)
     shifted = []
-    for other in shifted_forces(model):
+    for other in shifted_forces(model, covariance):
         ups = other.corrected(forces)
         ups = ups / np.linalg.norm(ups, axis=1)[:, None]
         shifted.append([replace(t, before=ups[t.leaves], after=ups[t.leaves + 1]) for t in turns])
-    spread = np.sqrt(np.maximum(np.diag(model.covariance), 1e-300))
-    return with_frame(gyro, turns, shifted, model.covariance / np.outer(spread, spread))
+    spread = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+    return with_frame(gyro, turns, shifted, covariance / np.outer(spread, spread))
 
 
-def widened(dof: int) -> float:
-    """Factor on a sigma of few degrees of freedom that makes 1.96 sigma the 95 % interval."""
-    return student_quantile(0.975, max(dof, 1)) / student_quantile(0.975, 1e6)
+def _with_tolerances(model: ForceModel) -> Floats:
+    """Covariance of the accelerometers, which are never worse than their makers leave them."""
+    kinds = [ZERO_TOLERANCE] * 3 + [SCALE_TOLERANCE] * 3 + [CROSS_TOLERANCE] * 3
+    if model.level == "bias_scale":
+        kinds = kinds[:4]
+    sigma = np.array(kinds[: model.vector.size]) / NORMAL_95
+    unit = np.linalg.inv(model.covariance / np.outer(sigma, sigma) + 1e-12 * np.eye(sigma.size))
+    return np.asarray(np.linalg.inv(unit + np.eye(sigma.size)) * np.outer(sigma, sigma))
 
 
 def _directions(gyro: RateModel, turns: Sequence[Turn], pulled: Sequence[Turn]) -> dict[str, Any]:
@@ -234,58 +251,6 @@ def _bias(
     means = rest_rates(stops, ups_of(stops, model), options.latitude)
     sigma = means.std(axis=0, ddof=1) / math.sqrt(len(stops))
     return means.mean(axis=0), sigma * widened(len(stops) - 1)
-
-
-def _force_parameters(model: ForceModel) -> list[SensorParameter]:
-    spread = np.sqrt(np.maximum(np.diag(model.covariance), 0.0)) * widened(model.dof)
-    known = model.dof > 0
-    vector = model.vector
-    found = []
-    for i, a in enumerate("xyz"):
-        one = float(spread[i]) if known else None
-        found.append(SensorParameter(f"accelerometer_bias_{a}", float(vector[i]), one, "m/s2"))
-    for i, a in enumerate("xyz"):
-        name = f"accelerometer_scale_factor_{a}"
-        if model.level == "bias_scale":
-            common = float(spread[3]) / PPM if known else None
-            found.append(SensorParameter(name, (float(vector[3]) - 1.0) / PPM, common, "ppm"))
-            continue
-        one = float(spread[3 + i]) / PPM if known else None
-        found.append(SensorParameter(name, (float(vector[3 + i]) - 1.0) / PPM, one, "ppm"))
-    for k, pair in enumerate(("yx", "zx", "zy")):
-        name = f"accelerometer_misalignment_{pair}"
-        if model.level != "misalignment":
-            found.append(SensorParameter(name, None, None, "arcsec"))
-            continue
-        one = float(spread[6 + k]) / ARCSEC if known else None
-        found.append(SensorParameter(name, float(vector[6 + k]) / ARCSEC, one, "arcsec"))
-    return found
-
-
-def _rate_parameters(
-    gyro: RateModel | None, bias: Floats, sigma_bias: Floats
-) -> list[SensorParameter]:
-    found = []
-    for i, a in enumerate("xyz"):
-        value = None if gyro is None else (float(gyro.output[i, i]) - 1.0) / PPM
-        sigma = None if gyro is None else _spread(gyro, 3 * i + i) / PPM
-        found.append(SensorParameter(f"scale_factor_{a}", value, sigma, "ppm"))
-    for i, a in enumerate("xyz"):
-        for j, b in enumerate("xyz"):
-            if i == j:
-                continue
-            value = None if gyro is None else float(gyro.output[i, j] / gyro.output[i, i]) / ARCSEC
-            sigma = None if gyro is None else _spread(gyro, 3 * i + j) / ARCSEC
-            found.append(SensorParameter(f"misalignment_{a}{b}", value, sigma, "arcsec"))
-    found += [
-        SensorParameter(f"bias_{a}", float(bias[i]) / DEG_H, float(sigma_bias[i]) / DEG_H, "deg/h")
-        for i, a in enumerate("xyz")
-    ]
-    return found
-
-
-def _spread(gyro: RateModel, index: int) -> float:
-    return math.sqrt(max(float(gyro.covariance[index, index]), 0.0)) * widened(gyro.dof)
 
 
 def _stop_dict(log: SensorLog, stop: HeldStop, model: ForceModel) -> dict[str, Any]:

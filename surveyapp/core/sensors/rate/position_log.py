@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -131,14 +131,7 @@ def means_of(log: SensorLog, placed: Sequence[Placed]) -> list[PositionMeans]:
             place.position, rates=rates, means=means, sigmas=sigmas, group=place.group
         )
         if not all(t.whole for t in place.turned):
-            one = PositionMeans(
-                one.position,
-                one.slope,
-                np.full(3, np.nan),
-                one.sigma_slope,
-                one.sigma_rest,
-                one.group,
-            )
+            one = replace(one, rest=np.full(3, np.nan))
         found.append(one)
     return found
 
@@ -151,10 +144,7 @@ def sense_of(
     if not against:
         return list(means), [], []
     if len(against) == len(means):
-        turned = [
-            PositionMeans(m.position, -m.slope, m.rest, m.sigma_slope, m.sigma_rest, m.group)
-            for m in means
-        ]
+        turned = [replace(m, slope=-m.slope) for m in means]
         text = (
             "every gyro contradicts the sign of the table's rate: the table counts anticlockwise "
             "from above, or the positions name the axis that points down; the sign was turned"

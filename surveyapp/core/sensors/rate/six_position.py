@@ -35,6 +35,8 @@ class PositionMeans:
     sigma_slope, sigma_rest : ndarray, shape (3,)
     group : int
         Round of the programme: the body is seated anew in each.
+    rate : float
+        Mean size of the table's rate [rad/s].
     """
 
     position: str
@@ -43,6 +45,7 @@ class PositionMeans:
     sigma_slope: Floats
     sigma_rest: Floats
     group: int = 0
+    rate: float = 0.0
 
     @property
     def axis(self) -> int:
@@ -60,6 +63,11 @@ class PositionMeans:
         An axis that points up reads minus the table's clockwise rate.
         """
         return -self.up * self.slope
+
+    def own_rest_sigma(self, relative_rate_sigma: float) -> float:
+        """Of the own axis's ``rest`` [rad/s]: what the table's two rates were off is in it."""
+        table = relative_rate_sigma * self.rate / math.sqrt(2.0)
+        return math.hypot(float(self.sigma_rest[self.axis]), table)
 
 
 def position_means(
@@ -85,7 +93,8 @@ def position_means(
         slope[i], rest[i] = np.linalg.solve(r, q.T @ (means[:, i] * weight))
         spread = np.sqrt(np.sum(np.linalg.solve(r, np.eye(2)) ** 2, axis=1))
         sigma_slope[i], sigma_rest[i] = spread
-    return PositionMeans(position, slope, rest, sigma_slope, sigma_rest, group)
+    size = float(np.mean(np.abs(rates)))
+    return PositionMeans(position, slope, rest, sigma_slope, sigma_rest, group, size)
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +170,9 @@ def solve_six_positions(
         matrix[:, axis] = np.mean([m.column() for m in here], axis=0)
         noise = np.sqrt(np.sum([m.sigma_slope**2 for m in here], axis=0)) / count
         sigma[:, axis] = _with_flips(noise, axis, count, flip_sigma, relative=relative_rate_sigma)
-        bias[axis], sigma_bias[axis] = _own_bias(here, axis, matrix[axis, axis], vertical_rate)
+        bias[axis], sigma_bias[axis] = _own_bias(
+            here, axis, matrix[axis, axis], vertical_rate, relative=relative_rate_sigma
+        )
     return GyroTriad(matrix, bias, sigma, sigma_bias)
 
 
@@ -180,20 +191,26 @@ def _with_flips(noise: Floats, axis: int, count: int, flip: float, *, relative: 
 
 
 def _own_bias(
-    here: Sequence[PositionMeans], axis: int, scale: float, vertical: float | None
+    here: Sequence[PositionMeans],
+    axis: int,
+    scale: float,
+    vertical: float | None,
+    *,
+    relative: float,
 ) -> tuple[float, float]:
     """Bias of a gyro from its own axis up and down: the vertical earth rate cancels."""
     rests = {up: [m for m in here if m.up == up] for up in (1.0, -1.0)}
     if rests[1.0] and rests[-1.0]:
         sides = [np.mean([m.rest[axis] for m in side]) for side in rests.values()]
         variance = [
-            sum(m.sigma_rest[axis] ** 2 for m in side) / len(side) ** 2 for side in rests.values()
+            sum(m.own_rest_sigma(relative) ** 2 for m in side) / len(side) ** 2
+            for side in rests.values()
         ]
         return float(np.mean(sides)), 0.5 * math.sqrt(float(sum(variance)))
     if vertical is None:
         return math.nan, math.nan
     free = [m.rest[axis] - m.up * scale * vertical for m in here]
-    variance_one = sum(m.sigma_rest[axis] ** 2 for m in here) / len(here) ** 2
+    variance_one = sum(m.own_rest_sigma(relative) ** 2 for m in here) / len(here) ** 2
     return float(np.mean(free)), math.sqrt(float(variance_one))
 
 
@@ -206,25 +223,54 @@ class StaticMeans:
     sigma: Floats
 
 
+@dataclass(frozen=True, slots=True)
+class Traditional:
+    """Biases [rad/s] and K - 1 by axis, each with its sigma."""
+
+    bias: Mapping[str, tuple[float, float]]
+    scale: Mapping[str, tuple[float, float]]
+
+
 def traditional(
-    static: Sequence[StaticMeans], means: Sequence[PositionMeans]
-) -> tuple[Mapping[str, float], Mapping[str, float]]:
+    static: Sequence[StaticMeans],
+    means: Sequence[PositionMeans],
+    *,
+    triad: GyroTriad,
+    level_rate: float,
+    seating: tuple[float, float] = (0.0, 0.0),
+) -> Traditional:
     """The static and rate method: biases at rest from the pair, scale factors from one position.
 
-    At rest the level earth rate does not cancel unless both positions have the same azimuth; that
-    is why whole turns are better.
+    At rest the level earth rate H does not cancel unless both positions have the same azimuth:
+    gyro i takes M_ij H cos and M_ik H sin of it, and H f where the seating is off by f. At any
+    azimuth that has the variance H^2 (M_ij^2 + M_ik^2 + 2 f^2) / 2 a position. Whole turns are
+    better.
 
-    Returns
-    -------
-    bias : mapping of axis to [rad/s]
-    scale : mapping of axis to K - 1
+    Parameters
+    ----------
+    static : sequence of StaticMeans
+    means : sequence of PositionMeans
+    triad : GyroTriad
+        Of the six positions: how far each gyro's axis is off the body's.
+    level_rate : float
+        Level part of the earth rate; all of it where the latitude is not known [rad/s].
+    seating : tuple of float
+        Standard deviation of the seating about each axis [rad], of the table's rate [1].
     """
     bias, scale = {}, {}
+    flip, relative = seating
     for axis, letter in enumerate(AXES):
-        rests = {s.position[1]: s.mean[axis] for s in static if s.position[0] == letter}
+        rests = {s.position[1]: s for s in static if s.position[0] == letter}
         if len(rests) == 2:
-            bias[letter] = float(0.5 * (rests["+"] + rests["-"]))
+            both = [rests[sign] for sign in "+-"]
+            value = 0.5 * sum(float(s.mean[axis]) for s in both)
+            noise = sum(float(s.sigma[axis]) ** 2 for s in both)
+            tilts = np.nan_to_num(np.delete(triad.matrix[axis], axis))
+            level = level_rate**2 * (float(tilts @ tilts) + 2.0 * flip**2)
+            bias[letter] = value, 0.5 * math.sqrt(noise + level)
         turned = [m for m in means if m.axis == axis]
         if turned:
-            scale[letter] = float(turned[0].column()[axis]) - 1.0
-    return bias, scale
+            one = turned[0]
+            sigma = _with_flips(one.sigma_slope, axis, 1, flip, relative=relative)
+            scale[letter] = float(one.column()[axis]) - 1.0, float(sigma[axis])
+    return Traditional(bias, scale)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -35,10 +36,17 @@ from surveyapp.core.sensors.rate.six_position import (
 )
 from surveyapp.core.sensors.rate.table_log import label, motion_of, sense_warnings
 from surveyapp.core.statistics.distributions import chi_square_tail
-from surveyapp.domain.calibration import Calibration, Geometry, Misfit, SensorParameter
+from surveyapp.domain.calibration import (
+    Calibration,
+    Geometry,
+    Misfit,
+    SensorParameter,
+    with_reasons,
+)
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.constants import EARTH_RATE
 
@@ -94,7 +102,7 @@ def calibrate_six_positions(log: SensorLog, options: SixPositionOptions) -> Cali
     if problems:
         raise SurveyError(problems)
     triad = _solve(means, options)
-    parameters = gyro_parameters(triad)
+    parameters = with_reasons(gyro_parameters(triad), partial(_why, means=means))
     missing = undetermined(parameters)
     before, after = _misfits(means, triad)
     return Calibration(
@@ -117,7 +125,7 @@ def calibrate_six_positions(log: SensorLog, options: SixPositionOptions) -> Cali
         sha256=log.sha256,
         extra={
             "steps": _steps(log, placed, table_tilt(resting)),
-            "traditional": _traditional(static, means),
+            "traditional": _traditional(static, means, triad, options),
             "repeatability": _repeatability(means, options),
         },
     )
@@ -130,6 +138,23 @@ def _solve(means: Sequence[PositionMeans], options: SixPositionOptions) -> GyroT
         flip_sigma=options.flip_sigma,
         relative_rate_sigma=options.relative_rate_sigma,
         vertical_rate=vertical,
+    )
+
+
+def _why(name: str, *, means: Sequence[PositionMeans]) -> str:
+    """Why a parameter has no value."""
+    axis = name[-1]
+    words = {m.position for m in means}
+    if not words & {f"{axis}+", f"{axis}-"}:
+        return said("no whole turns both ways with {axis} up or down", axis=axis)
+    missing = next((w for w in (f"{axis}+", f"{axis}-") if w not in words), None)
+    if missing is None:
+        return said("less than a whole turn leaves the level earth rate in it")
+    return said(
+        "{axis} was turned in one position only and holds the vertical earth rate: turn {missing} "
+        "too, or state the latitude",
+        axis=axis,
+        missing=missing,
     )
 
 
@@ -218,18 +243,32 @@ def _smoothing(log: SensorLog, placed: Sequence[Placed]) -> dict[str, Any]:
 
 
 def _traditional(
-    static: Sequence[StaticMeans], means: Sequence[PositionMeans]
+    static: Sequence[StaticMeans],
+    means: Sequence[PositionMeans],
+    triad: GyroTriad,
+    options: SixPositionOptions,
 ) -> dict[str, Any] | None:
     if not static:
         return None
-    bias, scale = traditional(static, means)
+    latitude = options.latitude
+    found = traditional(
+        static,
+        means,
+        triad=triad,
+        level_rate=EARTH_RATE * (1.0 if latitude is None else math.cos(latitude)),
+        seating=(options.flip_sigma, options.relative_rate_sigma),
+    )
     parameters = [
-        SensorParameter(f"scale_factor_{a}", v * 1e6, None, "ppm") for a, v in scale.items()
+        SensorParameter(f"scale_factor_{a}", v * 1e6, s * 1e6, "ppm")
+        for a, (v, s) in found.scale.items()
     ]
-    parameters += [SensorParameter(f"bias_{a}", v / DEG_H, None, "deg/h") for a, v in bias.items()]
+    parameters += [
+        SensorParameter(f"bias_{a}", v / DEG_H, s / DEG_H, "deg/h")
+        for a, (v, s) in found.bias.items()
+    ]
     text = (
         "biases at rest from two positions, scale factors from one: the level earth rate cancels "
-        "only if both rests have one azimuth"
+        "only if both rests have one azimuth, and is in the sigma"
     )
     return {"method": text, "parameters": [p.to_dict() for p in parameters]}
 

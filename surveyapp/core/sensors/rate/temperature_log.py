@@ -7,16 +7,13 @@ equations an axis for four unknowns, so their misalignments must come from a roo
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from surveyapp.core.sensors.rate.accelerometers import (
     AccelerometerTriad,
-    Resting,
     solve_accelerometers,
 )
 from surveyapp.core.sensors.rate.compensation import (
@@ -24,14 +21,9 @@ from surveyapp.core.sensors.rate.compensation import (
     ModelName,
     chosen_model,
     compare_models,
-    fitted,
-    held_out_residuals,
-    weights_at,
 )
 from surveyapp.core.sensors.rate.parameters import (
-    accelerometer_parameters,
     condition_of,
-    gyro_parameters,
 )
 from surveyapp.core.sensors.rate.position_log import (
     ACCELEROMETERS,
@@ -42,67 +34,32 @@ from surveyapp.core.sensors.rate.position_log import (
     resting_of,
     sense_of,
 )
-from surveyapp.core.sensors.rate.six_position import (
-    GyroTriad,
-    PositionMeans,
-    solve_six_positions,
-)
 from surveyapp.core.sensors.rate.table_log import motion_of, sense_warnings
+from surveyapp.core.sensors.rate.temperature_nodes import (
+    FULL_RANK,
+    Node,
+    TemperatureOptions,
+    nodes_of,
+    predicted,
+    series_of,
+)
 from surveyapp.domain.calibration import (
     Calibration,
     CalibrationModel,
     Geometry,
     HeldOut,
     Misfit,
-    SensorParameter,
 )
 from surveyapp.domain.project import ResultWarning
-from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2, SensorLog
+from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp_models.arrays import Floats
-from surveyapp_models.constants import EARTH_RATE
 
 CHAMBER = "reference_temperature_c"
 NODE_GAP_C = 1.5
 """Chamber temperatures closer than this are one node."""
 REFERENCE_C = 20.0
 """Temperature at which the parameters of the card stand, where the nodes hold it."""
-
-
-@dataclass(frozen=True, slots=True)
-class TemperatureOptions:
-    """What is stated beside the log.
-
-    Parameters
-    ----------
-    latitude : float
-        [rad]
-    predict_at : tuple of float
-        Chamber temperatures [C].
-    room : tuple of Resting or None
-        Rests of a room-temperature log in six positions.
-    gravity : float
-        [m/s2]
-    flip_sigma : float
-        [rad]
-    relative_rate_sigma : float
-    """
-
-    latitude: float
-    predict_at: tuple[float, ...] = ()
-    room: tuple[Resting, ...] | None = None
-    gravity: float = STANDARD_GRAVITY_M_S2
-    flip_sigma: float = 0.0
-    relative_rate_sigma: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class Node:
-    """Parameters at one chamber temperature [C]."""
-
-    temperature_c: float
-    parameters: tuple[SensorParameter, ...]
-    gyro: GyroTriad
 
 
 def node_numbers(temperatures: Floats) -> tuple[Floats, list[int]]:
@@ -144,7 +101,7 @@ def calibrate_temperature(log: SensorLog, options: TemperatureOptions) -> Calibr
         problems += _room_problems(room)
         if problems:
             raise SurveyError(problems)
-    nodes = _nodes(levels, means, resting, room, options=options)
+    nodes = nodes_of(levels, means, resting, room, options=options)
     return _calibration(log, nodes, options, [*sense_warnings(motion), *warnings])
 
 
@@ -164,7 +121,7 @@ def _outside(levels: Floats, wanted: Sequence[float], where: str) -> list[Proble
 
 
 def _room_problems(room: AccelerometerTriad) -> list[Problem]:
-    if room.rank == 12:
+    if room.rank == FULL_RANK:
         return []
     return [
         Problem(
@@ -176,89 +133,6 @@ def _room_problems(room: AccelerometerTriad) -> list[Problem]:
     ]
 
 
-def _nodes(
-    levels: Floats,
-    means: Sequence[PositionMeans],
-    resting: Sequence[tuple[int, Resting]],
-    room: AccelerometerTriad | None,
-    *,
-    options: TemperatureOptions,
-) -> list[Node]:
-    nodes = []
-    for k, level in enumerate(levels.tolist()):
-        gyro = _gyro([m for m in means if m.group == k], options)
-        parameters = gyro_parameters(gyro)
-        rests = [r for group, r in resting if group == k]
-        if rests:
-            tilt = None if room is None else room.misalignment
-            triad = solve_accelerometers(rests, gravity=options.gravity, misalignment=tilt)
-            parameters += accelerometer_parameters(triad)
-        nodes.append(Node(level, parameters, gyro))
-    return nodes
-
-
-def _gyro(means: Sequence[PositionMeans], options: TemperatureOptions) -> GyroTriad:
-    """Matrix as in six positions; the bias from every position with the matrix as measured there.
-
-    How the unit is seated enters the measured column and the vertical earth rate alike, so every
-    position serves for every bias.
-    """
-    vertical = EARTH_RATE * math.sin(options.latitude)
-    triad = solve_six_positions(
-        means,
-        flip_sigma=options.flip_sigma,
-        relative_rate_sigma=options.relative_rate_sigma,
-        vertical_rate=vertical,
-    )
-    if not means:
-        return triad
-    free = np.array([m.rest - m.up * m.column() * vertical for m in means])
-    sigma = np.sqrt(np.sum([m.sigma_rest**2 for m in means], axis=0)) / len(means)
-    return GyroTriad(triad.matrix, free.mean(axis=0), triad.sigma_matrix, sigma)
-
-
-def _series(nodes: Sequence[Node], name: str) -> tuple[Floats, Floats] | None:
-    """Values and sigmas of a parameter over the nodes; None where a node lacks it."""
-    cells = [next((p for p in n.parameters if p.name == name), None) for n in nodes]
-    values = [None if c is None else c.value for c in cells]
-    if any(v is None for v in values):
-        return None
-    sigmas = [0.0 if c is None or c.sigma is None else c.sigma for c in cells]
-    return np.array(values, dtype=np.float64), np.array(sigmas)
-
-
-def _predicted(nodes: Sequence[Node], model: ModelName, at: float) -> list[SensorParameter]:
-    """Every parameter at a temperature, its sigma with the model's own error at left-out nodes."""
-    temperatures = np.array([n.temperature_c for n in nodes])
-    found = []
-    for parameter in nodes[0].parameters:
-        series = _series(nodes, parameter.name)
-        if series is None:
-            found.append(SensorParameter(parameter.name, None, None, parameter.unit))
-            continue
-        values, sigmas = series
-        function = fitted(model, temperatures, values)
-        weights = weights_at(model, temperatures, at)
-        if function is None:
-            simple: ModelName = "piecewise_linear" if values.size > 1 else "none"
-            function = fitted(simple, temperatures, values)
-            weights = weights_at(simple, temperatures, at)
-        value = float(function(np.array([at]))[0]) if function is not None else math.nan
-        spread = float(np.sqrt(np.mean(sigmas**2)))
-        noise = float(np.sqrt(np.sum((weights * sigmas) ** 2))) if weights is not None else spread
-        sigma = math.hypot(noise, _model_error(model, temperatures, values, sigmas))
-        found.append(SensorParameter(parameter.name, value, sigma, parameter.unit))
-    return found
-
-
-def _model_error(model: ModelName, temperatures: Floats, values: Floats, sigmas: Floats) -> float:
-    """What is left at left-out nodes beyond the noise of the nodes themselves."""
-    rest = held_out_residuals(model, temperatures, values)
-    if rest is None:
-        return 0.0
-    return math.sqrt(max(float(np.mean(rest**2)) - 2.0 * float(np.mean(sigmas**2)), 0.0))
-
-
 def _calibration(
     log: SensorLog,
     nodes: list[Node],
@@ -267,15 +141,15 @@ def _calibration(
 ) -> Calibration:
     temperatures = np.array([n.temperature_c for n in nodes])
     names = [f"bias_{a}" for a in "xyz"]
-    series = [_series(nodes, name) for name in names]
-    known = [s[0] for s in series if s is not None]
+    series = [series_of(nodes, name) for name in names]
+    known = [s.values for s in series if s is not None]
     comparison: tuple[Compensation, ...] = ()
     if known:
         comparison = compare_models(temperatures, np.column_stack(known))
     model = chosen_model(comparison)
     low, high = float(temperatures.min()), float(temperatures.max())
     at = min(max(REFERENCE_C, low), high)
-    parameters = tuple(_predicted(nodes, model, at))
+    parameters = tuple(predicted(nodes, model, at))
     missing = _missing(nodes, log)
     rms = {c.model: c.held_out_rms for c in comparison}
     return Calibration(
@@ -320,7 +194,7 @@ def _extra(
         "predicted": [
             {
                 "temperature_c": t,
-                "parameters": [p.to_dict() for p in _predicted(nodes, model, t)],
+                "parameters": [p.to_dict() for p in predicted(nodes, model, t)],
             }
             for t in options.predict_at
         ],

@@ -42,15 +42,15 @@ class InertialPath:
     ----------
     position : ndarray, shape (n, 3)
         In a level frame whose y axis is where the body's points at first [m].
-    sigma : ndarray, shape (3,)
-        Of the last position [m].
+    covariance : ndarray, shape (3, 3)
+        Of the last position [m2].
     exceeding : float or None
         Share of velocity innovations beyond the 99 % bound; None without any.
     updates : int
     """
 
     position: Floats
-    sigma: Floats
+    covariance: Floats
     exceeding: float | None
     updates: int
 
@@ -107,7 +107,7 @@ def inertial_path(force: Floats, rate: Floats, still: Mask, *, interval_s: float
             covariance = 0.5 * (covariance + covariance.T)
         positions[k] = place
     share = beyond / updates if updates else None
-    return InertialPath(positions, np.sqrt(np.diag(covariance)[:3]), share, updates)
+    return InertialPath(positions, covariance[:3, :3].copy(), share, updates)
 
 
 def _noise(force: Floats, rate: Floats, interval_s: float) -> Floats:

@@ -153,6 +153,10 @@ class HandRun:
         Between stops, standard deviation of each bias [rad/s].
     random_walk : float
         Per stop, of each bias [rad/s].
+    gross : float
+        By how much one gyro is off at one stop [rad/s].
+    one_axis : bool
+        Whether every turn is about body z: attitudes that do not tell everything.
     """
 
     gyro: Triad
@@ -168,6 +172,7 @@ class HandRun:
     walk: float = 0.0
     random_walk: float = 0.0
     gross: float = 0.0
+    one_axis: bool = False
 
 
 def hand_held_log(run: HandRun, rng: np.random.Generator) -> SimulatedLog:
@@ -180,8 +185,8 @@ def hand_held_log(run: HandRun, rng: np.random.Generator) -> SimulatedLog:
     for k in range(run.stops):
         pieces.append(np.zeros((rest, 3)))
         if k + 1 < run.stops:
-            axis = rng.normal(0.0, 1.0, 3)
-            axis /= np.linalg.norm(axis)
+            axis = np.array([0.0, 0.0, 1.0]) if run.one_axis else rng.normal(0.0, 1.0, 3)
+            axis = axis / np.linalg.norm(axis)
             pieces.append(shape[:, None] * axis * (rng.uniform(1.2, 2.0) / (move * dt)))
     own = np.concatenate(pieces)
     attitude = quaternions.integrate(own, interval_s=dt, start=q)

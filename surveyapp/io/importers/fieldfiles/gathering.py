@@ -76,9 +76,11 @@ class Gathering:
     parts: Parts = field(default_factory=Parts)
     carried: list[int] = field(default_factory=list)
     feet: bool = False
+    open_end: bool = False
 
     def lines(self, text: FieldText, *, cut: Cut | None = None) -> Iterator[tuple[int, str]]:
         """Lines with their numbers; tells the progress on the way."""
+        self.open_end = not text.ended
         return text.lines(progress=self.options.progress, cut=cut)
 
     def ignore(self, kind: str, count: int = 1) -> None:
@@ -201,6 +203,8 @@ class Gathering:
     def _tell(self, form: str) -> None:
         if self.feet:
             self.warn("foot", self.foot.text)
+        if self.open_end:
+            self.warn("open_end", "the last line has no line end: is the file whole?")
         if self.carried:
             lines = ", ".join(str(line) for line in self.carried)
             self.warn("sixty_carried", f"60 seconds carried over: lines {lines}")

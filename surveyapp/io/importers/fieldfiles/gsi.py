@@ -34,6 +34,7 @@ from surveyapp.io.importers.fieldfiles.gsi_words import (
     block_width,
     blocks,
     cut_layouts,
+    lacking,
     last_opening,
     layout,
     words,
@@ -89,9 +90,25 @@ def read_gsi(path: Path, options: ReadOptions) -> FieldFile:
             "deleted? If one named a station, what follows stands on the wrong one"
         )
         state.gathered.warn("block_numbers", told)
+    _tell_unlike(state)
     widths = "/".join(str(width) for width in sorted(state.widths))
     names = " and ".join(sorted(state.conventions))
     return state.gathered.finish(form=("gsi", f"GSI-{widths}, {names}"), applied=(True, True))
+
+
+def _tell_unlike(state: State) -> None:
+    """Blocks without a word that all others have: cut in the middle, or another mask."""
+    found = sorted(
+        (state.first_of[kind], words)
+        for kind, words in lacking(state.layouts)
+        if kind not in state.cut
+    )
+    if found:
+        places = "; ".join(
+            f"line {line} without {', '.join(words)}" for line, words in found[:_SHOWN]
+        )
+        told = f"blocks lack words that all others have ({places}): were they damaged?"
+        state.gathered.warn("unlike_blocks", told)
 
 
 def _passed(text: FieldText, state: State) -> State:
@@ -105,6 +122,7 @@ def _passed(text: FieldText, state: State) -> State:
             kind = layout(block)
             if kind in layouts or len(layouts) < MOST_LAYOUTS:
                 layouts[kind] = layouts.get(kind, 0) + 1
+                state.first_of.setdefault(kind, number)
             state.last = kind
             _block(state, number, block, cut=kind in state.cut)
     return state
@@ -178,7 +196,7 @@ def _coordinates(state: State, line: int, found: dict[str, Word], first: str) ->
 def _station(state: State, line: int, found: dict[str, Word]) -> None:
     name, hi = found["11"].name, _length(state, found.get("88"))
     point = _coordinates(state, line, found, "84")
-    occupy(state, name, hi)
+    occupy(state, line, name, hi)
     state.conventions.add("station blocks")
     if not (point.e == point.n == 0.0 and not point.h):  # as delivered: nobody entered them
         state.gathered.point(point)
@@ -198,7 +216,7 @@ def _code(state: State, line: int, found: dict[str, Word]) -> None:
     hi = None
     if "43" in found and not found["43"].empty:
         hi = _code_height(found["43"])
-    occupy(state, found["42"].name, hi)
+    occupy(state, line, found["42"].name, hi)
     if "43" in found:
         state.heights += 1
     elif len(state.bare) < MOST_LAYOUTS:
@@ -285,7 +303,7 @@ def _pointing(state: State, line: int, found: dict[str, Word]) -> None:
     ht = _length(state, found.get("87"))
     ppm, prism = _corrections(found)
     if "16" in found and not found["16"].empty and found["16"].name != state.station:
-        occupy(state, found["16"].name, None)
+        occupy(state, line, found["16"].name, None)
         state.conventions.add("word 16")
     if state.station is None:
         if state.lost:
@@ -295,6 +313,8 @@ def _pointing(state: State, line: int, found: dict[str, Word]) -> None:
         return
     to = found["11"].name
     if to == state.station:
+        if state.gaps and state.gaps[-1] > state.occupied:  # a block is missing: that of a station
+            lose(state, state.gaps[-1])
         raise WordError(f"point {to} is sighted from itself")
     face: Face = "" if v is None else "R" if v > math.pi else "L"
     pointing = Pointing(

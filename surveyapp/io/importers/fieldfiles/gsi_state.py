@@ -45,6 +45,8 @@ class State:
     last: Layout | None = None
     heights: int = 0
     bare: list[tuple[int, str]] = field(default_factory=list)
+    occupied: int = 0
+    first_of: dict[Layout, int] = field(default_factory=dict)
 
 
 def doubt(state: State, line: int, block: str) -> None:
@@ -78,14 +80,14 @@ def lose(state: State, line: int) -> None:
     state.station = None
 
 
-def occupy(state: State, name: str, hi: float | None) -> None:
+def occupy(state: State, line: int, name: str, hi: float | None) -> None:
     """Take a station; the same one with the same height goes on with its set-up."""
     same_height = (hi is None or state.hi is None or abs(hi - state.hi) < _TWO_TENTHS_M) and (
         hi is None
     ) == (state.hi is None)
     if state.lost or name != state.station or not same_height:
         state.setup += 1
-    state.station, state.hi, state.lost = name, hi, ""
+    state.station, state.hi, state.lost, state.occupied = name, hi, "", line
 
 
 def check_stations(state: State) -> None:

@@ -18,6 +18,7 @@ RARE: Final = 9
 """A layout that stands in less than a tenth of the blocks is rare."""
 ONCE: Final = 4
 """One that stands but once is rare beside so many."""
+_MEASURED: Final = frozenset({"21", "22", "31", "32"})
 HEAD: Final = 7
 """Index, information and sign."""
 WIDTHS: Final = (8, 16)
@@ -239,6 +240,30 @@ def cut_layouts(counts: Mapping[Layout, int], last: Layout | None = None) -> fro
             for whole, number in counts.items()
         )
     )
+
+
+def lacking(counts: Mapping[Layout, int]) -> list[tuple[Layout, tuple[str, ...]]]:
+    """Layouts of readings that lack words inside of one that the file holds far more often.
+
+    Nothing proves that they were damaged, for a surveyor may change the mask: it is only told.
+    """
+    usual = max(counts, key=lambda kind: counts[kind], default=None)
+    if usual is None:
+        return []
+    whole = _indices(usual)
+    found = []
+    for kind, count in counts.items():
+        own = _indices(kind)
+        rest = iter(whole)
+        inside = len(own) < len(whole) and all(index in rest for index in own)
+        if inside and counts[usual] >= count * RARE and own.keys() & _MEASURED:
+            found.append((kind, tuple(index for index in whole if index not in own)))
+    return found
+
+
+def _indices(kind: Layout) -> dict[str, None]:
+    """Two digits of each word in order."""
+    return dict.fromkeys(a + b for a, b in zip(kind[0], kind[1], strict=False))
 
 
 def _rarity(short: Layout, count: int, *, other_end: bool, last: Layout | None) -> int:

@@ -41,12 +41,15 @@ class FieldText:
         Bytes.
     encoding : str
         ``ascii``, ``utf-8`` or ``latin-1``.
+    ended : bool
+        Whether the last line has its end.
     """
 
     path: Path
     name: str
     size: int
     encoding: str
+    ended: bool = True
 
     def lines(
         self, *, progress: Callable[[float], None] | None = None, cut: Cut | None = None
@@ -142,10 +145,10 @@ def look_through(path: Path, *, single_byte: bool = False) -> FieldText:
     """
     ascii_only = utf8 = True
     decoder = codecs.getincrementaldecoder("utf-8")()
-    lines, size = 1, 0
+    lines, size, last = 1, 0, b"\n"
     with open_field_file(path, path.name) as stream:
         while chunk := stream.read(_CHUNK):
-            size += len(chunk)
+            size, last = size + len(chunk), chunk[-1:]
             if b"\x00" in chunk:
                 lines += chunk.count(b"\n", 0, chunk.index(b"\x00"))
                 raise SurveyError(_binary(path.name, lines))
@@ -155,7 +158,7 @@ def look_through(path: Path, *, single_byte: bool = False) -> FieldText:
     if utf8 and not single_byte:
         utf8 = _continues(decoder, b"", final=True)
     encoding = "ascii" if ascii_only else "utf-8" if utf8 and not single_byte else "latin-1"
-    return FieldText(path, path.name, size, encoding)
+    return FieldText(path, path.name, size, encoding, last in b"\r\n\x1a\x03")
 
 
 def _continues(decoder: codecs.IncrementalDecoder, chunk: bytes, *, final: bool = False) -> bool:

@@ -9,14 +9,12 @@ Sources: Nikon and Spectra Precision manuals, SDR record formats; MicroSurvey, S
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
 from surveyapp.domain.fieldfile import Face, FieldFile, KnownPoint, Pointing
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.importers.fieldfiles.gathering import (
-    Gathering,
     ReadOptions,
     gathering,
 )
@@ -24,10 +22,16 @@ from surveyapp.io.importers.fieldfiles.lines import look_through
 from surveyapp.io.importers.fieldfiles.sdr_layout import (
     KINDS,
     RecordError,
-    Shape,
     header_digits,
     may_have_been,
     shape_of,
+)
+from surveyapp.io.importers.fieldfiles.sdr_state import (
+    State,
+    blanked,
+    constant_applied,
+    lose,
+    swallowed,
 )
 from surveyapp.io.importers.fieldfiles.units import DEGREE, GON, MIL
 
@@ -39,39 +43,9 @@ _FRAME: Final = "\x02\x03\x1a\x00"
 _MARK: Final = "\xef\xbb\xbf"
 _TWO_PI: Final = 2.0 * math.pi
 _SHOWN: Final = 6
+_LEAST_RECORD: Final = 4
 _NEGATIVE: Final = 3
 """So many negative zenith angles are no damage but a convention that record 01 does not tell."""
-
-
-@dataclass(slots=True)
-class _State:
-    """Units of the header and what holds until it is changed."""
-
-    gathered: Gathering
-    shape: Shape
-    angle: float = DEGREE
-    length: float | None = 1.0
-    order: str = "NEZ"
-    horizon: bool = False
-    station: str | None = None
-    hi: float | None = None
-    setup: int = 0
-    lost: str = ""
-    ht: float | None = None
-    ht_lost: str = ""
-    prism: float | None = None
-    applied: bool | None = None
-    said: set[bool | None] = field(default_factory=set)
-    begun: bool = False
-    doubt: int = 0
-    circle_lost: str = ""
-    differs: list[str] = field(default_factory=list)
-    negative: list[int] = field(default_factory=list)
-    time: str = ""
-    opened: str = ""
-    faces: set[str] = field(default_factory=set)
-    means: list[Pointing] = field(default_factory=list)
-    mean_only: list[str] = field(default_factory=list)
 
 
 def read_sdr(path: Path, options: ReadOptions) -> FieldFile:
@@ -88,18 +62,24 @@ def read_sdr(path: Path, options: ReadOptions) -> FieldFile:
     """
     text = look_through(path, single_byte=True)
     shape = shape_of((_bare(line) for _, line in text.lines()), path.name)
-    state = _State(gathering(path, options), shape)
+    state = State(gathering(path, options), shape)
+    blank = 0
     for number, line in state.gathered.lines(text):
         record = _bare(line)
-        if record.strip():
-            _record(state, number, record)
+        if not record.strip():
+            blank = number if len(record) >= _LEAST_RECORD else blank
+            continue
+        if blank:
+            blanked(state, blank)
+            blank = 0
+        _record(state, number, record)
     if text.encoding != "ascii":
         state.gathered.warn("code_page", "names that are no ASCII were read as Latin-1")
     _keep_means(state)
     _tell_places(state)
     if len(state.negative) >= _NEGATIVE:
         raise SurveyError(_from_horizon(state))
-    applied = _constant(state)
+    applied = constant_applied(state)
     state.gathered.warn(
         "atmosphere_unknown",
         "SDR files do not say whether distances hold the atmospheric correction: enter "
@@ -116,22 +96,7 @@ def read_sdr(path: Path, options: ReadOptions) -> FieldFile:
     )
 
 
-def _constant(state: _State) -> bool | None:
-    """Whether the prism constant is in the distances; None where the file does not say."""
-    if len(state.said) == 1 and None not in state.said:
-        return state.said.pop()
-    if len(state.said) > 1:
-        code, why = "constant_mixed", "the prism constant is in some of the distances"
-    else:
-        code, why = (
-            "constant_unknown",
-            "no note says whether the prism constant is in the distances",
-        )
-    state.gathered.warn(code, f"{why}: enter it in [[traverse]]")
-    return None
-
-
-def _from_horizon(state: _State) -> Problem:
+def _from_horizon(state: State) -> Problem:
     lines = ", ".join(str(line) for line in state.negative[:_SHOWN])
     return Problem(
         "vertical readings are negative, and zenith angles never are",
@@ -147,52 +112,41 @@ def _bare(line: str) -> str:
     return line.removeprefix(_MARK).strip(_FRAME)
 
 
-def _record(state: _State, number: int, line: str) -> None:
+def _record(state: State, number: int, line: str) -> None:
     kind = line[:2]
     actions = {"00": _header, "01": _instrument, "02": _station, "03": _target_height}
     actions |= {"08": _point, "09": _observation, "12": _set, "13": _note}
     if not (kind.isdigit() and len(line) >= 4):
         state.gathered.damaged(number, "this is no record", line, "two digits, two letters, fields")
         kinds = may_have_been(line)
-        _lose(state, number, kinds or frozenset(("01", "03")))
+        lose(state, number, kinds or frozenset(("01", "03")))
         state.doubt = 0 if kinds else number
         return
     action = actions.get(kind, _other)
     try:
         if kind in KINDS:
             state.shape.check(kind, line)
+        elif kind == "07" and len(line.rstrip()) > state.shape.full(kind):
+            raise RecordError("the record 07 is too long")
         elif line[:4] != "13NM":
             state.shape.alone(kind, line)
         action(state, number, line)
     except RecordError as error:
         state.gathered.damaged(number, str(error), line)
-        _lose(state, number, may_have_been(line) | {kind})
+        taken = swallowed(state, line, kind) if kind in (*KINDS, "07") else frozenset()
+        lose(state, number, may_have_been(line) | {kind} | taken)
 
 
-def _other(state: _State, number: int, line: str) -> None:
+def _other(state: State, number: int, line: str) -> None:
     if line[:2] not in ("06", "10", "07"):
         state.gathered.ignore(f"record {line[:4].strip()}")
 
 
-def _lose(state: _State, number: int, kinds: frozenset[str]) -> None:
-    """What a torn record may have said holds no more until it is said again."""
-    if "01" in kinds and not state.begun:
-        state.circle_lost = f"line {number} cannot be read and may tell how zenith angles count"
-    if "02" in kinds:
-        state.station, state.hi = None, None
-        state.lost = f"line {number} cannot be read and may hold the station"
-    if "03" in kinds:
-        state.ht, state.ht_lost = (
-            None,
-            f"line {number} cannot be read and may hold the target height",
-        )
-
-
-def _metres(state: _State, value: float | None) -> float | None:
+def _metres(state: State, value: float | None) -> float | None:
     return None if value is None else value * state.gathered.length(state.length)
 
 
-def _header(state: _State, number: int, line: str) -> None:
+def _header(state: State, number: int, line: str) -> None:
     digits = header_digits(line).ljust(5)
     tables = (("angles", digits[0], _ANGLES), ("lengths", digits[1], _LENGTHS))
     for what, digit, known in tables:
@@ -218,11 +172,11 @@ def _header(state: _State, number: int, line: str) -> None:
     state.order = _ORDERS[digits[4]]
 
 
-def _instrument(state: _State, number: int, line: str) -> None:
+def _instrument(state: State, number: int, line: str) -> None:
     state.horizon = line[50:51] == "2"
 
 
-def _known_point(state: _State, number: int, line: str) -> KnownPoint:
+def _known_point(state: State, number: int, line: str) -> KnownPoint:
     name = state.shape.names(line, 1)[0]
     if not name:
         raise RecordError("a point has no name")
@@ -234,7 +188,7 @@ def _known_point(state: _State, number: int, line: str) -> KnownPoint:
     return KnownPoint(name, e, n, height, number)
 
 
-def _station(state: _State, number: int, line: str) -> None:
+def _station(state: State, number: int, line: str) -> None:
     point = _known_point(state, number, line)
     hi = _metres(state, state.shape.number(line, "02", 3, "the instrument height"))
     state.setup += 1
@@ -243,25 +197,25 @@ def _station(state: _State, number: int, line: str) -> None:
         state.gathered.point(point)
 
 
-def _target_height(state: _State, number: int, line: str) -> None:
+def _target_height(state: State, number: int, line: str) -> None:
     value = state.shape.number(line, "03", 0, "the target height")
     if value is None:
         raise RecordError("the target height is missing")
     state.ht, state.ht_lost = _metres(state, value), ""
 
 
-def _point(state: _State, number: int, line: str) -> None:
+def _point(state: State, number: int, line: str) -> None:
     if line[2:4] in ("KI", "TP", "  ", "NM"):
         state.gathered.point(_known_point(state, number, line))
     else:
         state.gathered.ignore(f"record 08{line[2:4].strip()}")
 
 
-def _set(state: _State, number: int, line: str) -> None:
+def _set(state: State, number: int, line: str) -> None:
     state.gathered.ignore("record 12")
 
 
-def _note(state: _State, number: int, line: str) -> None:
+def _note(state: State, number: int, line: str) -> None:
     origin, text = line[2:4], line[4:].strip()
     if origin == "PC":
         state.applied = "applied" in text.lower() and "not applied" not in text.lower()
@@ -276,7 +230,7 @@ def _note(state: _State, number: int, line: str) -> None:
         state.gathered.ignore(f"note 13{origin.strip()}")
 
 
-def _circle(state: _State, value: float | None, what: str) -> float | None:
+def _circle(state: State, value: float | None, what: str) -> float | None:
     if value is None:
         return None
     reading = value * state.angle
@@ -285,7 +239,7 @@ def _circle(state: _State, value: float | None, what: str) -> float | None:
     return 0.0 if reading >= _TWO_PI else max(reading, 0.0)
 
 
-def _zenith(state: _State, number: int, value: float | None) -> float | None:
+def _zenith(state: State, number: int, value: float | None) -> float | None:
     if value is None:
         return None
     if state.horizon:
@@ -295,7 +249,7 @@ def _zenith(state: _State, number: int, value: float | None) -> float | None:
     return _circle(state, value, "the vertical reading") or None
 
 
-def _observation(state: _State, number: int, line: str) -> None:
+def _observation(state: State, number: int, line: str) -> None:
     origin = line[2:4]
     if origin not in ("F1", "F2", "MC"):
         if origin[0] == "F" or origin[1] in "12" or not origin.strip():
@@ -309,8 +263,8 @@ def _observation(state: _State, number: int, line: str) -> None:
         state.shape.number(line, "09", i, what)
         for i, what in enumerate(("the distance", "the vertical reading", "the circle reading"))
     )
-    if hz is None and v is None:
-        raise RecordError("the sight has neither a circle nor a vertical reading")
+    if hz is None:
+        raise RecordError("the sight has no circle reading")
     if sd is not None and sd < 0.0:
         raise RecordError(f"a distance is negative: {sd:g}")
     horizontal, zenith = _circle(state, hz, "the circle reading"), _zenith(state, number, v)
@@ -342,10 +296,10 @@ def _observation(state: _State, number: int, line: str) -> None:
     _keep(state, pointing, mean=origin == "MC")
 
 
-def _stands(state: _State, number: int, at: str) -> bool:
+def _stands(state: State, number: int, at: str) -> bool:
     """Take a station that a sight names and no record before it; whether that can be done."""
     if state.doubt:
-        _lose(state, state.doubt, frozenset(("02",)))
+        lose(state, state.doubt, frozenset(("02",)))
         state.gathered.dependent(number, state.lost)
         return False
     if state.station is not None:
@@ -358,7 +312,7 @@ def _stands(state: _State, number: int, at: str) -> bool:
     return True
 
 
-def _keep(state: _State, pointing: Pointing, *, mean: bool) -> None:
+def _keep(state: State, pointing: Pointing, *, mean: bool) -> None:
     if pointing.setup != state.opened:
         _keep_means(state)
         state.opened = pointing.setup
@@ -369,7 +323,7 @@ def _keep(state: _State, pointing: Pointing, *, mean: bool) -> None:
         state.gathered.add(pointing)
 
 
-def _keep_means(state: _State) -> None:
+def _keep_means(state: State) -> None:
     """Mean readings of a set-up count only for sights of which it has no face readings."""
     kept = [p for p in state.means if p.to not in state.faces]
     left = len(state.means) - len(kept)
@@ -383,7 +337,7 @@ def _keep_means(state: _State) -> None:
     state.faces.clear()
 
 
-def _tell_places(state: _State) -> None:
+def _tell_places(state: State) -> None:
     if state.differs:
         state.gathered.warn("station_differs", "; ".join(state.differs))
     if state.mean_only:

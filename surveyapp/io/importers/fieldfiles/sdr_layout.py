@@ -21,7 +21,9 @@ from surveyapp.errors import Problem, SurveyError
 KINDS: Final = ("02", "03", "08", "09")
 """Records whose columns are known: names, values, whether a text follows."""
 _FIELDS: Final = {"02": (1, 4, True), "03": (0, 1, False), "08": (1, 3, True), "09": (2, 3, True)}
-_TEXT: Final = 16
+_BACK: Final = (2, 2, False)
+"""Record 07: station, back sight, azimuth and circle reading; it is not used."""
+TEXT: Final = 16
 _SIGNATURES: Final = (
     *("00NM", "01NM", "02TP", "02NM", "02KI", "03NM", "06NM", "07TP", "07NM", "07KI"),
     *("08KI", "08TP", "08NM", "09F1", "09F2", "09MC", "10NM", "12SC", "13PC", "13TS", "13NM"),
@@ -71,7 +73,7 @@ class Shape:
 
     def full(self, kind: str) -> int:
         """Bytes of a record up to the end of its last value."""
-        names, values, _ = _FIELDS[kind]
+        names, values, _ = _FIELDS.get(kind, _BACK)
         return 4 + names * self.name + values * self.value
 
     def fields(self, kind: str, line: str) -> Iterator[str]:
@@ -154,7 +156,7 @@ class Shape:
             kind, 0
         ):
             raise RecordError(f"the record {kind} is cut short")
-        longest = full + (_TEXT if _FIELDS[kind][2] else 0)
+        longest = full + (TEXT if _FIELDS[kind][2] else 0)
         shifted = (
             usual is not None and len(line) > usual and (usual > full or not line[full:].strip())
         )

@@ -1,0 +1,96 @@
+"""What a diagnosis named in a log and a person adopted, taken out before the log is used.
+
+What happened in the record and never again is taken out: a switch, gross errors, the warm-up of
+that day. What belongs to the sensor (iron, cross axis, temperature) stays: the calibration
+estimates it with everything else, and a correction by a card has it on the card.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from surveyapp.domain.instrument import AdoptedEffect
+from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.sensor_log import Array, SensorLog
+from surveyapp_models.effects import of_subject
+
+AXES = ("along", "across")
+
+
+def without_events(
+    log: SensorLog, effects: Sequence[AdoptedEffect]
+) -> tuple[SensorLog, tuple[ResultWarning, ...]]:
+    """The log without the adopted effects that were events of it, and what was done.
+
+    Parameters
+    ----------
+    log : SensorLog
+        Of a compass or a two-axis tilt sensor.
+    effects : sequence of AdoptedEffect
+        Of its ``[[sensor_log]]``.
+    """
+    told: list[ResultWarning] = []
+    gross: list[int] = []
+    for effect in effects:
+        if effect.data_sha256 and log.sha256 and effect.data_sha256 != log.sha256:
+            text = f"{effect.id} was adopted for another state of the log: it is not taken out"
+            told.append(ResultWarning("adopted_not_applied", text))
+            continue
+        if effect.id == "gross_error":
+            gross += _rows(effect)
+            continue
+        columns = _corrected(log, effect)
+        if columns is None:
+            text = f"{effect.id} belongs to the sensor and is left to its calibration"
+            told.append(ResultWarning("adopted_not_applied", text))
+            continue
+        log = replace(log, columns={**log.columns, **columns})
+        told.append(ResultWarning("adopted_applied", f"{effect.id} as adopted is taken out"))
+    if gross:
+        log = _without_rows(log, gross)
+        text = f"{len(gross)} rows adopted as gross errors are left out"
+        told.append(ResultWarning("adopted_applied", text))
+    return log, tuple(told)
+
+
+def _corrected(log: SensorLog, effect: AdoptedEffect) -> dict[str, Array] | None:
+    """Columns without the effect; None where it is no event."""
+    values = {name: value for name, value, _, _ in effect.coefficients}
+    grid = {name: float(value) for name, value in effect.grid if not isinstance(value, str)}
+    if effect.id == "interference_step" and log.has("mag_x_uT", "mag_y_uT", "mag_z_uT"):
+        time = log.columns["time_s"]
+        during = (time >= grid.get("on_s", -np.inf)) & (time < grid.get("off_s", np.inf))
+        return {
+            f"mag_{a}_uT": log.columns[f"mag_{a}_uT"] - values.get(f"step_{a}", 0.0) * during
+            for a in "xyz"
+        }
+    if effect.id == "warm_up" and log.has("tilt_along_arcsec", "tilt_across_arcsec", "time_s"):
+        known = next(e for e in of_subject("tilt") if e.id == "warm_up")
+        found = {}
+        for number, axis in enumerate(AXES):
+            rows = {"axis": np.full(log.size, float(number)), "time_s": log.columns["time_s"]}
+            size = np.array([values.get(f"warm_up_{a}", 0.0) for a in AXES])
+            name = f"tilt_{axis}_arcsec"
+            found[name] = log.columns[name] - known.basis(rows, **grid) @ size
+        return found
+    return None
+
+
+def _rows(effect: AdoptedEffect) -> list[int]:
+    """Rows of gross errors, from 0; named ``row 1`` and so on."""
+    words = [name.rpartition(" ")[2] for name, *_ in effect.coefficients]
+    return [int(word) - 1 for word in words if word.isdigit()]
+
+
+def _without_rows(log: SensorLog, rows: Sequence[int]) -> SensorLog:
+    kept = np.ones(log.size, dtype=bool)
+    kept[[row for row in rows if 0 <= row < log.size]] = False
+    columns = {name: values[kept] for name, values in log.columns.items()}
+    texts = {
+        name: tuple(word for word, keep in zip(words, kept, strict=True) if keep)
+        for name, words in log.texts.items()
+    }
+    return replace(log, columns=columns, texts=texts, size=int(kept.sum()))
