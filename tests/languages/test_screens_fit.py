@@ -125,7 +125,8 @@ def _cut_text(text: Any, *, narrow: bool) -> list[str]:
 
 
 async def settle(pilot: Pilot[int]) -> None:
-    await pilot.pause()
+    for _ in range(2):
+        await pilot.pause()
     while any(not worker.is_finished for worker in pilot.app.workers):
         await pilot.app.workers.wait_for_complete()
         await pilot.pause()
@@ -148,8 +149,9 @@ class Walk:
     async def press(self, *keys: str) -> None:
         """Press keys, each after the last computation has been shown."""
         for key in keys:
-            await self.pilot.press(key)
             await settle(self.pilot)
+            await self.pilot.press(key)
+        await settle(self.pilot)
 
     async def look(self, pages: int = 0) -> None:
         """What is cut on this screen, or on its pages."""
