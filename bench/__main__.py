@@ -1,6 +1,7 @@
 """Run every benchmark, or those named: ``python -m bench [--cluster ADDRESS] [NAME ...]``.
 
-A benchmark whose ``run`` takes an executor is given that of the cluster.
+A benchmark whose ``run`` takes an executor is given that of the cluster. The exit status is 1 where
+one found a fault.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import pkgutil
 import sys
 
 import bench
+from bench._parts import FaultsFoundError
 from surveyapp import api
 
 
@@ -25,14 +27,19 @@ def main(names: list[str]) -> int:
     if unknown:
         print(f"unknown: {', '.join(unknown)}; known: {', '.join(known)}", file=sys.stderr)
         return 2
+    code = 0
     with api.cluster_executor(address) as executor:
         for name in names or known:
             print(f"== {name}")
             work = importlib.import_module(f"bench.{name}").run
             takes = "executor" in inspect.signature(work).parameters
-            for line in work(executor=executor) if takes else work():
-                print(line, flush=True)
-    return 0
+            try:
+                for line in work(executor=executor) if takes else work():
+                    print(line, flush=True)
+            except FaultsFoundError as found:
+                print("\n".join(found.lines), flush=True)
+                code = 1
+    return code
 
 
 if __name__ == "__main__":

@@ -75,9 +75,13 @@ def _set_up(
 
 
 def _binomial_99() -> tuple[int, int]:
-    """Of so many tests at 95 % that hold, the least and the most to be expected."""
-    mean, sigma = 0.95 * TRAVERSES, math.sqrt(0.95 * 0.05 * TRAVERSES)
-    return math.floor(mean - 2.58 * sigma), min(TRAVERSES, math.ceil(mean + 2.58 * sigma))
+    """Of so many tests at 95 % that hold, the least and the most to be expected.
+
+    The centring of an import is assumed, so that hardly any fails from below: up to 97.5 % hold.
+    """
+    sigmas = [math.sqrt(p * (1.0 - p) * TRAVERSES) for p in (0.95, 0.975)]
+    least = math.floor(0.95 * TRAVERSES - 2.58 * sigmas[0])
+    return least, min(TRAVERSES, math.ceil(0.975 * TRAVERSES + 2.58 * sigmas[1]))
 
 
 def _adjusted(seed: int, stations: int, rounds: int) -> tuple[bool, float]:

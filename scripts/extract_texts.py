@@ -5,7 +5,8 @@
 ``--check`` ends with 1 where a catalogue is not complete.
 
 A text is a literal of ``said``, ``counted`` and ``said_each``, a constant of
-``surveyapp.tui.texts``, or stands in one of the tables of ``TABLES``.
+``surveyapp.tui.texts``, what stands in a ``Problem`` or a ``ResultWarning`` (``problem_texts``), or
+stands in one of the tables of ``TABLES``.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from typing import Any, Final, get_args
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "models")]
 
+from scripts import problem_texts  # noqa: E402
 from surveyapp.languages import LANGUAGES  # noqa: E402
 from surveyapp.languages.po_file import read_po  # noqa: E402
 from surveyapp.languages.vocabulary import VOCABULARY  # noqa: E402
@@ -42,12 +44,19 @@ FORMS: Final = {"de": 2, "ru": 3, "zh": 1}
 def texts() -> dict[Key, str]:
     """Every text and where it stands."""
     found: dict[Key, str] = {}
-    for path in sorted((ROOT / "surveyapp").rglob("*.py")):
+    trees = {
+        path: ast.parse(path.read_text(encoding="utf-8"))
+        for path in sorted((ROOT / "surveyapp").rglob("*.py"))
+        if path.parent.name != "texts"
+    }
+    refusals = problem_texts.texts_of(trees)
+    for path, tree in trees.items():
         place = path.relative_to(ROOT).as_posix()
-        if path.parent.name == "texts":
-            continue
-        for key, line in _said(ast.parse(path.read_text(encoding="utf-8"))):
+        for key, line in _said(tree):
             found.setdefault(key, f"{place}:{line}")
+        for text, line in refusals[path].texts:
+            if problem_texts.has_words(text):
+                found.setdefault((text, None), f"{place}:{line}")
     for text, place in (*_screens(), *_tables()):
         if _has_words(text):
             found.setdefault((text, None), place)

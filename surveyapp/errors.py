@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
+
+from surveyapp.languages.said import Said, counted, either, joined, said, term
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,17 +37,33 @@ class Problem:
     expected: str = ""
     hint: str = ""
 
+    def __post_init__(self) -> None:
+        """Make plain texts texts of the catalogue; what was found and where is as it is."""
+        for name in ("what", "expected", "hint"):
+            text = getattr(self, name)
+            if not isinstance(text, Said):
+                object.__setattr__(self, name, term(text))
+
+    def within(self, place: str) -> Problem:
+        """The same problem, with the file or table that holds its place before it."""
+        return replace(self, where=joined(", ", (place, self.where)))
+
     def to_dict(self) -> dict[str, str]:
-        """The five keys of the JSON error."""
+        """The five keys of the JSON error, in English."""
         return asdict(self)
 
-    def __str__(self) -> str:
-        text = f"{self.where}: {self.what}" if self.where else self.what
+    @property
+    def text(self) -> str:
+        """All in one line; ``languages.shown`` says it in the language in use."""
+        text = joined(": ", (self.where, self.what)) if self.where else self.what
         if self.found:
-            text += f"; found {self.found}"
+            text = said("{text}; found {found}", text=text, found=self.found)
         if self.expected:
-            text += f"; expected {self.expected}"
-        return f"{text}. {self.hint}" if self.hint else text
+            text = said("{text}; expected {expected}", text=text, expected=self.expected)
+        return joined(". ", (text, self.hint)) if self.hint else text
+
+    def __str__(self) -> str:
+        return str(self.text)
 
 
 class SurveyError(Exception):
@@ -63,6 +81,11 @@ class SurveyError(Exception):
         )
         super().__init__("\n".join(str(problem) for problem in self.problems))
 
+    @property
+    def text(self) -> str:
+        """Every problem in a line of its own; ``languages.shown`` says it."""
+        return joined("\n", (problem.text for problem in self.problems))
+
 
 _MOST_PROBLEMS = 200
 _MOST_NAMES = 60
@@ -73,8 +96,19 @@ def _listed(problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
     """The first problems; of a file of another kind every line would be one."""
     if len(problems) <= _MOST_PROBLEMS:
         return problems
-    rest = len(problems) - _MOST_PROBLEMS
-    return (*problems[:_MOST_PROBLEMS], Problem(f"{rest} further problems"))
+    rest = sum(_stands_for(problem) for problem in problems[_MOST_PROBLEMS:])
+    return (*problems[:_MOST_PROBLEMS], Problem(_further(rest)))
+
+
+def _further(count: int) -> str:
+    return counted("{count} further problem", "{count} further problems", count=count)
+
+
+def _stands_for(problem: Problem) -> int:
+    """How many a problem is: one, or as many as an earlier listing has counted."""
+    what = problem.what
+    count = what.fields.get("count") if isinstance(what, Said) else None
+    return count if isinstance(count, int) and what == _further(count) else 1
 
 
 def nearest_names(name: str, known: Iterable[str]) -> str:
@@ -85,7 +119,7 @@ def nearest_names(name: str, known: Iterable[str]) -> str:
         names = [*names[:_MOST_NAMES], f"{len(names) - _MOST_NAMES} more"]
     else:
         close = difflib.get_close_matches(name[:80], names, n=2, cutoff=0.5)
-    listing = ", ".join(names) if names else "none"
+    listing = ", ".join(names) if names else said("none")
     if close:
-        return f"Did you mean {' or '.join(close)}? Known: {listing}"
-    return f"Known: {listing}"
+        return said("Did you mean {close}? Known: {names}", close=either(close), names=listing)
+    return said("Known: {names}", names=listing)

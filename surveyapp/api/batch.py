@@ -23,6 +23,7 @@ from surveyapp.api.project import Folder
 from surveyapp.domain.filing import BATCH_COLUMNS, BatchResult, BatchRow
 from surveyapp.domain.results import LineResult, to_arcsec, to_degrees
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp.workflows.spreading import ATTEMPTS, is_lost
 
 CHUNK: Final = 16
@@ -175,7 +176,12 @@ def batch(
                     progress(done, len(folders), len(failures))
     except OSError as error:
         raise SurveyError(
-            Problem(f"the table could not be written ({error.strerror or error})", str(path))
+            Problem(
+                said(
+                    "the table could not be written ({strerror})", strerror=error.strerror or error
+                ),
+                str(path),
+            )
         ) from None
     return BatchResult(
         str(path), counts["good"], counts["limit"], counts["failed"], tuple(failures)

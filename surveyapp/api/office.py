@@ -19,7 +19,7 @@ from surveyapp.api.orientation import Source, compute, orient
 from surveyapp.api.project import SOFTWARE, Folder
 from surveyapp.domain.advance import Advance, silent
 from surveyapp.errors import SurveyError
-from surveyapp.languages import in_language
+from surveyapp.languages import in_language, said
 
 if TYPE_CHECKING:
     from surveyapp.core.differences import Snapshot
@@ -98,7 +98,7 @@ def _traverses(found: Computed) -> tuple[Extra, ...]:
         try:
             result = adjust(found, traverse=traverse.name)
         except SurveyError as error:
-            reasons = [Paragraph(str(problem), "warning") for problem in error.problems]
+            reasons = [Paragraph(problem.text, "warning") for problem in error.problems]
             extras.append(Extra(identity, (Heading(f"Traverse {traverse.name}"), *reasons)))
             continue
         made = section.blocks(traverse.name, result, unit=found.project.angle_unit)
@@ -140,7 +140,7 @@ def _refused(title: str, error: SurveyError) -> tuple[Block, ...]:
     """A section that says why there is nothing in it."""
     from surveyapp.report.blocks import Heading, Paragraph
 
-    return (Heading(title), *(Paragraph(str(p), "warning") for p in error.problems))
+    return (Heading(title), *(Paragraph(p.text, "warning") for p in error.problems))
 
 
 def _diagnoses(found: Computed, advance: Advance) -> tuple[Extra, ...]:
@@ -277,7 +277,10 @@ def export_zip(folder: Folder, output: Folder, *, allow_outside: bool = False) -
     left = () if allow_outside else logs_outside(Path(folder))
     if not left:
         return made
-    text = f"{len(left)} sensor logs outside of the folder are not packed: --allow-outside does"
+    text = said(
+        "{size} sensor logs outside of the folder are not packed: --allow-outside does",
+        size=len(left),
+    )
     return replace(made, warnings=(ResultWarning("logs_outside", text),))
 
 

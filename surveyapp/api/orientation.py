@@ -11,6 +11,7 @@ from surveyapp.domain.project import Project, ResultWarning
 from surveyapp.domain.records import Listing
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 
 if TYPE_CHECKING:
     import numpy as np
@@ -175,7 +176,9 @@ def with_line(found: Computed, line: str | tuple[str, str]) -> OrientationResult
     if all(item.true_azimuth is None for item in own):
         raise SurveyError(
             Problem(
-                what=f"the azimuth of line {found_line} cannot be determined",
+                what=said(
+                    "the azimuth of line {found_line} cannot be determined", found_line=found_line
+                ),
                 where=", ".join(f"instrument {item.instrument}" for item in own),
                 found="no instrument constant",
                 expected="calibration sessions on a known line, or a known constant",

@@ -12,6 +12,7 @@ from surveyapp.api.project import SOFTWARE, Folder, opened
 from surveyapp.domain.project import Project
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.project_files import PROJECT_FILE
+from surveyapp.languages import said
 
 if TYPE_CHECKING:
     from surveyapp.workflows.pooling import InstrumentDiagnosis, Part, Wanted
@@ -102,7 +103,10 @@ def _projects(project: Project, archive: Sequence[Folder]) -> list[str]:
                     "an archive without projects",
                     "--archive",
                     str(folder),
-                    f"a project, or a folder with projects ({PROJECT_FILE})",
+                    said(
+                        "a project, or a folder with projects ({project_file})",
+                        project_file=PROJECT_FILE,
+                    ),
                 )
             )
         for item in inner:

@@ -13,6 +13,7 @@ from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import Project
 from surveyapp.domain.records import Listing
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import said
 
 if TYPE_CHECKING:
     from surveyapp.io.simulated import SimulatedFiles
@@ -49,10 +50,10 @@ def require(name: str, known: Iterable[str], kind: str, more: str = "") -> None:
     if name not in names:
         raise SurveyError(
             Problem(
-                what=f"there is no {kind} of this name",
+                what=said("there is no {kind} of this name", kind=kind),
                 where=kind,
                 found=name,
-                expected=f"the name of a {kind} of the project",
+                expected=said("the name of a {kind} of the project", kind=kind),
                 hint=". ".join(filter(None, [nearest_names(name, names), more])),
             )
         )
@@ -143,7 +144,10 @@ def _installed(card: str) -> InstrumentCard:
 
     known = installed_card_ids()
     if card not in known:
-        hint = nearest_names(card, known) + "; a card of your own is copied in and named there"
+        hint = said(
+            "{names}; a card of your own is copied in and named there",
+            names=nearest_names(card, known),
+        )
         raise SurveyError(
             Problem("there is no such instrument card", "card", card, "the id of one", hint)
         )

@@ -13,6 +13,7 @@ from surveyapp.domain.line_spectrum import LineSpectrum
 from surveyapp.domain.motion import Motion
 from surveyapp.domain.north import NorthResult
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import said
 
 if TYPE_CHECKING:
     from surveyapp.core.sensors.rate.fog_station_plan import FogStationPlan
@@ -52,7 +53,14 @@ def plan_fog_station(
         ("--table-rate-relative-sigma", relative_rate_sigma, 0.0, 1.0),
     ):
         if value is not None and not low <= value <= high:
-            problems.append(Problem("out of range", option, f"{value:g}", f"{low:g} to {high:g}"))
+            problems.append(
+                Problem(
+                    "out of range",
+                    option,
+                    f"{value:g}",
+                    said("{low:g} to {high:g}", low=low, high=high),
+                )
+            )
     if problems:
         raise SurveyError(problems)
     return plan.plan_fog_station(

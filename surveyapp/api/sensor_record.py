@@ -27,7 +27,7 @@ def sensor_sections(found: Computed) -> tuple[Extra, ...]:
         try:
             body, verdict = _body(found.project.path, entry)
         except SurveyError as error:
-            body = tuple(Paragraph(str(problem), "warning") for problem in error.problems)
+            body = tuple(Paragraph(problem.text, "warning") for problem in error.problems)
             verdict = said("cannot be used: see its section")
         blocks = (Heading(title_of(entry.id)), *_note(entry), *body, *adopted_blocks(entry))
         extras.append(Extra(f"sensor log {entry.id}", blocks, verdict))

@@ -15,6 +15,7 @@ from surveyapp.api.project import SOFTWARE, Folder, open_project, require
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.noise import AllanResult, FilterResult
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 
 if TYPE_CHECKING:
     from surveyapp.domain.sensor_entry import SensorLogEntry
@@ -116,7 +117,7 @@ def open_sensor_log(
         sensor = entries[0].id
     if sensor is None:
         names = ", ".join(entry.id for entry in entries) or "none"
-        hint = f"--sensor ID names it; the project has: {names}"
+        hint = said("--sensor ID names it; the project has: {names}", names=names)
         raise SurveyError(Problem("which sensor log?", os.fspath(source), "", "--sensor ID", hint))
     require(sensor, [entry.id for entry in entries], "sensor")
     entry = next(item for item in entries if item.id == sensor)

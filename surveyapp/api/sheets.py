@@ -8,6 +8,7 @@ from surveyapp.api.network import adjust
 from surveyapp.api.orientation import Source, compute
 from surveyapp.api.project import SOFTWARE, Folder
 from surveyapp.errors import SurveyError
+from surveyapp.languages import said
 from surveyapp.report.written import SheetsResult
 
 
@@ -51,7 +52,7 @@ def write_sheets(source: Source, output: Folder) -> SheetsResult:
         try:
             result = adjust(found, traverse=traverse.name)
         except SurveyError as error:
-            problems.append(f"traverse {traverse.name}: {error}")
+            problems.append(said("traverse {name}: {text}", name=traverse.name, text=error.text))
             continue
         sheets.append(traverse_sheet(traverse.name, result, unit))
     paths = []

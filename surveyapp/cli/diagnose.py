@@ -7,6 +7,7 @@ import textwrap
 from typing import TYPE_CHECKING
 
 from surveyapp.cli.output import WIDTH, heading, number, print_json, table
+from surveyapp.languages import said
 
 if TYPE_CHECKING:
     from surveyapp.workflows.diagnosing import Diagnosed
@@ -100,7 +101,7 @@ def _instrument(options: argparse.Namespace) -> int:
     named = [f"--{n.replace('_', '-')}" for n in others if getattr(options, n) is not None]
     named += ["--adopt"] if options.adopt else []
     if named:
-        found = f"--instrument and {', '.join(named)}"
+        found = said("--instrument and {names}", names=", ".join(named))
         raise SurveyError(Problem("one subject at a time", "diagnose", found, "--instrument alone"))
     with ExitStack() as stack:
         pool = stack.enter_context(ProcessPoolExecutor()) if options.archive else None
@@ -191,7 +192,7 @@ def _refuse_archive(options: argparse.Namespace) -> None:
             Problem(
                 "an archive is pooled for one instrument",
                 "diagnose",
-                f"{' and '.join(named)} without --instrument",
+                said("{names} without --instrument", names=" and ".join(named)),
                 "--instrument ID",
             )
         )

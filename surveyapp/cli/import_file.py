@@ -10,6 +10,7 @@ from typing import Final
 from surveyapp.cli.output import heading, number, paragraph, print_json, table
 from surveyapp.domain.fieldfile import ImportResult
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 
 _MOST_SETS: Final = 20
 
@@ -64,7 +65,9 @@ def pairs(texts: Sequence[str], option: str) -> dict[str, str]:
         if not sign or not key or not value:
             problems.append(Problem("this is no pair", option, text, "like hz=COLUMN"))
         elif key in found:
-            problems.append(Problem("this is told twice", option, text, f"one {key}="))
+            problems.append(
+                Problem("this is told twice", option, text, said("one {key}=", key=key))
+            )
         else:
             found[key] = value
     if problems:

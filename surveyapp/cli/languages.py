@@ -1,13 +1,15 @@
 """The language of the screens and the record: an option, else the user's setting, else the locale.
 
-What the other commands print is English, so that a script reads the same everywhere.
+Results of commands and JSON are English, so that a script reads the same everywhere; refusals are
+said to a person, in the language wished for.
 """
 
 from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from types import ModuleType
 from typing import Final
 
@@ -30,6 +32,17 @@ def wished(option: str | None = None) -> str:
     from surveyapp.io.settings import read_settings
 
     return option or languages.preferred(read_settings().language)
+
+
+@contextmanager
+def in_wished() -> Iterator[None]:
+    """Say texts in the language wished for; whatever is wrong with the setting, they are said."""
+    try:
+        language = wished()
+    except (OSError, ValueError):
+        language = languages.preferred()
+    with languages.in_language(language):
+        yield
 
 
 def run_screens(run: Callable[[ModuleType], int]) -> int:

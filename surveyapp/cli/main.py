@@ -17,11 +17,14 @@ from types import ModuleType
 from typing import Any, NoReturn
 
 from surveyapp import __version__
+from surveyapp.cli.languages import in_wished
 from surveyapp.cli.numbers import finite
 from surveyapp.cli.output import print_json
+from surveyapp.cli.refusals import of_argparse, told
 from surveyapp.cli.safe_output import safe_output
 from surveyapp.cli.waiting import Waiting
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import either, said
 
 EXIT_GOOD, EXIT_LIMIT, EXIT_INPUT, EXIT_FAULT = 0, 1, 2, 3
 
@@ -110,8 +113,8 @@ class Parser(argparse.ArgumentParser):
         """Raise instead of leaving: the error may have to be printed as JSON."""
         missing = message.removeprefix("the following arguments are required: ")
         expected = missing if missing != message else ""
-        what = "an argument is missing" if expected else message
-        hint = f"See {self.prog} --help."
+        what = "an argument is missing" if expected else of_argparse(message)
+        hint = said("See {prog} --help.", prog=self.prog)
         raise SurveyError(Problem(what=what, where=self.prog, expected=expected, hint=hint))
 
     def parse_strictly(self, arguments: Sequence[str]) -> argparse.Namespace:
@@ -166,7 +169,7 @@ class Parser(argparse.ArgumentParser):
                 what="this is none of the possible values",
                 where=action.option_strings[-1] if action.option_strings else self.prog,
                 found=str(value),
-                expected=" or ".join(str(choice) for choice in action.choices),
+                expected=either(str(choice) for choice in action.choices),
                 hint=nearest_names(str(value), [str(choice) for choice in action.choices]),
             )
         )
@@ -201,8 +204,8 @@ def _main(arguments: Sequence[str]) -> int:
     except Exception as fault:  # the last resort: a fault of ours, never a traceback for a surveyor
         if os.environ.get("SURVEYAPP_DEBUG"):
             raise
-        told, code = _told_fault(fault)
-        return _tell(told, code, as_json=as_json and code == EXIT_FAULT)
+        refused, code = _told_fault(fault)
+        return _tell(refused, code, as_json=as_json and code == EXIT_FAULT)
     return code
 
 
@@ -210,9 +213,9 @@ def _told_fault(fault: Exception) -> tuple[SurveyError, int]:
     if isinstance(fault, OSError) and fault.filename is None and fault.strerror:
         _leave_output()
         where, hint = "standard output", "Is the disk full?"
-        what = f"the result cannot be written ({fault.strerror})"
+        what = said("the result cannot be written ({strerror})", strerror=fault.strerror)
         return SurveyError(Problem(what=what, where=where, hint=hint)), EXIT_INPUT
-    what = f"internal fault: {type(fault).__name__}: {fault}"
+    what = said("internal fault: {name}: {fault}", name=type(fault).__name__, fault=fault)
     hint = "This is a fault of the program. Set SURVEYAPP_DEBUG=1 to see where."
     return SurveyError(Problem(what=what, hint=hint)), EXIT_FAULT
 
@@ -293,14 +296,7 @@ def _tell(error: SurveyError, code: int, *, as_json: bool) -> int:
             return code
     except OSError:  # told on standard error instead
         _leave_output()
-    for problem in error.problems:
-        head = f"{problem.where}: {problem.what}" if problem.where else problem.what
-        print(head, file=sys.stderr)
-        for label, text in (
-            ("found", problem.found),
-            ("expected", problem.expected),
-            ("", problem.hint),
-        ):
-            if text:
-                print(f"  {label + ': ' if label else ''}{text}", file=sys.stderr)
+    with in_wished():
+        for text in told(error):
+            print(text, file=sys.stderr)
     return code

@@ -11,6 +11,7 @@ from surveyapp.cli.north import print_north
 from surveyapp.cli.output import heading, paragraph, print_json, table
 from surveyapp.cli.sensor_options import print_calibration, progress_bar
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import said
 
 if TYPE_CHECKING:
     from surveyapp.domain.programme import ProgrammeResult, ProgrammeState
@@ -55,10 +56,10 @@ def run(options: argparse.Namespace) -> int:
         expected = f"{least}" if most == least else f"{least} or more"
         raise SurveyError(
             Problem(
-                f"{options.action} needs other words",
+                said("{action} needs other words", action=options.action),
                 "surveyapp programme",
                 f"{count}: {' '.join(options.words)}",
-                f"{expected} words; see surveyapp programme --help",
+                said("{expected} words; see surveyapp programme --help", expected=expected),
             )
         )
     return act(options)
@@ -126,7 +127,7 @@ def _enter(options: argparse.Namespace) -> int:
     if step == NEXT:
         here = desk.state.here
         if here is None:
-            where = f"run {desk.identity}"
+            where = said("run {identity}", identity=desk.identity)
             raise SurveyError(Problem("every step is done", where, "", "", "finish ends the run"))
         step = here.id
     from surveyapp import api

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from surveyapp.cli.numbers import finite
 from surveyapp.cli.output import heading, number, paragraph, print_json, table
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 
 if TYPE_CHECKING:
     from surveyapp.api.sensors import LogOptions
@@ -148,7 +149,13 @@ def print_calibration(result: Calibration) -> None:
         print(f"  {name + ':':<9}rms {shown(misfit.rms)} {misfit.unit}{of}")
     if result.held_out is not None:
         held = result.held_out
-        text = f"held out: {shown(held.before)} -> {shown(held.after)} {held.unit}, {held.scheme}"
+        text = said(
+            "held out: {before} -> {after} {unit}, {scheme}",
+            before=shown(held.before),
+            after=shown(held.after),
+            unit=held.unit,
+            scheme=held.scheme,
+        )
         print(paragraph(text))
     if result.models:
         print()

@@ -6,6 +6,7 @@ import os
 import sys
 
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 
 
 def need_terminal() -> None:
@@ -23,7 +24,7 @@ def need_terminal() -> None:
                 Problem(
                     "the screens need a terminal",
                     "surveyapp",
-                    f"{name} is none",
+                    said("{name} is none", name=name),
                     "a terminal for keys and screens",
                     "The other commands need none: surveyapp --help lists them.",
                 )

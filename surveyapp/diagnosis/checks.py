@@ -6,6 +6,7 @@ import numpy as np
 
 from surveyapp.diagnosis.case import Case
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.angles import wrap_pi_array
 
 LEAST_CONFIRMING_RUN = 6
@@ -30,7 +31,7 @@ def check_input(problem: Case, confirm: Case | None) -> None:
                 "too few observations to diagnose anything",
                 problem.identity,
                 f"{problem.size}",
-                f"at least {least}; from 8 on an effect can be named",
+                said("at least {least}; from 8 on an effect can be named", least=least),
                 "Observe more, or use the result of orient with its own sigma.",
             )
         )
@@ -68,7 +69,12 @@ def _second_set(problem: Case, confirm: Case) -> list[Problem]:
     if same and problem.has_swing:
         faults.append(_no_second(confirm, "the record itself"))
     elif repeats(problem, confirm):
-        faults.append(_no_second(confirm, f"the observations of {problem.identity or 'the first'}"))
+        faults.append(
+            _no_second(
+                confirm,
+                said("the observations of {identity}", identity=problem.identity or "the first"),
+            )
+        )
     least = confirm.base_parameters + 1
     if confirm.has_swing:
         least = max(least, LEAST_CONFIRMING_RUN)
@@ -78,7 +84,7 @@ def _second_set(problem: Case, confirm: Case) -> list[Problem]:
                 "too few observations in the second set",
                 confirm.identity,
                 f"{confirm.size}",
-                f"at least {least}",
+                said("at least {least}", least=least),
                 "Confirm with a longer record.",
             )
         )
@@ -88,7 +94,7 @@ def _second_set(problem: Case, confirm: Case) -> list[Problem]:
 def _no_second(confirm: Case, found: str) -> Problem:
     return Problem(
         "the second set is no second set: it would confirm whatever it chose",
-        f"confirm, {confirm.identity}",
+        said("confirm, {identity}", identity=confirm.identity),
         found,
         "another record of the same instrument, observed independently",
         "Confirm with a run that had no part in the diagnosis.",

@@ -49,7 +49,7 @@ from surveyapp.diagnosis.run_value import (
     value_of,
 )
 from surveyapp.domain.project import ResultWarning
-from surveyapp.languages import said
+from surveyapp.languages import joined, said
 
 
 def diagnose(
@@ -350,6 +350,7 @@ def _warnings(problem: Case, found: Search) -> list[ResultWarning]:
             )
         )
     result += [
-        ResultWarning("not_adopted", f"{identity}: {reason}") for identity, reason in found.refused
+        ResultWarning("not_adopted", joined(": ", (identity, reason)))
+        for identity, reason in found.refused
     ]
     return result

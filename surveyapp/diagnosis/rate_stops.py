@@ -28,6 +28,7 @@ from surveyapp.core.sensors.rate.table_log import label, motion_of
 from surveyapp.diagnosis.subjects.rate import RateStop, RateTurn
 from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2, SensorLog
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 from surveyapp_models.constants import EARTH_RATE
 from surveyapp_models.rate.turntable import POSITIONS
@@ -69,8 +70,8 @@ def _held_stops(log: SensorLog, latitude: float | None) -> tuple[list[RateStop],
             Problem(
                 "too few stops at rest to diagnose",
                 log.path,
-                f"{len(stops)} stops as quiet as the record can be",
-                f"{LEAST_STOPS} or more",
+                said("{size} stops as quiet as the record can be", size=len(stops)),
+                said("{least_stops} or more", least_stops=LEAST_STOPS),
             )
         )
     forces = np.array([s.force for s in stops])

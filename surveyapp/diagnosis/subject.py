@@ -16,6 +16,7 @@ from surveyapp.diagnosis.action import Action
 from surveyapp.diagnosis.case import Case
 from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Column, Columns, Effect
@@ -211,7 +212,11 @@ def _check(
             Problem(
                 "the column that orders the observations has gaps",
                 f"{where}, {subject.position}",
-                f"{int((~np.isfinite(order)).sum())} of {order.size} missing",
+                said(
+                    "{value} of {size} missing",
+                    value=int((~np.isfinite(order)).sum()),
+                    size=order.size,
+                ),
                 "a number for each observation",
             )
         )

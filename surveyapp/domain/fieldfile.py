@@ -41,6 +41,8 @@ class Pointing:
         Atmospheric correction and prism constant that belong to the distance.
     temperature_c, pressure_hpa : float or None
     time, code, note : str
+    raw : bool
+        Whether the distance lacks its prism constant, as the file says of this one.
     """
 
     line: int
@@ -62,6 +64,7 @@ class Pointing:
     time: str = ""
     code: str = ""
     note: str = ""
+    raw: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,6 +158,9 @@ class ReducedSet:
         Index of each target that has both faces [rad], for the sigma of a zenith angle.
     length_gaps : tuple of float
         Half the difference of the distances in both faces [m], for the sigma of a distance.
+    unlike : frozenset of str
+        Targets whose faces disagree otherwise than all others of the file: they count in the means,
+        and in none of these sigmas.
     """
 
     name: str
@@ -165,6 +171,7 @@ class ReducedSet:
     spread: tuple[float, ...] = ()
     index_spread: tuple[float, ...] = ()
     length_gaps: tuple[float, ...] = ()
+    unlike: frozenset[str] = frozenset()
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""

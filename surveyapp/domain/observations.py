@@ -13,6 +13,7 @@ from enum import StrEnum
 import numpy as np
 
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 
 
 class ObservationKind(StrEnum):
@@ -106,7 +107,7 @@ _POSITIVE = frozenset(item.kind for item in KINDS if item.positive)
 
 @dataclass(frozen=True, slots=True)
 class EstimatedSigma:
-    """That part of an observation's variance which somebody estimated from a few readings.
+    """That part of an observation's variance which is that of its reading.
 
     Parameters
     ----------
@@ -115,12 +116,16 @@ class EstimatedSigma:
     variance : float
         [rad^2] or [m^2].
     dof : float
-        Degrees of freedom of the estimate, above 0.
+        Degrees of freedom of the estimate, above 0; infinite where it is known.
+    rest_assumed : bool
+        Whether the rest of the variance, centring and heights, is a mere assumption: it may be
+        smaller.
     """
 
     name: str
     variance: float
     dof: float
+    rest_assumed: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -262,7 +267,7 @@ class CorrelatedBlock:
 
     def __post_init__(self) -> None:
         size = len(self.members)
-        where = f"covariance matrix of {size} observations"
+        where = said("covariance matrix of {size} observations", size=size)
         if len(set(self.members)) != size or size == 0:
             raise SurveyError(
                 Problem("An observation stands twice in a block", where, str(self.members), "once")

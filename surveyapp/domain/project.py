@@ -22,6 +22,7 @@ from surveyapp.domain.session_sensors import LogLevelling, PreOrientation
 from surveyapp.domain.shaft import ShaftTables
 from surveyapp.domain.subject import Subject
 from surveyapp.domain.traverse_book import Traverse
+from surveyapp.languages import Said, term
 from surveyapp_models.angles import ARCSEC, AngleUnit
 
 Method = Literal["tracking", "amplitude", "transit", "automatic"]
@@ -221,6 +222,11 @@ class ResultWarning:
     code: str
     text: str
     subject: Subject | None = None
+
+    def __post_init__(self) -> None:
+        """Make a plain text one of the catalogue."""
+        if not isinstance(self.text, Said):
+            object.__setattr__(self, "text", term(self.text))
 
     def about(self, subject: Subject) -> ResultWarning:
         """The same warning about this subject, where it does not say what it is about."""

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from surveyapp.domain.calibration import SensorParameter
 from surveyapp.domain.sensor_entry import SensorKind
 from surveyapp.errors import Problem
+from surveyapp.languages import said
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +92,11 @@ class SensorCard:
                     "the card does not hold on this day",
                     where,
                     on.isoformat(),
-                    f"{low.isoformat() if low else '...'} to {high.isoformat() if high else '...'}",
+                    said(
+                        "{value} to {value2}",
+                        value=low.isoformat() if low else "...",
+                        value2=high.isoformat() if high else "...",
+                    ),
                     "calibrate the sensor again",
                 )
             )
@@ -103,7 +108,7 @@ class SensorCard:
                         "the card does not hold at these temperatures",
                         where,
                         f"{temperature_c[0]:g} to {temperature_c[1]:g} C",
-                        f"{lowest:g} to {highest:g} C",
+                        said("{lowest:g} to {highest:g} C", lowest=lowest, highest=highest),
                         "a sensor is not extrapolated: calibrate it over the range that it meets",
                     )
                 )

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.domain.project import ResultWarning
+from surveyapp.languages import said
 
 Array = NDArray[np.float64]
 
@@ -150,7 +151,7 @@ class SensorLog:
         every = -(-self.size // most)
         if every <= 1:
             return self
-        text = f"{self.size} rows: every {every}th is used"
+        text = said("{size} rows: every {every}th is used", size=self.size, every=every)
         warnings = (*self.warnings, ResultWarning("thinned", text))
         return replace(self.rows(slice(None, None, every)), warnings=warnings)
 

@@ -14,6 +14,7 @@ from typing import Any
 from surveyapp.domain.observations import CorrelatedBlock, Observation, ObservationKind
 from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import said
 
 
 class Status(StrEnum):
@@ -57,7 +58,7 @@ class NetworkPoint:
         if not self.name:
             problems.append(Problem("A point has no name", "point", "''", "a name"))
         for label, value, status in self.components():
-            where = f"point {self.name}, {label}"
+            where = said("point {name}, {label}", name=self.name, label=label)
             if value is not None and not math.isfinite(value):
                 problems.append(Problem("A coordinate is no number", where, str(value), "metres"))
             if status is Status.FIXED and value is None:
@@ -261,7 +262,7 @@ def _block_problems(network: Network) -> list[Problem]:
                 problems.append(
                     Problem(
                         "An observation stands in two covariance matrices or in none that exists",
-                        f"observation {member + 1}",
+                        said("observation {number}", number=member + 1),
                         "",
                         "one covariance matrix",
                     )

@@ -67,6 +67,8 @@ class Traverse:
     sigma_dof : tuple of (str, float)
         Degrees of freedom of sigmas that were estimated: ``angle``, ``zenith``, ``distance``, and
         ``circles`` where one estimate stands for angles and zenith angles.
+    centring_assumed : bool
+        Whether centring and heights are a mere assumption.
     rows : tuple of TraverseRow
         Of its book, every station known.
     """
@@ -84,6 +86,7 @@ class Traverse:
     height_m: tuple[float, float] = (0.0, 0.0)
     sigma_zenith: float | None = None
     sigma_dof: tuple[tuple[str, float], ...] = ()
+    centring_assumed: bool = False
     rows: tuple[TraverseRow, ...] = ()
 
     @property

@@ -11,6 +11,7 @@ from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.io.cards import number_pair
 from surveyapp.io.files import shown
 from surveyapp.io.tables import Table, as_number
+from surveyapp.languages import said
 
 
 def read_effect(table: Table) -> AdoptedEffect:
@@ -90,7 +91,9 @@ def _covariance(effect: Table, size: int) -> tuple[tuple[float, ...], ...]:
         or any(len(row) != len(given) for row, given in zip(numbers, matrix, strict=True))
     ):
         effect.problem(
-            "covariance does not fit the coefficients", value, f"{size} x {size} numbers"
+            "covariance does not fit the coefficients",
+            value,
+            said("{size} x {size} numbers", size=size),
         )
         return ()
     return tuple(numbers)
@@ -104,7 +107,7 @@ def _valid(effect: Table) -> tuple[tuple[str, float, float], ...]:
     for name, value in table.data.items():
         pair = number_pair(value)
         if pair is None:
-            table.problem(f"{shown(name)} is no range", value, "[lowest, highest]")
+            table.problem(said("{name} is no range", name=shown(name)), value, "[lowest, highest]")
         else:
             ranges.append((name, *pair))
         table.get(name)

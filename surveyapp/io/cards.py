@@ -23,6 +23,7 @@ from surveyapp.domain.instrument import (
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.files import decode, read_inside, shown
 from surveyapp.io.tables import Findings, Table, as_number, parse_toml
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC
 
 CARD_KEYS: Final = (
@@ -108,7 +109,7 @@ def load_card(
     """
     try:
         text = card_text(name_or_path, base=base, where=where)
-        data = parse_toml(text, where=f"card {shown(name_or_path)}")
+        data = parse_toml(text, where=said("card {name_or_path}", name_or_path=shown(name_or_path)))
     except SurveyError as error:
         findings.absorb(error)
         return None
@@ -263,7 +264,7 @@ def _check_agreement(
         table.problem(
             "torsion.lambda contradicts the periods",
             f"lambda {torsion:.4g}",
-            f"{expected:.4g} from T1 and T2, within 5 %",
+            said("{expected:.4g} from T1 and T2, within 5 %", expected=expected),
             "one of the three is wrong, or they were measured at different latitudes",
         )
     c, mu = transit
@@ -274,7 +275,7 @@ def _check_agreement(
         table.problem(
             "transit.c_arcsec_per_div_s contradicts the periods and the scale value",
             f"C {c / ARCSEC:.4g}",
-            f"{theory / ARCSEC:.4g} from T1, T2 and the scale value, within 5 %",
+            said("{value:.4g} from T1, T2 and the scale value, within 5 %", value=theory / ARCSEC),
             "a printed C may be in arc-minutes, in mgon, or for another definition of dt",
         )
 
@@ -345,7 +346,7 @@ def _pair(table: Table, key: str) -> tuple[float, float] | None:
         return None
     pair = number_pair(value)
     if pair is None:
-        table.problem(f"{key} is no range", value, "[lowest, highest]")
+        table.problem(said("{key} is no range", key=key), value, "[lowest, highest]")
     return pair
 
 

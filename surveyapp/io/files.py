@@ -15,6 +15,7 @@ from typing import Final
 
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.guarded import checked_inside
+from surveyapp.languages import said
 
 MAX_BYTES: Final = 32 * 1024 * 1024
 """Largest text file that is read; a field book of a whole year stays far below it."""
@@ -113,7 +114,9 @@ def read_bytes(path: Path, *, where: str, follow: bool = True) -> bytes:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise SurveyError(
-            Problem(f"the file cannot be read ({reason})", where, shown_path(path))
+            Problem(
+                said("the file cannot be read ({reason})", reason=reason), where, shown_path(path)
+            )
         ) from None
     if len(data) > MAX_BYTES:
         raise SurveyError(_too_large(where, len(data)))
@@ -125,7 +128,7 @@ def _too_large(where: str, size: int) -> Problem:
         "the file is too large for a text of observations",
         where,
         f"{size / 1e6:.0f} MB",
-        f"at most {MAX_BYTES // (1024 * 1024)} MB",
+        said("at most {size} MB", size=MAX_BYTES // (1024 * 1024)),
         "is it a sensor log? Those are named in [[sensor_log]]",
     )
 
@@ -133,7 +136,10 @@ def _too_large(where: str, size: int) -> Problem:
 def too_many_columns(count: int, where: str) -> Problem:
     """A table that is none of observations."""
     return Problem(
-        "the table has too many columns", where, str(count), f"at most {MAX_COLUMNS} columns"
+        "the table has too many columns",
+        where,
+        str(count),
+        said("at most {max_columns} columns", max_columns=MAX_COLUMNS),
     )
 
 
@@ -150,7 +156,7 @@ def decode(data: bytes, *, where: str) -> str:
         raise SurveyError(
             Problem(
                 "this is a binary file",
-                f"{where}, line {line}",
+                said("{where}, line {line}", where=where, line=line),
                 "a NUL byte",
                 "text in UTF-8",
                 "a spreadsheet must be saved as CSV in UTF-8",
@@ -163,8 +169,8 @@ def decode(data: bytes, *, where: str) -> str:
         raise SurveyError(
             Problem(
                 "this is no UTF-8 text",
-                f"{where}, line {line}",
-                f"byte 0x{data[error.start]:02x}",
+                said("{where}, line {line}", where=where, line=line),
+                said("byte 0x{data:02x}", data=data[error.start]),
                 "text in UTF-8",
                 "save the file anew with the encoding UTF-8",
             )

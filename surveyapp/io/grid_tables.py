@@ -17,6 +17,7 @@ from surveyapp.domain.project import (
 )
 from surveyapp.errors import Problem
 from surveyapp.io.tables import Findings, Table
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, AngleUnit, wrap_pi
 
 _LIMIT_M: Final = 1e8
@@ -62,7 +63,9 @@ def _origin(grid: Table, *, based: bool) -> dict[str, float]:
     wanted = "e, n, base_e, base_n" if based else "e, n, lat, lon"
     if table is None:
         if "origin" not in grid:
-            grid.problem("rotation stands without origin", "", f"origin = {{ {wanted} }}")
+            grid.problem(
+                "rotation stands without origin", "", said("origin = {{ {wanted} }}", wanted=wanted)
+            )
         return {}
     found: dict[str, float] = {}
     pairs = ((("e", "n"), _LIMIT_M), (("base_e", "base_n"), _LIMIT_M), (("lat", "lon"), 180.0))
@@ -72,7 +75,11 @@ def _origin(grid: Table, *, based: bool) -> dict[str, float]:
             if value is not None:
                 found[key] = value
         if (keys[0] in table) != (keys[1] in table):
-            table.problem(f"{keys[0]} and {keys[1]} belong together", "", "both or none")
+            table.problem(
+                said("{keys} and {keys2} belong together", keys=keys[0], keys2=keys[1]),
+                "",
+                "both or none",
+            )
     if abs(found.get("lat", 0.0)) > 90.0:
         table.problem("lat is out of range", found["lat"], "-90 to 90")
     if "base_e" in table and "lat" in table:
@@ -80,7 +87,11 @@ def _origin(grid: Table, *, based: bool) -> dict[str, float]:
     if "base_e" in table and not based:
         table.problem("base_e and base_n stand without base", "", 'base = "EPSG:..."')
     elif not {"base_e", "lat"} & set(table.data):
-        table.problem("the origin does not tell where it lies", "", f"origin = {{ {wanted} }}")
+        table.problem(
+            "the origin does not tell where it lies",
+            "",
+            said("origin = {{ {wanted} }}", wanted=wanted),
+        )
     table.warn_unknown()
     return found
 
@@ -155,9 +166,12 @@ def refuse_two_convergences(
             if abs(apart) > SAME:
                 findings.problems.append(
                     Problem(
-                        f"the convergence at {station.name} is stated twice and differently",
-                        f"project.toml, {first} and {where}",
-                        f'{apart * RHO_ARCSEC:+.2f}" apart',
+                        said(
+                            "the convergence at {name} is stated twice and differently",
+                            name=station.name,
+                        ),
+                        said("project.toml, {first} and {where}", first=first, where=where),
+                        said('{value:+.2f}" apart', value=apart * RHO_ARCSEC),
                         "one convergence for each station",
                     )
                 )

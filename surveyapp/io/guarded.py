@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Final
 
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 
 MAX_LOG_BYTES: Final = 256 * 1024 * 1024
 """Largest file that is hashed or packed."""
@@ -89,8 +90,8 @@ def need_short_path(path: Path, *, room: int) -> None:
             Problem(
                 "the path is longer than Windows allows",
                 shown_path(path),
-                f"{length} letters with the books below it",
-                f"at most {LONGEST_WINDOWS}",
+                said("{length} letters with the books below it", length=length),
+                said("at most {longest_windows}", longest_windows=LONGEST_WINDOWS),
                 "choose a folder nearer to the root of the drive",
             )
         )
@@ -112,7 +113,9 @@ def checked_inside(folder: Path, name: str, *, where: str) -> Path:
     if real is None:
         problem = outside_problem(name, where=where)
         if _is_special(folder / name):
-            problem = replace(problem, what=f"{problem.what} and is no regular file")
+            problem = replace(
+                problem, what=said("{what} and is no regular file", what=problem.what)
+            )
         raise SurveyError(problem)
     return real
 

@@ -13,6 +13,7 @@ from typing import Any
 import surveyapp
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.files import shown, shown_path
+from surveyapp.languages import said
 
 
 def samples_folder() -> Path:
@@ -53,7 +54,10 @@ def copy_sample(name: str, folder: Path) -> Path:
         )
     except OSError as error:
         raise SurveyError(
-            Problem(f"the sample cannot be copied ({error.strerror or error})", shown_path(target))
+            Problem(
+                said("the sample cannot be copied ({strerror})", strerror=error.strerror or error),
+                shown_path(target),
+            )
         ) from None
     return target
 

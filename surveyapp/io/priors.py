@@ -19,6 +19,7 @@ from surveyapp.io.outputs import write_output
 from surveyapp.io.project_files import ProjectFiles
 from surveyapp.io.tables import Table
 from surveyapp.io.tomltext import toml_value
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC
 
 FORMAT: Final = 1
@@ -57,7 +58,12 @@ def write_priors(path: Path, text: str) -> None:
     except OSError as error:
         reason = error.strerror or str(error)
         raise SurveyError(
-            Problem(f"the priors cannot be written ({reason})", str(path), "", "a writable folder")
+            Problem(
+                said("the priors cannot be written ({reason})", reason=reason),
+                str(path),
+                "",
+                "a writable folder",
+            )
         ) from error
 
 
@@ -76,8 +82,10 @@ def parse_priors(data: bytes, where: str) -> Priors:
         raise SurveyError(Problem("the priors are no TOML", where, str(error), expected)) from error
     problems: list[Problem] = []
     if raw.get("format") != FORMAT or raw.get("kind") != KIND:
-        found = f"format = {raw.get('format')!r}, kind = {raw.get('kind')!r}"
-        expected = f"format = {FORMAT}, kind = {KIND!r}"
+        found = said(
+            "format = {value!r}, kind = {value2!r}", value=raw.get("format"), value2=raw.get("kind")
+        )
+        expected = said("format = {format}, kind = {kind!r}", format=FORMAT, kind=KIND)
         raise SurveyError(Problem("this is no priors file", where, found, expected))
     shares = _shares(raw.get("shares"), UNITS, f"{where}, [shares]", problems)
     names = tuple(f"{size:g}" for size in AMPLITUDES)
@@ -103,7 +111,7 @@ def _scatter(raw: Any, where: str, problems: list[Problem]) -> float | None:
         return None
     number = isinstance(raw, int | float) and not isinstance(raw, bool)
     if not number or not 0.0 <= float(raw) <= MOST_SCATTER:
-        expected = f"0 to {MOST_SCATTER:g} arc-seconds"
+        expected = said("0 to {most_scatter:g} arc-seconds", most_scatter=MOST_SCATTER)
         problems.append(
             Problem("this is no scatter", f"{where}, scatter_arcsec", str(raw), expected)
         )
@@ -141,7 +149,7 @@ def with_priors(instrument: Instrument, table: Table, files: ProjectFiles) -> In
     name = table.text("priors")
     if name is None:
         return instrument
-    where = f"{table.where}, priors"
+    where = said("{where}, priors", where=table.where)
     data = files.read(name, where)
     if data is None:
         return instrument

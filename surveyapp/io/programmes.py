@@ -18,6 +18,7 @@ from surveyapp.io.fieldbook.appending import append_line
 from surveyapp.io.fieldbook.reading import move_tail_aside, split_tail
 from surveyapp.io.files import has_control, read_bytes, shown
 from surveyapp.io.guarded import checked_inside
+from surveyapp.languages import said
 
 FOLDER: Final = "sensors"
 ENDING: Final = ".programme.csv"
@@ -61,7 +62,7 @@ def read_run(folder: Path, identity: str) -> ProgrammeRun:
     problems: list[Problem] = []
     entries = []
     for number, cells in enumerate(lines[1:], start=2):
-        entry = _entry(cells, f"{where}, line {number}", problems)
+        entry = _entry(cells, said("{where}, line {number}", where=where, number=number), problems)
         if entry is not None:
             entries.append(entry)
     if not problems and (not entries or entries[0].step != BEGIN):
@@ -73,7 +74,7 @@ def read_run(folder: Path, identity: str) -> ProgrammeRun:
 
 def _entry(cells: list[str], where: str, problems: list[Problem]) -> ProgrammeEntry | None:
     if len(cells) != len(COLUMNS):
-        found, expected = f"{len(cells)} cells", f"{len(COLUMNS)}"
+        found, expected = said("{size} cells", size=len(cells)), f"{len(COLUMNS)}"
         problems.append(Problem("the line has another number of cells", where, found, expected))
         return None
     seq, time, step, value, note = cells
@@ -107,7 +108,9 @@ def append_entry(
     """
     for name, text in (("value", value), ("note", note)):
         if has_control(text) or "\n" in text or "\r" in text:
-            raise SurveyError(Problem(f"{name} is not one line of text", identity, shown(text)))
+            raise SurveyError(
+                Problem(said("{name} is not one line of text", name=name), identity, shown(text))
+            )
     path = run_path(folder, identity)
     where = f"{FOLDER}/{identity}{ENDING}"
     seq, head = 1, ",".join(COLUMNS) + "\n"

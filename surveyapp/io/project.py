@@ -42,6 +42,7 @@ from surveyapp.io.session_sensors import with_declinations, with_sensors
 from surveyapp.io.shafts.table import read_shaft_tables
 from surveyapp.io.tables import Findings, Table, parse_toml
 from surveyapp.io.traverse.book import read_traverses
+from surveyapp.languages import said
 from surveyapp_models.angles import AngleUnit
 
 FORMAT: Final = 1
@@ -140,7 +141,11 @@ def check_project_folder(folder: Path) -> None:
             what = "this is a file and no project folder"
         elif not (folder / PROJECT_FILE).exists():
             empty = next(folder.iterdir(), None) is None
-            what = "the folder is empty" if empty else f"the folder holds no {PROJECT_FILE}"
+            what = (
+                "the folder is empty"
+                if empty
+                else said("the folder holds no {project_file}", project_file=PROJECT_FILE)
+            )
         else:
             return
     except (OSError, ValueError) as error:
@@ -155,7 +160,15 @@ def _unreadable(error: Exception) -> str:
 
 def _no_project(folder: Path, what: str) -> SurveyError:
     hint = "surveyapp new DIR makes a project"
-    return SurveyError(Problem(what, shown_path(folder), "", f"a folder with {PROJECT_FILE}", hint))
+    return SurveyError(
+        Problem(
+            what,
+            shown_path(folder),
+            "",
+            said("a folder with {project_file}", project_file=PROJECT_FILE),
+            hint,
+        )
+    )
 
 
 def _check_format(data: Mapping[str, object]) -> None:
@@ -164,17 +177,24 @@ def _check_format(data: Mapping[str, object]) -> None:
     if isinstance(value, int) and not isinstance(value, bool) and value == FORMAT:
         return
     if value is None:
-        problem = Problem("format is missing", PROJECT_FILE, "", f"format = {FORMAT}")
+        problem = Problem(
+            "format is missing", PROJECT_FILE, "", said("format = {format}", format=FORMAT)
+        )
     elif isinstance(value, int) and not isinstance(value, bool) and value > FORMAT:
         problem = Problem(
             "the project was written by a newer version of this program",
             PROJECT_FILE,
-            f"format = {shown(value)}",
-            f"format = {FORMAT}",
+            said("format = {text}", text=shown(value)),
+            said("format = {format}", format=FORMAT),
             "update surveyapp to read it",
         )
     else:
-        problem = Problem("format is not known", PROJECT_FILE, shown(value), f"format = {FORMAT}")
+        problem = Problem(
+            "format is not known",
+            PROJECT_FILE,
+            shown(value),
+            said("format = {format}", format=FORMAT),
+        )
     raise SurveyError(problem)
 
 

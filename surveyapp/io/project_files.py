@@ -60,7 +60,7 @@ class ProjectFiles:
                 raise FileNotFoundError(name)
             if path.stat().st_size > MAX_LOG_BYTES:
                 why = said(
-                    "is larger than {value} MB and was not read", value=MAX_LOG_BYTES // 1024**2
+                    "is larger than {size} MB and was not read", size=MAX_LOG_BYTES // 1024**2
                 )
                 raise OSError(name)
             with os.fdopen(open_regular(path, os.O_RDONLY), "rb") as stream:

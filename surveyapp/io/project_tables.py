@@ -33,6 +33,7 @@ from surveyapp.io.cards import CARD_KEYS, load_card
 from surveyapp.io.files import shown
 from surveyapp.io.grid_tables import read_convergence
 from surveyapp.io.tables import Findings, Table
+from surveyapp.languages import either, said
 from surveyapp_models.angles import ARCSEC, AngleUnit
 
 METHODS: Final = ("tracking", "amplitude", "transit", "automatic")
@@ -74,7 +75,9 @@ class Names:
                 table.findings.problems.append(
                     Problem(
                         "a sight whose target is no station",
-                        f"{path}, line {row.line} (seq {row.seq})",
+                        said(
+                            "{path}, line {line} (seq {seq})", path=path, line=row.line, seq=row.seq
+                        ),
                         shown(row.target),
                         "a name of a [[station]]",
                         nearest_names(row.target, self.stations),
@@ -108,7 +111,7 @@ class Names:
             table.problem(
                 "constant_choice means several lines",
                 text,
-                " or ".join(f"{LINE}{line.unmistakable}" for line in found),
+                either(f"{LINE}{line.unmistakable}" for line in found),
                 "Write the station and the target with a comma between them.",
             )
         else:
@@ -122,7 +125,9 @@ def unique(names: Sequence[str], kind: str, findings: Findings) -> tuple[str, ..
     counts = Counter(names)
     for name in sorted(n for n, count in counts.items() if n and count > 1):
         problem = Problem(
-            f"there are {counts[name]} tables [[{kind}]] of one name",
+            said(
+                "there are {counts} tables [[{kind}]] of one name", counts=counts[name], kind=kind
+            ),
             "project.toml",
             shown(name),
             "each name once",
@@ -173,7 +178,9 @@ def _pair(
     ]
     if (keys[0] in table) != (keys[1] in table):
         given, absent = keys if keys[0] in table else keys[::-1]
-        table.problem(f"{given} stands without {absent}", "", "both or none")
+        table.problem(
+            said("{given} stands without {absent}", given=given, absent=absent), "", "both or none"
+        )
     return values[0], values[1]
 
 

@@ -18,6 +18,7 @@ from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.cards import is_path
 from surveyapp.io.files import decode, read_inside, shown
 from surveyapp.io.tables import Findings, Table, as_number, parse_toml
+from surveyapp.languages import said
 
 SENSES: Final = ("at most", "at least")
 
@@ -36,7 +37,7 @@ def rule_book_text(name_or_path: str, *, base: Path) -> str:
     SurveyError
         If there is none of this name; the nearest is named.
     """
-    where = f"rule book {shown(name_or_path)}"
+    where = said("rule book {name_or_path}", name_or_path=shown(name_or_path))
     if is_path(name_or_path):
         return decode(read_inside(base, name_or_path, where=where), where=where)
     known = installed_rule_book_ids()
@@ -71,7 +72,7 @@ def read_rule_book(name_or_path: str, *, base: Path) -> RuleBook:
     """
     findings = Findings()
     text = rule_book_text(name_or_path, base=base)
-    where = f"rule book {shown(name_or_path)}"
+    where = said("rule book {name_or_path}", name_or_path=shown(name_or_path))
     table = Table(parse_toml(text, where=where), where, findings)
     tables = table.tables("limit")
     limits = tuple(_limit(item) for item in tables)
@@ -87,7 +88,7 @@ def read_rule_book(name_or_path: str, *, base: Path) -> RuleBook:
     unread = table.unread()
     if unread:
         table.problem(
-            f"{shown(unread[0])} is not known in a rule book",
+            said("{unread} is not known in a rule book", unread=shown(unread[0])),
             "",
             "id, title, source, note, station_sigma_m and [[limit]] tables",
         )
@@ -106,7 +107,11 @@ def _limit(table: Table) -> Limit:
     known = {q.id: q for q in QUANTITIES}
     if quantity in known and unit and unit not in known[quantity].units:
         expected = " | ".join(known[quantity].units)
-        table.problem(f"{quantity} is not measured in {unit}", unit, expected)
+        table.problem(
+            said("{quantity} is not measured in {unit}", quantity=quantity, unit=unit),
+            unit,
+            expected,
+        )
     confirmed = table.get("confirmed")
     if not isinstance(confirmed, bool):
         table.problem("confirmed is neither true nor false", confirmed, "true | false")
@@ -124,7 +129,11 @@ def _limit(table: Table) -> Limit:
         note=table.text("note", multiline=True) or "",
     )
     for key in table.unread():
-        table.problem(f"{shown(key)} is not known in a limit", "", "see the installed rule books")
+        table.problem(
+            said("{key} is not known in a limit", key=shown(key)),
+            "",
+            "see the installed rule books",
+        )
     return limit
 
 
@@ -146,6 +155,10 @@ def _formula(table: Table, key: str) -> str | None:
     try:
         parse(text)
     except FormulaError as error:
-        table.problem(f"{key} is no formula: {error}", text, 'arithmetic like "14 * sqrt(n)"')
+        table.problem(
+            said("{key} is no formula: {error}", key=key, error=error.args[0]),
+            text,
+            'arithmetic like "14 * sqrt(n)"',
+        )
         return None
     return text

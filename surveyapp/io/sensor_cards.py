@@ -21,6 +21,7 @@ from surveyapp.io.cards import number_pair
 from surveyapp.io.files import read_text, shown_path
 from surveyapp.io.tables import Findings, Table, as_number, parse_toml
 from surveyapp.io.tomltext import atomic_write, toml_key, toml_value
+from surveyapp.languages import said
 
 CARD_FORMAT: Final = 1
 _ASYMMETRY: Final = 1e-9
@@ -99,7 +100,7 @@ def _covariance(table: Table, size: int) -> NDArray[np.float64] | None:
     rows = value if isinstance(value, list) else []
     numbers = [[as_number(v) for v in row] if isinstance(row, list) else [] for row in rows]
     if len(numbers) != size or any(len(r) != size or None in r for r in numbers):
-        expected = f"{size} rows of {size} numbers, for the parameters with a sigma"
+        expected = said("{size} rows of {size} numbers, for the parameters with a sigma", size=size)
         table.problem("covariance has another size", f"{len(numbers)} rows", expected)
         return None
     matrix = np.array(numbers, dtype=np.float64).reshape(size, size)

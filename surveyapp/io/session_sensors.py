@@ -128,7 +128,10 @@ def _read(source: _Source, files: ProjectFiles, columns: tuple[str, ...]) -> Sen
     log = file.read(Need(columns=(*columns, *acc), optional=("temperature_c",)))
     log, told = without_events(log, source.entry.effects)
     files.findings.warnings += [
-        ResultWarning(item.code, f"sensor_log {source.entry.id}: {item.text}") for item in told
+        ResultWarning(
+            item.code, said("sensor_log {id}: {text}", id=source.entry.id, text=item.text)
+        )
+        for item in told
     ]
     return log
 

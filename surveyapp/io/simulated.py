@@ -11,6 +11,7 @@ from typing import Any
 
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.tomltext import atomic_write
+from surveyapp.languages import said
 
 TRUTH_FILE = "truth.json"
 
@@ -75,6 +76,6 @@ def write_simulated(
     except OSError as error:
         reason = error.strerror or str(error)
         raise SurveyError(
-            Problem(f"the folder cannot be written ({reason})", str(folder))
+            Problem(said("the folder cannot be written ({reason})", reason=reason), str(folder))
         ) from None
     return SimulatedFiles(str(folder), str(folder / TRUTH_FILE), tuple(sorted(files)))

@@ -18,6 +18,7 @@ from typing import Final
 from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.files import has_steering, shown
+from surveyapp.languages import joined, said
 from surveyapp_models.angles import TWO_PI, AngleError, AngleUnit, parse_angle
 
 _LONGEST_NAME: Final = 200
@@ -127,15 +128,17 @@ class Table:
         value = self.get(key)
         if value is None:
             if required:
-                self.problem(f"{key} is missing", "", f'{key} = "..."')
+                self.problem(said("{key} is missing", key=key), "", f'{key} = "..."')
             return None
         if not isinstance(value, str):
-            self.problem(f"{key} is no text", value, "a text in double quotes")
+            self.problem(said("{key} is no text", key=key), value, "a text in double quotes")
             return None
         if (not value.strip() and required) or (
             has_steering(value) or (not multiline and ("\n" in value or len(value) > _LONGEST_NAME))
         ):
-            self.problem(f"{key} is no usable text", value, "one line of printable characters")
+            self.problem(
+                said("{key} is no usable text", key=key), value, "one line of printable characters"
+            )
             return None
         return value
 
@@ -145,7 +148,10 @@ class Table:
         if value is None or value in choices:
             return value
         self.problem(
-            f"{key} is not known", value, " | ".join(choices), nearest_names(value, choices)
+            said("{key} is not known", key=key),
+            value,
+            " | ".join(choices),
+            nearest_names(value, choices),
         )
         return None
 
@@ -165,16 +171,20 @@ class Table:
         value = self.get(key)
         if value is None:
             if required:
-                self.problem(f"{key} is missing", "", f"{key} = a number")
+                self.problem(
+                    said("{key} is missing", key=key), "", said("{key} = a number", key=key)
+                )
             return None
         number = as_number(value)
         if number is None:
-            self.problem(f"{key} is no number", value, "a finite number without quotes")
+            self.problem(
+                said("{key} is no number", key=key), value, "a finite number without quotes"
+            )
             return None
         small = positive and number < _SMALLEST
         if small or not low <= number <= high:
-            expected = "more than 0" if small else f"{low:g} to {high:g}"
-            self.problem(f"{key} is out of range", value, expected)
+            expected = "more than 0" if small else said("{low:g} to {high:g}", low=low, high=high)
+            self.problem(said("{key} is out of range", key=key), value, expected)
             return None
         return number
 
@@ -183,7 +193,7 @@ class Table:
         value = self.get(key)
         if value is None or isinstance(value, bool):
             return default if value is None else value
-        self.problem(f"{key} is neither true nor false", value, "true | false")
+        self.problem(said("{key} is neither true nor false", key=key), value, "true | false")
         return default
 
     def angle(self, key: str, unit: AngleUnit) -> float | None:
@@ -197,10 +207,14 @@ class Table:
             try:
                 angle = parse_angle(text, unit)
             except AngleError as error:
-                self.problem(f"{key} is no angle", value, error.expected, error.hint)
+                self.problem(said("{key} is no angle", key=key), value, error.expected, error.hint)
                 return None
             return angle % TWO_PI
-        self.problem(f"{key} is no angle", value, f"angle text in {unit}, in double quotes")
+        self.problem(
+            said("{key} is no angle", key=key),
+            value,
+            said("angle text in {unit}, in double quotes", unit=unit),
+        )
         return None
 
     def date(self, key: str) -> dt.date | None:
@@ -210,13 +224,13 @@ class Table:
             try:
                 value = dt.date.fromisoformat(value.strip())
             except ValueError:
-                self.problem(f"{key} is no date", value, "a date like 2015-10-26")
+                self.problem(said("{key} is no date", key=key), value, "a date like 2015-10-26")
                 return None
         if isinstance(value, dt.datetime):
             return value.date()
         if value is None or isinstance(value, dt.date):
             return value
-        self.problem(f"{key} is no date", value, "a date like 2015-10-26")
+        self.problem(said("{key} is no date", key=key), value, "a date like 2015-10-26")
         return None
 
     def table(self, key: str) -> Table | None:
@@ -225,9 +239,13 @@ class Table:
         if value is None:
             return None
         if not isinstance(value, Mapping):
-            self.problem(f"{key} is no table", value, f"{key} = {{ ... }} or [{key}]")
+            self.problem(
+                said("{key} is no table", key=key),
+                value,
+                said("{key} = {{ ... }} or [{key}]", key=key),
+            )
             return None
-        return Table(value, f"{self.where}, {key}", self.findings)
+        return Table(value, joined(", ", (self.where, key)), self.findings)
 
     def tables(self, key: str, lines: Sequence[int] = ()) -> list[Table]:
         """Every ``[[key]]`` table; ``lines`` are the lines of their headers where known."""
@@ -235,15 +253,18 @@ class Table:
         if value is None:
             return []
         if not isinstance(value, list) or not all(isinstance(item, Mapping) for item in value):
-            self.problem(f"{key} is no list of tables", value, f"[[{key}]]", "two brackets")
+            self.problem(
+                said("{key} is no list of tables", key=key), value, f"[[{key}]]", "two brackets"
+            )
             return []
         placed = lines if len(lines) == len(value) else [0] * len(value)
         found = []
         for index, (item, line) in enumerate(zip(value, placed, strict=True), start=1):
             name = item.get("id", item.get("name"))
-            label = shown(name) if isinstance(name, str) and name else f"number {index}"
-            place = f" line {line}" if line else ""
-            found.append(Table(item, f"{self.where}{place}, [[{key}]] {label}", self.findings))
+            label = shown(name) if isinstance(name, str) and name else said("number {n}", n=index)
+            place = said("{where} line {line}", where=self.where, line=line) if line else self.where
+            where = said("{place}, {table} {label}", place=place, table=f"[[{key}]]", label=label)
+            found.append(Table(item, where, self.findings))
         return found
 
     def unread(self) -> list[str]:
@@ -255,10 +276,13 @@ class Table:
         known = self._asked.union(also_known)
         for key in self.data:
             if key not in known:
-                text = f"{self.where}: {shown(key)} is not known and was not used. "
-                self.findings.warnings.append(
-                    ResultWarning("unknown_key", text + nearest_names(key, known))
+                text = said(
+                    "{where}: {key} is not known and was not used. {nearest}",
+                    where=self.where,
+                    key=shown(key),
+                    nearest=nearest_names(key, known),
                 )
+                self.findings.warnings.append(ResultWarning("unknown_key", text))
 
 
 def as_number(value: object) -> float | None:

@@ -9,6 +9,7 @@ from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import has_control, shown, shown_path
 from surveyapp.io.guarded import is_regular, need_short_path
 from surveyapp.io.tomltext import atomic_write, toml_value
+from surveyapp.languages import said
 from surveyapp_models.angles import AngleUnit
 
 ROOM: Final = 60
@@ -156,7 +157,7 @@ def create_project(
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise SurveyError(
-            Problem(f"the folder cannot be made ({reason})", shown_path(folder))
+            Problem(said("the folder cannot be made ({reason})", reason=reason), shown_path(folder))
         ) from None
     example = _EXAMPLES[angle_unit]
     crs_line = f"crs = {toml_value(crs)}" if crs else '# crs = "EPSG:4546"    # the grid'

@@ -17,6 +17,7 @@ from pathlib import Path
 
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import shown, shown_path
+from surveyapp.languages import said
 
 _WAITS_S = (0.05, 0.1, 0.2, 0.4, 0.8)
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
@@ -76,7 +77,9 @@ def atomic_write(path: Path, data: bytes | Iterable[bytes]) -> None:
     except OSError as error:
         raise SurveyError(
             Problem(
-                f"the file could not be written ({error.strerror or error})",
+                said(
+                    "the file could not be written ({strerror})", strerror=error.strerror or error
+                ),
                 path.name,
                 shown_path(path),
                 "a folder with room that may be written to",

@@ -19,6 +19,7 @@ from surveyapp.io.files import read_text, shown
 from surveyapp.io.tables import parse_toml
 from surveyapp.io.template import create_project
 from surveyapp.io.tomltext import atomic_write, comments, plain, present, toml_key, toml_value
+from surveyapp.languages import said
 
 __all__ = [
     "append_subtable",
@@ -85,7 +86,7 @@ def append_tables(project_toml: Path, tables: Sequence[tuple[str, Mapping[str, o
     for name, mapping in tables:
         found = expected.setdefault(name, [])
         if not isinstance(found, list):
-            raise _refused(project_toml, f"{name} is no list of tables")
+            raise _refused(project_toml, said("{name} is no list of tables", name=name))
         found.append(plain(mapping))
         added.append(_table_text(f"[[{toml_key(name)}]]", mapping))
     gap = "" if not text else "\n" if text.endswith("\n") else "\n\n"
@@ -104,10 +105,12 @@ def append_below(project_toml: Path, parent: str, name: str, mapping: Mapping[st
     expected = copy.deepcopy(data)
     holder = expected.get(parent)
     if not isinstance(holder, dict):
-        raise _refused(project_toml, f"there is no [{parent}]")
+        raise _refused(project_toml, said("there is no [{parent}]", parent=parent))
     found = holder.setdefault(name, [])
     if not isinstance(found, list):
-        raise _refused(project_toml, f"{parent}.{name} is no list of tables")
+        raise _refused(
+            project_toml, said("{parent}.{name} is no list of tables", parent=parent, name=name)
+        )
     found.append(plain(mapping))
     added = _table_text(f"[[{toml_key(parent)}.{toml_key(name)}]]", mapping)
     gap = "\n" if text.endswith("\n") else "\n\n"
@@ -165,13 +168,18 @@ def with_subtables(
     expected = copy.deepcopy(data)
     index, table = _element(project_toml, expected.get(kind), identity)
     if not isinstance(table, dict) or not isinstance(table.setdefault(name, []), list):
-        raise _refused(project_toml, f"{name} of {identity} is no list of tables")
+        raise _refused(
+            project_toml,
+            said("{name} of {identity} is no list of tables", name=name, identity=identity),
+        )
     table[name] += [plain(mapping) for mapping in mappings]
     headers = list(
         re.finditer(rf"^[ \t]*\[\[[ \t]*{re.escape(kind)}[ \t]*\]\]", text, re.MULTILINE)
     )
     if index >= len(headers):
-        raise _refused(project_toml, f"the header of {identity} was not found")
+        raise _refused(
+            project_toml, said("the header of {identity} was not found", identity=identity)
+        )
     place = _end_of_table(text, headers[index].end(), kind)
     header = f"[[{toml_key(kind)}.{toml_key(name)}]]"
     added = "\n".join(_table_text(header, mapping) for mapping in mappings)
@@ -253,7 +261,7 @@ def _step(path: Path, holder: object, key: Key) -> object:
         return _element(path, holder, key)[1]
     if isinstance(holder, Mapping) and isinstance(key, str) and key in holder:
         return holder[key]
-    raise _refused(path, f"there is no {key}")
+    raise _refused(path, said("there is no {key}", key=key))
 
 
 def _element(path: Path, tables: object, key: Key) -> tuple[int, object]:
@@ -262,12 +270,12 @@ def _element(path: Path, tables: object, key: Key) -> tuple[int, object]:
             isinstance(table, Mapping) and key in (table.get("id"), table.get("name"))
         ):
             return index, table
-    raise _refused(path, f"there is no table {key}")
+    raise _refused(path, said("there is no table {key}", key=key))
 
 
 def _assign(path: Path, holder: object, key: Key, value: object) -> None:
     if not isinstance(holder, dict) or not isinstance(key, str):
-        raise _refused(path, f"{key} cannot be set here")
+        raise _refused(path, said("{key} cannot be set here", key=key))
     if value is None:
         holder.pop(key, None)
     else:
@@ -291,7 +299,9 @@ def _check(path: Path, old: str, new: str, expected: Mapping[str, object]) -> No
         raise _refused(path, "the new text does not hold the intended data")
     lost = Counter(comments(old)) - Counter(comments(new))
     if lost:
-        raise _refused(path, f"a comment would be lost: {shown(next(iter(lost)))}")
+        raise _refused(
+            path, said("a comment would be lost: {value}", value=shown(next(iter(lost))))
+        )
 
 
 def _refused(path: Path, why: str) -> SurveyError:

@@ -26,6 +26,7 @@ from surveyapp.languages.said import (
     said,
     said_each,
     sentence,
+    some,
     term,
 )
 
@@ -44,6 +45,7 @@ __all__ = [
     "term",
     "sentence",
     "shown",
+    "some",
     "translated",
     "use",
 ]

@@ -6,7 +6,7 @@ screens and the record say them again in the reader's language. Nothing here rea
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Self
 
 Translate = Callable[[str, str | None, int], str]
@@ -99,6 +99,15 @@ def listed(parts: Iterable[str]) -> str:
     for part in parts:
         whole = said("{before} and {last}", before=whole, last=part) if whole else part
     return whole
+
+
+def some(parts: Sequence[str], most: int) -> str:
+    """The first of many, and how many more there are: ``1, 2, 3 and 4 more``."""
+    first = joined(", ", parts[:most])
+    rest = len(parts) - most
+    if rest <= 0:
+        return first
+    return counted("{first} and {count} more", "{first} and {count} more", count=rest, first=first)
 
 
 def term(text: str) -> str:

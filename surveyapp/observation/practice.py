@@ -178,7 +178,7 @@ def begin(
                 said("this speed is not possible"),
                 "--speed",
                 f"{speed:g}",
-                f"{SLOWEST:g} to {FASTEST:g}",
+                said("{slowest:g} to {fastest:g}", slowest=SLOWEST, fastest=FASTEST),
             )
         )
     path = Path(folder)

@@ -19,7 +19,7 @@ from surveyapp.domain.adjustment import AdjustedObservation, AdjustedPoint, Adju
 from surveyapp.domain.angle_result import AngleResult
 from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.results import OrientationResult
-from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, format_angle, wrap_two_pi
+from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, format_angle, wrap_pi, wrap_two_pi
 
 K = ObservationKind
 _KINDS = (K.ANGLE, K.DIRECTION, K.ZENITH, K.SLOPE_DISTANCE, K.DISTANCE, K.AZIMUTH, K.GYRO)
@@ -70,18 +70,44 @@ def _mean(items: Sequence[AdjustedObservation], *kinds: ObservationKind) -> floa
     return sum(found) / len(found) if found else None
 
 
-def _angle(items: Sequence[AdjustedObservation], unit: AngleUnit) -> tuple[str, str]:
-    """Back sight and value of the angle of a sight; of directions none: they have many zeros."""
-    angle = next((item for item in items if item.kind is K.ANGLE), None)
-    if angle is None:
-        return "", ""
-    return angle.back, format_angle(wrap_two_pi(angle.observed), unit)
+Angles = dict[tuple[str, str], tuple[str, float]]
+"""Back sight and angle [rad] of each sight."""
+
+
+def _angles(result: AdjustmentResult) -> Angles:
+    """Angles as observed, of directions the mean of the sets from the first target of the station.
+
+    A set ends where a target comes again.
+    """
+    found: Angles = {}
+    sets: dict[str, list[dict[str, float]]] = {}
+    for item in result.observations:
+        if item.kind is K.ANGLE:
+            found.setdefault((item.at, item.to), (item.back, item.observed))
+        elif item.kind is K.DIRECTION:
+            rays = sets.setdefault(item.at, [{}])
+            if item.to in rays[-1]:
+                rays.append({})
+            rays[-1][item.to] = item.observed
+    for at, rays in sets.items():
+        back = next(iter(rays[0]))
+        for to in dict.fromkeys(name for ray in rays for name in ray if name != back):
+            turns = [ray[to] - ray[back] for ray in rays if to in ray and back in ray]
+            if turns:
+                gaps = [wrap_pi(turn - turns[0]) for turn in turns]
+                found.setdefault((at, to), (back, turns[0] + sum(gaps) / len(gaps)))
+    return found
 
 
 def _traverse_row(
-    at: AdjustedPoint, to: AdjustedPoint, items: list[AdjustedObservation], unit: AngleUnit
+    ends: tuple[AdjustedPoint, AdjustedPoint],
+    items: list[AdjustedObservation],
+    angles: Angles,
+    unit: AngleUnit,
 ) -> tuple[str, ...]:
-    back, angle = _angle(items, unit)
+    at, to = ends
+    back, turn = angles.get((at.name, to.name), ("", None))
+    angle = "" if turn is None else format_angle(wrap_two_pi(turn), unit)
     zenith = _mean(items, K.ZENITH)
     slope = _mean(items, K.SLOPE_DISTANCE)
     level = azimuth = ""
@@ -118,8 +144,9 @@ def traverse_sheet(name: str, result: AdjustmentResult, unit: AngleUnit) -> Shee
         Of the project.
     """
     points = {point.name: point for point in result.points}
+    angles = _angles(result)
     rows = [
-        _traverse_row(points[at], points[to], items, unit)
+        _traverse_row((points[at], points[to]), items, angles, unit)
         for (at, to), items in _sides(result).items()
         if at in points and to in points
     ]

@@ -18,7 +18,7 @@ from textual.screen import Screen
 from surveyapp.errors import SurveyError
 from surveyapp.io.fieldbook.clock import local_now, steady_seconds
 from surveyapp.io.settings import read_settings
-from surveyapp.languages import LANGUAGES, current
+from surveyapp.languages import LANGUAGES, current, shown
 from surveyapp.observation import home as api_home
 from surveyapp.observation import practice as api_practice
 from surveyapp.observation import preferences
@@ -166,7 +166,7 @@ class SurveyApp(App[int]):
         try:
             observation = SessionDesk(self.folder, session, now=self.now, steady=self.steady)
         except SurveyError as error:
-            self.notify(str(error), severity="error", markup=False)
+            self.notify(shown(error.text), severity="error", markup=False)
             return
         draft = self.drafts.pop(session, None)
         self.push_screen(SessionScreen(observation, draft, self.practice))
@@ -207,7 +207,7 @@ class SurveyApp(App[int]):
                 disturbed=wish.disturbed,
             )
         except SurveyError as error:
-            self.notify(str(error), severity="error", markup=False)
+            self.notify(shown(error.text), severity="error", markup=False)
             return
         self.observe_practice(practice)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_entry import SensorLogEntry
+from surveyapp.languages import said
 
 
 def not_taken_out(entry: SensorLogEntry | None) -> tuple[ResultWarning, ...]:
@@ -11,8 +12,9 @@ def not_taken_out(entry: SensorLogEntry | None) -> tuple[ResultWarning, ...]:
     if entry is None or not entry.effects:
         return ()
     names = ", ".join(dict.fromkeys(effect.id for effect in entry.effects))
-    text = (
-        f"adopted for this log and not taken out here: {names}; diagnose shows the record without, "
-        "a sensor card holds parameters only"
+    text = said(
+        "adopted for this log and not taken out here: {names}; diagnose shows "
+        "the record without, a sensor card holds parameters only",
+        names=names,
     )
     return (ResultWarning("effects_not_taken_out", text),)

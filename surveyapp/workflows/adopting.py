@@ -24,6 +24,7 @@ from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.io.filing.seals import is_closed
 from surveyapp.io.project import read_project
 from surveyapp.io.writing import with_subtables
+from surveyapp.languages import said
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Effect
 
@@ -58,14 +59,19 @@ def adopted_notes(diagnosis: Diagnosis, already: Sequence[AdoptedEffect]) -> lis
         return []
     names = ", ".join(dict.fromkeys(effect.id for effect in already))
     if diagnosis.subject == "reversal_run":
-        text = (
-            f"Session {diagnosis.identity} has adopted {names} already, and orient uses it; this "
-            "diagnosis is about the run without it, so that it is found again."
+        text = said(
+            "Session {identity} has adopted {names} already, and orient uses it; "
+            "this diagnosis is about the run without it, so that it is found again.",
+            identity=diagnosis.identity,
+            names=names,
         )
     else:
-        text = (
-            f"Instrument {diagnosis.instrument} has adopted {names} already; the determinations "
-            "are reduced by it before they are diagnosed, and what is found here is what is left."
+        text = said(
+            "Instrument {instrument} has adopted {names} already; the "
+            "determinations are reduced by it before they are diagnosed, and what "
+            "is found here is what is left.",
+            instrument=diagnosis.instrument,
+            names=names,
         )
     return [ResultWarning("already_adopted", text)]
 
@@ -153,7 +159,7 @@ def record_under(
             try:
                 append_entries(folder, entries, at=moment, software=software)
             except SurveyError as error:
-                text = f"The diagnosis is in no ledger: {error.problems[0].what}."
+                text = said("The diagnosis is in no ledger: {what}.", what=error.problems[0].what)
                 return (), [ResultWarning("ledger_not_written", text)]
             return (), []
         after = with_subtables(folder / "project.toml", parent, "effect", tables)

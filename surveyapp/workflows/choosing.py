@@ -24,6 +24,7 @@ from surveyapp.domain.project import Project
 from surveyapp.domain.subject import SubjectKeyword
 from surveyapp.domain.traverse import Network
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import said
 from surveyapp_models.effects.effect import Effect
 
 Networks = Callable[[str], Network]
@@ -193,6 +194,10 @@ def _require(name: str, known: list[str], where: str, kind: str) -> None:
         hint = nearest_names(name, known)
         raise SurveyError(
             Problem(
-                f"there is no {kind} of this name", where, name, f"the name of a known {kind}", hint
+                said("there is no {kind} of this name", kind=kind),
+                where,
+                name,
+                said("the name of a known {kind}", kind=kind),
+                hint,
             )
         )

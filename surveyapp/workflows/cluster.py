@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from typing import Any, cast
 
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 
 TIMEOUT_S = 20
 
@@ -43,7 +44,7 @@ def cluster_executor(address: str | None) -> Iterator[Executor | None]:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise SurveyError(
             Problem(
-                f"no cluster answers ({reason})",
+                said("no cluster answers ({reason})", reason=reason),
                 "cluster",
                 address,
                 "the address of a scheduler, like tcp://host:8786",

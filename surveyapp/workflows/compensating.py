@@ -19,6 +19,7 @@ from surveyapp.core.sensors.compensation import (
     compensate_head,
     compensate_rate,
     compensate_tilt,
+    field_doubt,
 )
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_card import SensorCard
@@ -29,6 +30,7 @@ from surveyapp.io.sensor_cards import read_sensor_card
 from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.io.sensor_logs.writing import write_parts
+from surveyapp.languages import said
 
 BLOCK_ROWS: Final = 50_000
 """Rows that are corrected at once: a log of any length takes the memory of one block."""
@@ -122,7 +124,7 @@ def compensate_log(
     if card.kind != kind:
         raise SurveyError(Problem("the card is of another kind", where, card.kind, kind))
     if declination is not None and kind != "compass":
-        found = f"a {kind} sensor"
+        found = said("a {kind} sensor", kind=kind)
         raise SurveyError(
             Problem("a declination is added to magnetic headings only", "declination", found)
         )
@@ -135,6 +137,9 @@ def compensate_log(
     problems += other_instrument(card, entry, where)
     if problems:
         raise SurveyError(problems)
+    doubt = field_doubt(log, card, where=where) if kind == "compass" else None
+    if doubt is not None:
+        log = replace(log, warnings=(*log.warnings, ResultWarning("field_differs", doubt)))
     starts = range(0, log.size, BLOCK_ROWS)
     blocks = (log.rows(slice(start, start + BLOCK_ROWS)) for start in starts)
     return (_run(kind, block, card, (declination, where)) for block in blocks), log, card
@@ -219,7 +224,9 @@ def write_compensated(
         text = "the log holds no temperature: whether the card holds was not judged by it"
         warnings.append(ResultWarning("temperature_unknown", text))
     if "restricted" in card.notes:
-        warnings.append(ResultWarning("restricted", f"the card {card.notes['restricted']}"))
+        warnings.append(
+            ResultWarning("restricted", said("the card {value}", value=card.notes["restricted"]))
+        )
     return CompensationResult(
         kind=kind,
         source=log.id,

@@ -22,6 +22,7 @@ from surveyapp.diagnosis.plain_words import words_of
 from surveyapp.diagnosis.result import Diagnosis
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.outputs import write_output
+from surveyapp.languages import said
 from surveyapp.workflows.adopting import (
     NotWritten,
     adopted_before,
@@ -176,7 +177,7 @@ def _refuse_adoption(identity: str) -> None:
     raise SurveyError(
         Problem(
             "an effect of a traverse is mended at its source, not adopted",
-            f"diagnose, adopt, {identity}",
+            said("diagnose, adopt, {identity}", identity=identity),
             "adopting for a traverse",
             "a corrected book, constant or setting",
             "Follow the remedy, enter the corrected values, adjust and diagnose again.",

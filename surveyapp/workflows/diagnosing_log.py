@@ -15,6 +15,7 @@ from surveyapp.domain.sensor_log import QUATERNION, SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
+from surveyapp.languages import said
 from surveyapp.workflows.adopting import NotWritten, sensor_tables
 from surveyapp.workflows.diagnosing_sensor import already_adopted, write_under
 from surveyapp_models.effects.effect import Effect
@@ -84,8 +85,8 @@ def diagnose_log(
             raise SurveyError(
                 Problem(
                     "the second set is no second set: it would confirm whatever it chose",
-                    f"confirm, {confirm.identity}",
-                    f"the rows of {identity}",
+                    said("confirm, {identity}", identity=confirm.identity),
+                    said("the rows of {identity}", identity=identity),
                     "another log of the same sensor, taken independently",
                 )
             )
@@ -93,9 +94,9 @@ def diagnose_log(
             raise SurveyError(
                 Problem(
                     "the second log shows another thing",
-                    f"confirm, {confirm.identity}",
-                    f"the {second.mode} of the field",
-                    f"the {record.mode}, as in {identity}",
+                    said("confirm, {identity}", identity=confirm.identity),
+                    said("the {mode} of the field", mode=second.mode),
+                    said("the {mode}, as in {identity}", mode=record.mode, identity=identity),
                     "both need a reference attitude, or neither",
                 )
             )
@@ -158,7 +159,10 @@ def _record(
         what, expected = "logs of this kind are not diagnosed by themselves", "compass | tilt"
         raise SurveyError(Problem(what, identity, kind, expected))
     if log.size < FEWEST:
-        found, expected = f"{log.size} rows", f"{FEWEST} rows or more"
+        found, expected = (
+            said("{size} rows", size=log.size),
+            said("{fewest} rows or more", fewest=FEWEST),
+        )
         raise SurveyError(Problem("the log is too short to diagnose", log.path, found, expected))
     mine = tuple(effect for effect in own if effect.subject == kind)
     used = log.thinned(MOST_ROWS)

@@ -19,6 +19,7 @@ from surveyapp.domain.project import Project, ResultWarning
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.reading import LogFile
+from surveyapp.languages import either, said
 from surveyapp.workflows.adopting import NotWritten, record_under, sensor_tables
 from surveyapp.workflows.diagnosing import Diagnosed
 from surveyapp_models.effects.effect import Effect
@@ -141,9 +142,11 @@ def already_adopted(entry: SensorLogEntry) -> list[ResultWarning]:
     if not entry.effects:
         return []
     names = ", ".join(dict.fromkeys(effect.id for effect in entry.effects))
-    text = (
-        f"Sensor log {entry.id} has adopted {names} already; this diagnosis is about the log "
-        "without it, so that it is found again."
+    text = said(
+        "Sensor log {id} has adopted {names} already; this diagnosis is about "
+        "the log without it, so that it is found again.",
+        id=entry.id,
+        names=names,
     )
     return [ResultWarning("already_adopted", text)]
 
@@ -167,13 +170,13 @@ def write_under(
 
 def _case_of(file: LogFile, entry: SensorLogEntry, own: Sequence[Effect]) -> SensorCase:
     if entry.kind not in CASES:
-        known = " or ".join(("compass", "tilt", *CASES))
+        known = either(("compass", "tilt", *CASES))
         raise SurveyError(
             Problem(
                 "there is no diagnosis of this kind of log",
                 f"[[sensor_log]] {entry.id}",
                 entry.kind or "no kind",
-                f"kind {known}",
+                said("kind {known}", known=known),
             )
         )
     module = importlib.import_module(f"surveyapp.workflows.{CASES[entry.kind]}")

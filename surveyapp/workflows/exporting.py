@@ -13,6 +13,7 @@ from surveyapp.domain.observations import ANGULAR, Observation, ObservationKind
 from surveyapp.domain.project import Project, ResultWarning
 from surveyapp.domain.traverse import Network
 from surveyapp.errors import SurveyError
+from surveyapp.languages import said
 
 K = ObservationKind
 
@@ -21,7 +22,10 @@ def _adjusted(network: Network) -> tuple[AdjustmentResult | None, list[ResultWar
     try:
         return adjust(network, relative=False), []
     except SurveyError as refused:
-        text = f"the network cannot be adjusted, coordinates are those of the project: {refused}"
+        text = said(
+            "the network cannot be adjusted, coordinates are those of the project: {refused}",
+            refused=refused,
+        )
         return None, [ResultWarning("not_adjusted", text)]
 
 
@@ -47,7 +51,7 @@ def _as_azimuths(network: Network) -> tuple[list[Observation], list[ResultWarnin
         )
     if not lost:
         return found, []
-    text = f"gyro sides without a known constant are left out: {', '.join(lost)}"
+    text = said("gyro sides without a known constant are left out: {names}", names=", ".join(lost))
     return found, [ResultWarning("gyro_left_out", text)]
 
 
@@ -126,7 +130,7 @@ def exported_survey(project: Project, network: Network | None) -> ExportedSurvey
         warnings += told
         gyro += [(o.at, o.to) for o in network.observations if o.kind is K.GYRO]
     if lost:
-        text = f"stations without coordinates are left out: {', '.join(lost)}"
+        text = said("stations without coordinates are left out: {names}", names=", ".join(lost))
         warnings.append(ResultWarning("station_left_out", text))
     return ExportedSurvey(
         name=project.name,

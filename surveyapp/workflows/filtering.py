@@ -23,6 +23,7 @@ from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile
+from surveyapp.languages import said
 from surveyapp.workflows.noise import channel_of, noise_columns, read_columns
 from surveyapp_models.arrays import Floats
 
@@ -72,7 +73,7 @@ def filter_log(
     model_name = _known(name)
     names = noise_columns(file, column)
     if len(names) > 1:
-        hint = f"--column C, one of: {', '.join(names)}"
+        hint = said("--column C, one of: {names}", names=", ".join(names))
         raise SurveyError(Problem("which column?", file.request.where, "", "one column", hint))
     log = read_columns(file, names, progress)
     series, unit = log.columns[names[0]], log.units[names[0]]
@@ -131,7 +132,9 @@ def _known(name: str) -> FilterName:
 
 def _check_model(model: LocalLevel) -> None:
     problems = [
-        Problem(f"{name} is no variance", name, f"{value:g}", "a finite number above 0")
+        Problem(
+            said("{name} is no variance", name=name), name, f"{value:g}", "a finite number above 0"
+        )
         for name, value in (("q", model.q), ("r", model.r))
         if not math.isfinite(value) or value <= 0.0
     ]
@@ -170,10 +173,17 @@ def _warnings(filtered: Filtered, lags: dict[str, float | None]) -> list[ResultW
         text = "the filter lost the series: its innovations stay far beyond their sigma"
         found.append(ResultWarning("divergence", text))
     if filtered.degenerate:
-        text = f"every weight vanished at {filtered.degenerate} samples: q or r is too small"
+        text = said(
+            "every weight vanished at {degenerate} samples: q or r is too small",
+            degenerate=filtered.degenerate,
+        )
         found.append(ResultWarning("degenerate", text))
     slow = [name for name, lag in lags.items() if lag is None]
     if slow:
-        text = f"a step is not followed within {LONGEST_LAG} samples: {', '.join(slow)}"
+        text = said(
+            "a step is not followed within {longest_lag} samples: {names}",
+            longest_lag=LONGEST_LAG,
+            names=", ".join(slow),
+        )
         found.append(ResultWarning("never_follows", text))
     return found

@@ -19,6 +19,7 @@ from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
+from surveyapp.languages import said
 
 LONGEST_PATH_M: Final = 1e6
 """Of the odometer in one record."""
@@ -56,9 +57,19 @@ def _odometer_problems(log: SensorLog) -> list[Problem]:
         return []
     if not np.isfinite(distance).all():
         what, expected = "odometer_m has rows without a reading", "a number in each row"
-        return [Problem(what, log.path, f"{np.count_nonzero(np.isnan(distance))} rows", expected)]
+        return [
+            Problem(
+                what,
+                log.path,
+                said("{rows} rows", rows=np.count_nonzero(np.isnan(distance))),
+                expected,
+            )
+        ]
     if np.ptp(distance) > LONGEST_PATH_M:
-        found, expected = f"{np.ptp(distance):g} m", f"{LONGEST_PATH_M:g} m or less"
+        found, expected = (
+            f"{np.ptp(distance):g} m",
+            said("{longest_path_m:g} m or less", longest_path_m=LONGEST_PATH_M),
+        )
         return [Problem("no vehicle drives as far in one record", log.path, found, expected)]
     return []
 
@@ -67,7 +78,7 @@ def motion_options(options: Mapping[str, object], problems: list[Problem]) -> Mo
     """Options of the command line; what is wrong goes to ``problems``."""
     alarm = _number(options, "false_alarm", 0.01)
     if not SMALLEST_ALARM <= alarm < 0.5:
-        expected = f"{SMALLEST_ALARM:g} to 0.5"
+        expected = said("{smallest_alarm:g} to 0.5", smallest_alarm=SMALLEST_ALARM)
         problems.append(Problem("this is no probability", "--false-alarm", f"{alarm:g}", expected))
     factor = _number(options, "still_gate_factor", 1.0)
     if not factor > 0.0 or not math.isfinite(factor):

@@ -17,6 +17,7 @@ from surveyapp.domain.sensor_log import SENSOR_COLUMNS, TEXT_COLUMNS, SensorLog
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 FEWEST: Final = 9
@@ -57,7 +58,10 @@ def read_columns(file: LogFile, names: tuple[str, ...], progress: Progress | Non
     need = Need(columns=canonical, varying=names, others=others)
     log = file.read(need, progress=progress)
     if log.size < FEWEST:
-        found, expected = f"{log.size} rows", f"{FEWEST} rows or more"
+        found, expected = (
+            said("{size} rows", size=log.size),
+            said("{fewest} rows or more", fewest=FEWEST),
+        )
         raise SurveyError(Problem("the log is too short", log.path, found, expected))
     return log
 
@@ -78,7 +82,9 @@ def factors_of(log: SensorLog, taus: Sequence[float] | None) -> tuple[int, ...]:
     for tau in taus:
         m = round(tau * rate) if math.isfinite(tau * rate) else 0
         if m < 1 or 2 * m > log.size - 1:
-            expected = f"{1.0 / rate:g} to {(log.size - 1) // 2 / rate:g} s"
+            expected = said(
+                "{value:g} to {value2:g} s", value=1.0 / rate, value2=(log.size - 1) // 2 / rate
+            )
             problems.append(Problem("no averaging time", "taus", f"{tau:g}", expected))
         elif m not in factors:
             factors.append(m)

@@ -24,6 +24,7 @@ from surveyapp.domain.instrument import Instrument
 from surveyapp.domain.priors import BASE, UNITS, Priors
 from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import counted, said, some
 
 LEAST_CAMPAIGN = 4
 """Determinations from which a campaign teaches anything."""
@@ -283,8 +284,17 @@ def _nothing(wanted: Wanted, parts: Sequence[Part]) -> Problem:
     return Problem(
         "nothing of this instrument can be pooled",
         "diagnose --instrument",
-        f"{wanted.serial or wanted.id} in {len(parts)} project{'s' if len(parts) != 1 else ''}",
-        f"a run of {LEAST_RUN} turning points or {LEAST_CAMPAIGN} determinations",
+        counted(
+            "{serial} in {count} project",
+            "{serial} in {count} projects",
+            serial=wanted.serial or wanted.id,
+            count=len(parts),
+        ),
+        said(
+            "a run of {least_run} turning points or {least_campaign} determinations",
+            least_run=LEAST_RUN,
+            least_campaign=LEAST_CAMPAIGN,
+        ),
         "Name the instrument by its id; projects of an archive are matched by its serial.",
     )
 
@@ -293,11 +303,18 @@ def _warnings(wanted: Wanted, parts: Sequence[Part]) -> list[ResultWarning]:
     found = []
     strange = [part.path for part in parts if not part.found and not part.left_out]
     if strange:
-        more = f" and {len(strange) - 3} more" if len(strange) > 3 else ""
-        text = f"not of {wanted.serial or wanted.id}, left out: {', '.join(strange[:3])}{more}"
+        text = said(
+            "not of {serial}, left out: {names}",
+            serial=wanted.serial or wanted.id,
+            names=some(strange, 3),
+        )
         found.append(ResultWarning("other_instrument", text))
     left = [text for part in parts for text in part.left_out]
     found += [ResultWarning("left_out", text) for text in left[:MOST_TOLD]]
     if len(left) > MOST_TOLD:
-        found.append(ResultWarning("left_out", f"{len(left) - MOST_TOLD} more were left out"))
+        found.append(
+            ResultWarning(
+                "left_out", said("{value} more were left out", value=len(left) - MOST_TOLD)
+            )
+        )
     return found

@@ -28,6 +28,7 @@ from surveyapp.domain.traverse_book import Traverse
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.penetration.measured import header_sigmas, measured_rows
 from surveyapp.io.tables import Findings
+from surveyapp.languages import said
 from surveyapp.workflows.plumbing import orient_shafts
 
 
@@ -152,9 +153,12 @@ def _measure(
         )
         gathered.measured[heading.name] = measured
         if lost:
-            text = (
-                f"traverse {header.name}: {lost} observations join no neighbouring sides of the "
-                f"route of heading {heading.name} and do not enter the prediction"
+            text = said(
+                "traverse {name}: {lost} observations join no neighbouring sides of "
+                "the route of heading {name2} and do not enter the prediction",
+                name=header.name,
+                lost=lost,
+                name2=heading.name,
             )
             warnings.append(ResultWarning("rows_beside_route", text))
     return warnings
@@ -181,9 +185,10 @@ def _constants(
         if sigma is None or not math.isfinite(sigma):
             sigma = None if stated is None else stated[1]
         if sigma is None and observes:
-            text = (
-                f"instrument {name}: no constant is known, so its shared error counts as 0; "
-                "calibrate it, or give constant = { arcsec, sigma_arcsec }"
+            text = said(
+                "instrument {name}: no constant is known, so its shared error counts "
+                "as 0; calibrate it, or give constant = {{ arcsec, sigma_arcsec }}",
+                name=name,
             )
             warnings.append(ResultWarning("constant_sigma_unknown", text))
         found[name] = sigma or 0.0
@@ -268,7 +273,7 @@ def _angle_problems(plan: Penetration, measured: Mapping[str, MeasuredRows]) -> 
             problems.append(
                 Problem(
                     "the angles have no sigma",
-                    f"{WHERE}, heading {heading.name}",
+                    said("{where}, heading {name}", where=WHERE, name=heading.name),
                     "nothing",
                     "sigma_angle_arcsec, or a traverse with one",
                 )
@@ -301,7 +306,7 @@ def _plan_problems(
             "more gyro sides are asked for than sides are free" if sides > 0 else "no sides asked",
             "plan",
             str(sides),
-            f"1 to {free}",
+            said("1 to {free}", free=free),
         )
     ]
 
@@ -336,10 +341,18 @@ def _fed(heading: Heading, shaft: ShaftOrientation) -> tuple[Heading, list[Resul
         return heading, []
     where = f"heading {heading.name}, shaft {shaft.id}"
     if shaft.combined.azimuth is None:
-        text = f"{where}: wires and gyro contradict each other, no start azimuth is taken from them"
+        text = said(
+            "{where}: wires and gyro contradict each other, no start azimuth is taken from them",
+            where=where,
+        )
         return heading, [ResultWarning("shaft_contradicts", text)]
     if heading.sides and set(heading.sides[0]) != {shaft.at, shaft.to}:
-        text = f"{where}: it orients {shaft.at}-{shaft.to}, which is not the first side"
+        text = said(
+            "{where}: it orients {at}-{to}, which is not the first side",
+            where=where,
+            at=shaft.at,
+            to=shaft.to,
+        )
         return heading, [ResultWarning("shaft_side_not_first", text)]
     start = replace(heading.start, azimuth_sigma=shaft.combined.azimuth.sigma)
     return replace(heading, start=start), []

@@ -25,6 +25,7 @@ from surveyapp.io.sensor_logs.reading import LogFile, LogRequest, Need, open_log
 from surveyapp.io.sensor_logs.tables import is_inside
 from surveyapp.io.tomltext import atomic_write
 from surveyapp.io.writing import append_table
+from surveyapp.languages import either, said
 
 FIRST_ROWS: Final = 3
 LARGEST_COPY: Final = 64 * 1024 * 1024
@@ -72,10 +73,12 @@ def preview_log(request: LogRequest, *, progress: Progress | None = None) -> Log
     try:
         log = file.read(Need(optional=None, timed="optional"), progress=progress)
     except SurveyError as error:
-        problems = tuple(str(problem) for problem in error.problems)
+        problems = tuple(problem.text for problem in error.problems)
     if not known:
         named = ", ".join(file.layout.names)
-        problems += (f"no column is a known one: {named}; map.CANON=COLUMN names them",)
+        problems += (
+            said("no column is a known one: {named}; map.CANON=COLUMN names them", named=named),
+        )
     return LogPreview(
         path=str(request.path),
         columns=_columns(file, log),
@@ -135,7 +138,9 @@ def _unstated(file: LogFile) -> tuple[ResultWarning, ...]:
     ]
     if not names:
         return ()
-    return (ResultWarning("unit_assumed", f"no unit is stated: {', '.join(names)}"),)
+    return (
+        ResultWarning("unit_assumed", said("no unit is stated: {names}", names=", ".join(names))),
+    )
 
 
 def register_log(
@@ -170,7 +175,9 @@ def register_log(
     inside = is_inside(folder, str(request.path.absolute()))
     size = request.path.stat().st_size
     if not inside and size > LARGEST_COPY:
-        expected = f"{LARGEST_COPY // 1_000_000} MB or less, or a log below the project folder"
+        expected = said(
+            "{size} MB or less, or a log below the project folder", size=LARGEST_COPY // 1000000
+        )
         hint = "move it into sensors/ of the project and add it from there"
         found = f"{size / 1e6:.0f} MB"
         what = "the log is too large to be copied"
@@ -190,12 +197,16 @@ def _wish_problems(identity: str, wish: LogEntryWish, taken: list[str]) -> list[
     problems = []
     if identity in taken:
         names = ", ".join(taken)
-        problems.append(Problem("a sensor log has this id", "id", identity, f"none of: {names}"))
+        problems.append(
+            Problem(
+                "a sensor log has this id", "id", identity, said("none of: {names}", names=names)
+            )
+        )
     if any(letter in identity for letter in _BAD_IN_ID) or not identity.isprintable():
         problems.append(Problem("this is no id", "id", identity, "letters, digits, - and _"))
     if wish.kind is not None and wish.kind not in SENSOR_KINDS:
         hint = nearest_names(wish.kind, SENSOR_KINDS)
-        expected = " or ".join(SENSOR_KINDS)
+        expected = either(SENSOR_KINDS)
         problems.append(Problem("there is no such kind", "kind", wish.kind, expected, hint))
     if wish.latitude_deg is not None and not -90.0 <= wish.latitude_deg <= 90.0:
         found = f"{wish.latitude_deg:g}"
@@ -218,7 +229,7 @@ def _place(folder: Path, source: Path, identity: str, *, inside: bool) -> str:
             )  # fmt: skip
         target.parent.mkdir(exist_ok=True)
     except OSError as error:
-        what = f"the log cannot be copied ({error.strerror or error})"
+        what = said("the log cannot be copied ({strerror})", strerror=error.strerror or error)
         raise SurveyError(Problem(what, name, shown_path(source))) from None
     atomic_write(target, data)
     return name

@@ -18,6 +18,7 @@ from surveyapp.diagnosis.fits import Fit, Member
 from surveyapp.diagnosis.loop import DEFAULT_DRAWS, search
 from surveyapp.diagnosis.run_value import coefficients
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
 
@@ -109,7 +110,7 @@ def _course(problem: Case, fit: Fit, member: Member) -> Floats:
 def _no_shape(problem: Case, found: str, expected: str) -> Problem:
     return Problem(
         "there is no unnamed shape to save",
-        f"diagnose, save shape, {problem.identity}",
+        said("diagnose, save shape, {identity}", identity=problem.identity),
         found,
         expected,
         "Only what the diagnosis finds and cannot name is saved.",

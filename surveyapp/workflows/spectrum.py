@@ -19,6 +19,7 @@ from surveyapp.domain.sensor_log import NUMBER_COLUMNS, SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
+from surveyapp.languages import said
 from surveyapp.workflows.noise import FEWEST
 from surveyapp_models.rate.triad import magnetic_bias
 
@@ -94,7 +95,10 @@ def _read(file: LogFile, columns: list[str], progress: Progress | None) -> Senso
         Need(columns=known, varying=tuple(columns), optional=(), others=others), progress=progress
     )
     if log.size < FEWEST:
-        found, expected = f"{log.size} rows", f"{FEWEST} rows or more"
+        found, expected = (
+            said("{size} rows", size=log.size),
+            said("{fewest} rows or more", fewest=FEWEST),
+        )
         raise SurveyError(Problem("the log is too short", log.path, found, expected))
     return log
 
@@ -135,9 +139,10 @@ def _spectrum(
     scatter = scatter_of(values, found.rest, rate_hz=rate, unit=unit)
     if found.lines and scatter.before_10s and scatter.after_10s is not None:
         change = 100.0 * (scatter.after_10s / scatter.before_10s - 1.0)
-        text = (
-            f"taking the lines out changes the scatter of 10 s means by {change:+.1f} %: lines "
-            "average out within seconds"
+        text = said(
+            "taking the lines out changes the scatter of 10 s means by "
+            "{change:+.1f} %: lines average out within seconds",
+            change=change,
         )
         warnings.append(ResultWarning("means", text))
     return LineSpectrum(

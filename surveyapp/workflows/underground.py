@@ -14,6 +14,7 @@ from surveyapp.domain.project import Project
 from surveyapp.domain.shaft import ShaftTables
 from surveyapp.domain.shaft_result import ShaftOrientation
 from surveyapp.errors import SurveyError
+from surveyapp.languages import joined, said
 
 
 def breakthrough_evidence(
@@ -67,5 +68,5 @@ def shaft_evidence(project: Project) -> ShaftEvidence | None:
 def _why(error: SurveyError) -> str:
     """The first problem, and how many more there are."""
     first, more = error.problems[0], len(error.problems) - 1
-    text = f"{first.where}: {first.what}" if first.where else first.what
-    return f"{text}, and {more} more" if more else text
+    text = joined(": ", (first.where, first.what)) if first.where else first.what
+    return said("{text}, and {more} more", text=text, more=more) if more else text

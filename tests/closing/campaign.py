@@ -12,7 +12,7 @@ import os
 import shutil
 import signal
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
@@ -222,8 +222,10 @@ def killed_by_clock(act: Callable[[], object], seconds: float) -> None:
     os.waitpid(child, 0)
 
 
-def campaign(action: Action, place: Path, moments: int, seed: int) -> dict[str, int]:
-    """Kill an act at many moments; how often old and new stood afterwards.
+def campaign(
+    action: Action, place: Path, moments: int, *, seed: int, part: Iterable[int] | None = None
+) -> dict[str, int]:
+    """Kill an act at many moments, or a part of them; how often old and new stood afterwards.
 
     Half of the moments are lines of the writing code, a tenth are inside of a write, the rest are
     moments of the clock. After each the act is done again, and what it makes must stand then.
@@ -240,7 +242,8 @@ def campaign(action: Action, place: Path, moments: int, seed: int) -> dict[str, 
     tried += [("clock", float(s)) for s in rng.uniform(0.0, 1.1 * took, clocks)]
     tried += [("line", float(k)) for k in _spread(lines, moments - len(tried), rng)]
     found = {"old": 0, "new": 0}
-    for number, (how, at) in enumerate(tried):
+    for number in range(moments) if part is None else part:
+        how, at = tried[number]
         folder = place / f"k{number}"
         shutil.copytree(base, folder)
 
@@ -279,17 +282,16 @@ def _seconds(action: Action, base: Path, place: Path) -> float:
     return time.perf_counter() - begun
 
 
-def two_at_once(action: Action, place: Path, times: int, seed: int) -> int:
+def two_at_once(action: Action, place: Path, times: Iterable[int], *, seed: int) -> int:
     """Two processes do the same act at the same time; how often one of them came second.
 
     The state must be the new one, whole, and nothing in it doubled.
     """
     base = action.prepare(place / "base")
-    rng = np.random.default_rng(seed)
     refused = 0
-    for number in range(times):
+    for number in times:
         folder = shutil.copytree(base, place / f"t{number}")
-        delays = rng.uniform(0.0, 0.004, 2)
+        delays = np.random.default_rng((seed, number)).uniform(0.0, 0.004, 2)
         children = [_started(action, folder, float(delay)) for delay in delays]
         codes = [os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) for child in children]
         assert set(codes) <= {0, 2}, codes

@@ -41,7 +41,7 @@ BY_NAME = {item.name: item for item in ACTIONS}
 
 @pytest.mark.parametrize("name", ["adopt", "close", "reopen", "new session"])
 def test_two_who_do_the_same_at_once_do_it_once(name: str, tmp_path: Path) -> None:
-    two_at_once(BY_NAME[name], tmp_path, 6, seed=3)
+    two_at_once(BY_NAME[name], tmp_path, range(6), seed=3)
 
 
 @pytest.mark.parametrize("call", ["write", "fsync", "replace"])

@@ -92,3 +92,30 @@ def test_a_file_without_a_last_line_end_is_told(tmp_path: Path, form: str) -> No
         path.write_bytes(path.read_bytes().rstrip(b"\n") + end.encode())
         result = api.import_file(form, path, folder, traverse="main", **OPTIONS.get(form, {}))
         assert ("open_end" in {x.code for x in result.warnings}) == (not end)
+
+
+def test_a_prism_constant_that_is_in_some_of_the_distances(tmp_path: Path) -> None:
+    """The notes hold from where they stand: -30 mm are added to what follows "Not applied"."""
+    lines = [line for line in FILES["sdr"] if not line.startswith("13PC")]
+    places = [i for i, line in enumerate(lines) if line.startswith("02")]
+    notes = ["13PCP.C. mm Applied:-30.000", "13PCP.C. mm Not applied:-30.000"]
+    marked = list(lines)
+    marked[places[1] : places[1]] = [notes[1]]
+    marked[places[0] : places[0]] = [notes[0]]
+    plain, _ = bring(tmp_path / "a", "sdr", lines)
+    folder, result = bring(tmp_path / "b", "sdr", marked)
+    assert "raw_distances" in {item.code for item in result.warnings}
+    assert not {"constant_mixed", "constant_unknown"} & {item.code for item in result.warnings}
+    assert "constant_applied = true" in (folder / "project.toml").read_text("utf-8")
+    first = lines[places[0]][4:20].strip()
+    for old, new in zip(
+        rows(plain / "observations" / "main.csv"),
+        rows(folder / "observations" / "main.csv"),
+        strict=True,
+    ):
+        if old["kind"] == "slope_distance":
+            added = 0.0 if old["at"] == first else -0.03
+            assert float(new["value"]) - float(old["value"]) == pytest.approx(added, abs=1e-6)
+    marked[places[0] : places[0] + 1] = []  # nobody says of the first station
+    _, result = bring(tmp_path / "c", "sdr", marked)
+    assert "constant_mixed" in {item.code for item in result.warnings}

@@ -35,8 +35,6 @@ def spoilt(sights: list[Sight], kind: str) -> list[Sight]:
             s = replace(s, hi=s.hi + 0.1)
         elif (s.at, s.to) == ("104", "105") and kind == "ht":
             s = replace(s, ht=s.ht + 0.1)
-        elif (s.at, s.to) == ("104", "105") and kind == "name":
-            s = replace(s, to="102")
         elif s.at == "104" and kind == "feet":
             s = replace(s, sd=s.sd / FOOT)
         changed.append(s)
@@ -48,7 +46,6 @@ def spoilt(sights: list[Sight], kind: str) -> list[Sight]:
     [
         ("hi", "zenith angles at 104: height of the instrument?", 4),
         ("ht", "zenith angles 104-105: height of the target?", 2),
-        ("name", "everything sighted 104-102: another target?", 6),
         ("feet", "distances at 104: another unit or constant?", 4),
     ],
 )

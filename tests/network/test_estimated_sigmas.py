@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -71,6 +72,16 @@ def test_two_estimates_beside_a_known_part() -> None:
     found = bounds(tuple(Share(p, f) for p, f in parts), dof, 0.95)
     assert found == pytest.approx(np.quantile(ratio, [0.025, 0.975]), rel=6e-3)
     assert degrees([Share(p, f) for p, f in parts]) == pytest.approx(1 / (0.25 / 7 + 0.09 / 9))
+
+
+def test_what_is_assumed_may_be_smaller() -> None:
+    """Half of the variance assumed: the lower bound is that of the other half alone."""
+    known, assumed = (
+        bounds((Share(0.5, math.inf, rest_assumed=flag),), 10, 0.95) for flag in (False, True)
+    )
+    assert [10 * x**2 for x in known] == pytest.approx([3.247, 20.483], rel=2e-3)
+    assert [10 * x**2 for x in assumed] == pytest.approx([3.247 / 2, 20.483], rel=2e-3)
+    assert degrees((Share(0.5, math.inf),)) is None
 
 
 def test_single_tests_are_those_of_student() -> None:

@@ -111,3 +111,36 @@ def test_texts_are_no_formulas_and_no_tags() -> None:
     sheet = Sheet("x", "<b>", ("a",), (("=1+1",), ("-5.0",), ("<script>",)), ("@x",))
     assert sheet_csv(sheet).splitlines() == ["a", "'=1+1", "-5.0", "<script>", "", "'@x"]
     assert "<script>" not in sheet_html(sheet, project="&", software="s")
+
+
+def test_angles_of_directions_are_the_mean_of_their_sets(tmp_path: Path) -> None:
+    """From A to <C> in two turned sets: 90-00-04 and, over the zero, 90-00-08: 90-00-06."""
+    rows = (
+        *("direction,B,A,10-00-00,dms,1/1", "direction,B,<C>,100-00-04,dms,1/1"),
+        *("direction,B,A,299-59-58,dms,1/2", "direction,B,<C>,30-00-06,dms,1/2"),
+        "distance,B,<C>,80.0,m,",
+    )
+    folder = project(tmp_path / "p", MORE)
+    (folder / "observations").mkdir()
+    book = "kind,at,to,value,unit,set\n" + "\n".join(rows) + "\n"
+    (folder / "observations" / "main.csv").write_text(book, encoding="utf-8")
+    written = api.write_sheets(folder, tmp_path / "r.pdf")
+    table = next(Path(name) for name in written.paths if name.endswith(".csv"))
+    found = {row["target"]: row for row in csv.DictReader(table.read_text("utf-8").splitlines())}
+    assert (found["<C>"]["back"], found["<C>"]["sets"]) == ("A", "2")
+    angle = parse_angle(found["<C>"]["angle"], AngleUnit.DMS)
+    assert math.degrees(angle) * 3600 == pytest.approx(90 * 3600 + 6, abs=0.051)
+    assert found["A"]["angle"] == ""
+
+
+def test_traverses_whose_names_become_one_file_name_stay_two(tmp_path: Path) -> None:
+    second = MORE[MORE.index("[[traverse]]") :].replace('"main"', '"M a"')
+    third = second.replace('"M a"', '"m_a"')
+    folder = project(tmp_path / "p", MORE + second + third)
+    (folder / "observations").mkdir()
+    (folder / "observations" / "main.csv").write_text(BOOK, encoding="utf-8")
+    written = api.write_sheets(folder, tmp_path / "r.pdf")
+    tables = {Path(name).name for name in written.paths if name.endswith(".csv")}
+    assert {name.casefold() for name in tables} == {
+        *("r-traverse-main.csv", "r-traverse-m_a.csv", "r-traverse-m_a-2.csv")
+    }

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -133,3 +134,15 @@ def test_simulated_noise_has_the_stated_coefficients(
     assert main(["simulate", "noise", str(tmp_path / "m"), "--coefficient", "X=1", "N=x"]) == 2
     assert capsys.readouterr().err.count("coefficient") >= 2
     assert main(["simulate", "tilt", str(tmp_path / "m"), "--coefficient", "N=1"]) == 2
+
+
+def test_a_card_of_another_compass_is_told(tmp_path: Path) -> None:
+    own = api.simulate("compass", tmp_path / "a", seed=1, effects=["hard_iron=12"])
+    other = api.simulate("compass", tmp_path / "b", seed=2, effects=["hard_iron=12"])
+    card = tmp_path / "a.toml"
+    api.calibrate("compass", own.folder, sensor="compass", card=card)
+    card.write_text(re.sub(r"temperature_c = .*", "temperature_c = [-40, 60]", card.read_text()))
+    for made, told in ((own, False), (other, True)):
+        log = Path(made.folder) / "sensors/compass.csv"
+        result = api.compensate("compass", log, card=card, out=tmp_path / "out.csv")
+        assert ("field_differs" in [w.code for w in result.warnings]) is told

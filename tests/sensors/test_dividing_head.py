@@ -175,3 +175,43 @@ def test_the_sigma_of_linearity_is_the_scatter_of_repeated_tests(tmp_path: Path)
         values.append(item.value)
         sigmas.append(item.sigma)
     assert np.sqrt(np.mean(np.square(sigmas))) == pytest.approx(np.std(values, ddof=1), rel=0.4)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "what"),
+    [
+        ("static,1,", "static,4,", "set of the test static is unknown"),
+        ("reversal,,,1,", "reversal,,,180,", "flip of the test reversal is unknown"),
+        ("static,3,15,", "static,3,0.2618,", ""),
+        ("static,3,", "static,1,", ""),
+    ],
+)
+def test_sets_and_flips_that_mean_nothing_are_refused(
+    tmp_path: Path, old: str, new: str, what: str
+) -> None:
+    rows = [
+        f"static,{number},{half * k / 6:g},,{1000.0 * math.sin(math.radians(half * k / 6))}"
+        for number, half in ((1, 90), (3, 15))
+        for k in range(-6, 7)
+    ]
+    rows += ["reversal,,,0,20", "reversal,,,1,-20"]
+    path = tmp_path / "head.csv"
+    text = "\n".join(["test,set,angle_deg,flip,output", *rows]) + "\n"
+    path.write_text(text.replace(old, new))
+    units = LogOptions(units={"output": "LSB"})
+    if what:
+        with pytest.raises(SurveyError, match=what):
+            api.calibrate("tilt", path, log=units)
+    else:
+        assert api.calibrate("tilt", path, log=units).met
+
+
+def test_angles_in_radians_are_refused(tmp_path: Path) -> None:
+    angles = [math.radians(15.0 * k) for k in range(-6, 7)]
+    rows = [f"static,1,{angle},,{1000.0 * math.sin(angle)}" for angle in angles]
+    path = tmp_path / "head.csv"
+    path.write_text("\n".join(["test,set,angle_deg,flip,output", *rows]) + "\n")
+    with pytest.raises(SurveyError, match="not those of"):
+        api.calibrate("tilt", path, log=LogOptions(units={"output": "LSB"}))
+    units = LogOptions(units={"output": "LSB", "angle_deg": "rad"})
+    assert api.calibrate("tilt", path, log=units).value("sensitivity") == pytest.approx(1000.0)

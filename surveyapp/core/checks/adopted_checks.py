@@ -120,7 +120,7 @@ def _grid_problems(adopted: AdoptedEffect, effect: Effect, where: str) -> list[P
         ]
     return [
         Problem(
-            f"{name} of an adopted effect is of the wrong kind",
+            said("{name} of an adopted effect is of the wrong kind", name=name),
             where,
             str(value),
             "a name in quotes" if name in LABELLED else "a number",
@@ -162,7 +162,7 @@ def _value_problems(
                 "an adopted coefficient lies outside its plausible range",
                 where,
                 f"{value:g} {unit}",
-                f"{known.low:g} to {known.high:g} {known.unit}",
+                said("{low:g} to {high:g} {unit}", low=known.low, high=known.high, unit=known.unit),
                 HINT,
             )
         )

@@ -52,10 +52,15 @@ def refuse_wrong_faces(session: OrientationSession, sights: SightSet) -> None:
     apart = 180.0 - 2.0 * math.degrees(sights.collimation)
     raise SurveyError(
         Problem(
-            what=f"the two faces of the sights of {sights.target} do not lie half a circle apart",
-            where=f"session {session.id}, {session.book_path}",
-            found=f"{apart % 360.0:.4f} degrees apart",
-            expected=f"180 degrees, within {2.0 * math.degrees(MAX_COLLIMATION):g}",
+            what=said(
+                "the two faces of the sights of {target} do not lie half a circle apart",
+                target=sights.target,
+            ),
+            where=said("session {id}, {book_path}", id=session.id, book_path=session.book_path),
+            found=said("{value:.4f} degrees apart", value=apart % 360.0),
+            expected=said(
+                "180 degrees, within {value:g}", value=2.0 * math.degrees(MAX_COLLIMATION)
+            ),
             hint="A face (L, R) or a reading is typed wrongly: strike it and enter it anew.",
         )
     )
@@ -76,13 +81,18 @@ def refuse_other_sights(session: OrientationSession, sights: SightSet) -> None:
     apart = math.degrees(max(2.0 * sights.largest_residual, turned))
     hint = "A reading is typed wrongly, or another target was sighted: strike it and enter it anew."
     if not sights.faces_known:
-        hint = "Are they of two faces? Write L or R beside each sight. Else " + hint.lower()
+        hint = (
+            "Are they of two faces? Write L or R beside each sight. Else a reading is typed "
+            "wrongly, or another target was sighted: strike it and enter it anew."
+        )
     raise SurveyError(
         Problem(
-            what=f"the sights of {sights.target} do not belong to one direction",
-            where=f"session {session.id}, {session.book_path}",
-            found=f"{apart:.4f} degrees apart in one face",
-            expected=f"within {2.0 * math.degrees(MAX_COLLIMATION):g} degrees",
+            what=said(
+                "the sights of {target} do not belong to one direction", target=sights.target
+            ),
+            where=said("session {id}, {book_path}", id=session.id, book_path=session.book_path),
+            found=said("{apart:.4f} degrees apart in one face", apart=apart),
+            expected=said("within {value:g} degrees", value=2.0 * math.degrees(MAX_COLLIMATION)),
             hint=hint,
         )
     )
@@ -98,10 +108,12 @@ def refuse_one_place(geometry: Mapping[tuple[str, str], LineGeometry]) -> None:
     """
     problems = {
         (line.start.name, line.end.name): Problem(
-            what=f"{line.start.name} and {line.end.name} stand at one place",
-            where=f"session {session}",
-            found=f"{line.distance_m:.3f} m apart",
-            expected=f"at least {SHORTEST_LINE_M:g} m",
+            what=said(
+                "{name} and {name2} stand at one place", name=line.start.name, name2=line.end.name
+            ),
+            where=said("session {session}", session=session),
+            found=said("{distance_m:.3f} m apart", distance_m=line.distance_m),
+            expected=said("at least {shortest_line_m:g} m", shortest_line_m=SHORTEST_LINE_M),
             hint="Correct the coordinates of one of them, or leave them out.",
         )
         for (session, _), line in geometry.items()
@@ -135,9 +147,14 @@ def refuse_other_convergence(
         apart = wrap_pi(stated.value - line.convergence)
         if abs(apart) > max(SIGMAS_OF_CONVERGENCE * stated.sigma, LEAST_CONVERGENCE_LIMIT):
             problems[session.station] = Problem(
-                what=f"the convergence at {session.station} is given twice and differently",
-                where=f"session {session.id}",
-                found=f'stated {apart * RHO_ARCSEC:+.2f}" off the one of the grid',
+                what=said(
+                    "the convergence at {station} is given twice and differently",
+                    station=session.station,
+                ),
+                where=said("session {id}", id=session.id),
+                found=said(
+                    'stated {value:+.2f}" off the one of the grid', value=apart * RHO_ARCSEC
+                ),
                 expected="the same, or only one of the two",
                 hint="Is it the right crs, and has the stated convergence its right sign?",
             )

@@ -76,7 +76,13 @@ def refuse_unfit_grid(project: Project) -> None:
         if station.name in occupied
     }
     problems = [
-        Problem(check.text, f"station {check.where} in {grid.name}", "", check.clause, _QUESTION)
+        Problem(
+            check.text,
+            said("station {where} in {name}", where=check.where, name=grid.name),
+            "",
+            check.clause,
+            _QUESTION,
+        )
         for check in _place_checks(grid, positions)
         if check.passed is False
     ]

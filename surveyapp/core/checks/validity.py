@@ -104,7 +104,7 @@ def _latitude(orientation: Orientation, item: ReducedSession, card: InstrumentCa
     value = None if latitude is None else abs(math.degrees(latitude))
     text = said("missing: the latitude of the station")
     if value is not None:
-        text = said("latitude {value:.2f} degrees", value=value)
+        text = said("latitude {latitude:.2f} degrees", latitude=value)
     return [
         _check(
             "card.latitude",

@@ -80,7 +80,7 @@ def _zenith_squares(sets: Sequence[ReducedSet]) -> tuple[float, int]:
     total, dof = _within([item.index_spread for item in sets])
     for item in sets:
         for sight in item.sights:
-            if sight.zenith is not None and sight.faces == 2:
+            if sight.zenith is not None and sight.faces == 2 and sight.to not in item.unlike:
                 key = (item.name.rpartition("/")[0], item.at, sight.to)
                 found.setdefault(key, []).append(sight.zenith)
     between, more = _within(list(found.values()))
@@ -126,7 +126,7 @@ def _between_sets(sets: Sequence[ReducedSet]) -> tuple[float, int]:
     tables: dict[tuple[str, str, tuple[str, ...]], list[list[float]]] = {}
     for item in sets:
         rays = {s.to: s.direction for s in item.sights if s.faces == 2 and s.direction is not None}
-        if len(rays) < 2 or len(rays) < len(item.sights):
+        if len(rays) < 2 or len(rays) < len(item.sights) or item.unlike:
             continue
         names = tuple(sorted(rays))
         first = rays[names[0]]

@@ -11,11 +11,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final
 
+from surveyapp.core.fieldfile.face_pairs import unlike
 from surveyapp.core.fieldfile.rounds import Round, group
 from surveyapp.domain.fieldfile import FieldFile, Pointing, ReducedSet, ReducedSight
 from surveyapp.domain.project import ResultWarning
+from surveyapp.languages import joined, said, some
 from surveyapp_models.angles import wrap_pi, wrap_two_pi
 
 _FACES_DIFFER_M: Final = 0.010
@@ -25,7 +28,7 @@ _SHOWN: Final = 6
 
 def corrected_slope(pointing: Pointing, *, corrected: bool) -> float | None:
     """Slope distance with prism constant and ppm where the file stores it raw [m]."""
-    if pointing.sd is None or not corrected:
+    if pointing.sd is None or not (corrected or pointing.raw):
         return pointing.sd
     ppm = pointing.ppm or 0.0
     return pointing.sd + (pointing.prism_m or 0.0) + pointing.sd * ppm * 1e-6
@@ -75,21 +78,32 @@ def _by_target(made: Round) -> list[list[Pointing]]:
     return list(targets.values())
 
 
-def _reduced(made: Round, *, corrected: bool) -> ReducedSet:
-    targets = _by_target(made)
-    collimations, indices, gaps = [], [], []
+Pair = tuple[str, int, float | None, float | None]
+"""Target, line, collimation in the horizon and index [rad] of a target with both faces."""
+
+
+def _pairs(targets: Sequence[Sequence[Pointing]]) -> list[tuple[Pair, Pointing, Pointing]]:
+    found = []
     for sights in targets:
         left = next((p for p in sights if p.face == "L"), None)
         right = next((p for p in sights if p.face == "R"), None)
         if left is None or right is None:
             continue
+        collimation = index = None
         if left.hz is not None and right.hz is not None:
-            collimations.append(0.5 * wrap_pi(left.hz - right.hz + math.pi))
+            collimation = 0.5 * wrap_pi(left.hz - right.hz + math.pi)
         if left.v is not None and right.v is not None:
-            indices.append(0.5 * wrap_pi(left.v + right.v))
-        if left.sd is not None and right.sd is not None:
-            gaps.append(0.5 * (left.sd - right.sd))
-    return ReducedSet(
+            index = 0.5 * wrap_pi(left.v + right.v)
+        found.append(((left.to, left.line, collimation, index), left, right))
+    return found
+
+
+def _reduced(made: Round, *, corrected: bool) -> tuple[ReducedSet, list[Pair]]:
+    targets = _by_target(made)
+    pairs = _pairs(targets)
+    collimations = [pair[2] for pair, _, _ in pairs if pair[2] is not None]
+    indices = [pair[3] for pair, _, _ in pairs if pair[3] is not None]
+    reduced = ReducedSet(
         name=made.name,
         at=made.at,
         sights=tuple(_sight(sights, corrected=corrected) for sights in targets),
@@ -97,8 +111,53 @@ def _reduced(made: Round, *, corrected: bool) -> ReducedSet:
         index=_mean(indices),
         spread=tuple(collimations),
         index_spread=tuple(indices),
-        length_gaps=tuple(gaps),
+        length_gaps=tuple(
+            0.5 * (left.sd - right.sd)
+            for _, left, right in pairs
+            if left.sd is not None and right.sd is not None
+        ),
     )
+    level = [
+        (to, line, None if c is None else c * math.sin(left.v or 0.5 * math.pi), i)
+        for (to, line, c, i), left, _ in pairs
+    ]
+    return reduced, level
+
+
+def _without_unlike(
+    made: Sequence[tuple[ReducedSet, list[Pair]]],
+) -> tuple[tuple[ReducedSet, ...], list[str]]:
+    """Sets without the spread of pairs that belong to no others, and their places in words."""
+    sets = [item for item, _ in made]
+    pairs = [(number, pair) for number, (_, found) in enumerate(made) for pair in found]
+    gone: dict[int, set[str]] = {}
+    places = []
+    for column, what in ((2, "collimation"), (3, "index")):
+        known = [(number, pair, x) for number, pair in pairs if (x := pair[column]) is not None]
+        values = [float(x) for _, _, x in known]
+        for place in unlike(values):
+            number, pair, _ = known[place]
+            usual = math.degrees(math.fsum(values) / len(values)) * 3600.0
+            gone.setdefault(number, set()).add(pair[0])
+            places.append(
+                f"{sets[number].at}-{pair[0]} (line {pair[1]}): {what} "
+                f'{math.degrees(values[place]) * 3600.0:+.1f}" (mean of all {usual:+.1f}")'
+            )
+    for number, names in gone.items():
+        sound = [pair for pair in made[number][1] if pair[0] not in names]
+        kept = {pair[0] for pair in sound}
+        item = sets[number]
+        order = [pair[0] for pair in made[number][1] if pair[2] is not None]
+        second = [pair[0] for pair in made[number][1] if pair[3] is not None]
+        sets[number] = replace(
+            item,
+            spread=tuple(x for x, to in zip(item.spread, order, strict=True) if to in kept),
+            index_spread=tuple(
+                x for x, to in zip(item.index_spread, second, strict=True) if to in kept
+            ),
+            unlike=frozenset(names),
+        )
+    return tuple(sets), places
 
 
 def reduce_file(file: FieldFile) -> tuple[tuple[ReducedSet, ...], tuple[ResultWarning, ...]]:
@@ -112,21 +171,35 @@ def reduce_file(file: FieldFile) -> tuple[tuple[ReducedSet, ...], tuple[ResultWa
     -------
     sets, warnings
         ``one_face``, ``unequal_targets``, ``repeated_reading``, ``faces_differ``,
-        ``heights_unknown`` and ``horizontal_only``, each once with the lines it is about.
+        ``face_pair_differs``, ``heights_unknown`` and ``horizontal_only``, each once with the
+        lines it is about.
     """
     grouped = group(file.pointings)
-    sets = tuple(_reduced(made, corrected=file.corrected) for made in grouped.rounds)
+    sets, slips = _without_unlike(
+        [_reduced(made, corrected=file.corrected) for made in grouped.rounds]
+    )
     warnings = [
         *_face_warnings(grouped.rounds),
         *_listed(
             "repeated_reading",
-            "a target was read again in the same face: it counts for the next set",
-            [f"line {p.line} ({p.at}-{p.to})" for p in grouped.repeated],
+            said("a target was read again in the same face: it counts for the next set"),
+            [
+                said("line {line} ({at}-{to})", line=p.line, at=p.at, to=p.to)
+                for p in grouped.repeated
+            ],
         ),
         *_listed(
             "faces_differ",
-            f"distances of the two faces differ by more than {_FACES_DIFFER_M * 1000:.0f} mm",
+            said(
+                "distances of the two faces differ by more than {most:.0f} mm",
+                most=_FACES_DIFFER_M * 1000.0,
+            ),
             _unequal_distances(grouped.rounds),
+        ),
+        *_listed(
+            "face_pair_differs",
+            "the faces of a target disagree otherwise than all others: was one misread?",
+            slips,
         ),
         *_length_warnings(sets),
     ]
@@ -136,8 +209,7 @@ def reduce_file(file: FieldFile) -> tuple[tuple[ReducedSet, ...], tuple[ResultWa
 def _listed(code: str, text: str, places: Sequence[str]) -> list[ResultWarning]:
     if not places:
         return []
-    more = f" and {len(places) - _SHOWN} more" if len(places) > _SHOWN else ""
-    return [ResultWarning(code, f"{text}: {', '.join(places[:_SHOWN])}{more}")]
+    return [ResultWarning(code, joined(": ", (text, some(places, _SHOWN))))]
 
 
 def _face_warnings(rounds: Sequence[Round]) -> list[ResultWarning]:
@@ -152,8 +224,10 @@ def _face_warnings(rounds: Sequence[Round]) -> list[ResultWarning]:
                 single.append(place)
                 unequal += [place] if both else []
     return [
-        *_listed("one_face", "observed in one face only: collimation and index stay in", single),
-        *_listed("unequal_targets", "the faces of a set hold unequal targets", unequal),
+        *_listed(
+            "one_face", said("observed in one face only: collimation and index stay in"), single
+        ),
+        *_listed("unequal_targets", said("the faces of a set hold unequal targets"), unequal),
     ]
 
 
@@ -177,10 +251,10 @@ def _length_warnings(sets: Sequence[ReducedSet]) -> list[ResultWarning]:
         if t.zenith is not None and (t.hi is None or t.ht is None)
     ]
     return [
-        *_listed("horizontal_only", "only horizontal distances are stored", level),
+        *_listed("horizontal_only", said("only horizontal distances are stored"), level),
         *_listed(
             "heights_unknown",
-            "no height of instrument or target in the file: it counts as 0 in the book",
+            said("no height of instrument or target in the file: it counts as 0 in the book"),
             list(dict.fromkeys(blind)),
         ),
     ]

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from surveyapp.domain.project import Deflection
 from surveyapp.domain.results import Reference
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.angles import wrap_pi
 
 MAX_LATITUDE_DEG = 75.0
@@ -108,7 +109,7 @@ def latitude_problem(latitude: float, where: str) -> Problem | None:
     return Problem(
         what="a suspended gyro is not used beyond latitude 75 degrees",
         where=where,
-        found=f"latitude {math.degrees(latitude):.4f} degrees",
+        found=said("latitude {latitude:.4f} degrees", latitude=math.degrees(latitude)),
         expected="at most 75 degrees north or south",
         hint="The meridian-seeking moment is below 26 % of that at the equator there; "
         "check the coordinates, or set latitude_max_deg in the instrument's [range].",

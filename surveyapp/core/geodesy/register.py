@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final
 from surveyapp.core.geodesy.grid import Grid
 from surveyapp.core.geodesy.plane import Plane, axes_of
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 
 if TYPE_CHECKING:
     from pyproj import CRS
@@ -46,7 +47,9 @@ def open_grid(text: str) -> Grid:
     named = text if text == horizontal.name else f"{' '.join(text.split())} ({horizontal.name})"
     geod = horizontal.get_geod()
     if not horizontal.is_projected or geod is None:
-        raise crs_problem(f"a {horizontal.type_name} has no meridian convergence", named)
+        raise crs_problem(
+            said("a {type_name} has no meridian convergence", type_name=horizontal.type_name), named
+        )
     plane = _plane(horizontal, named)
     directions = [axis.direction.lower() for axis in horizontal.axis_info[:2]]
     method = horizontal.coordinate_operation

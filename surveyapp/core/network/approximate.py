@@ -19,6 +19,7 @@ from surveyapp.core.network.spheres import on_spheres
 from surveyapp.domain.observations import Observation, ObservationKind
 from surveyapp.domain.traverse import Network, NetworkPoint, Status
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.angles import wrap_pi_array
 from surveyapp_models.arrays import Floats
 
@@ -329,8 +330,13 @@ def _refuse_unplaced(network: Network, model: Model, values: Floats) -> None:
         [
             Problem(
                 "No approximate coordinates can be found: nothing determines this point",
-                f"point {name}",
-                f"unknown {', '.join(components)}; {placed} of {len(network.points)} points placed",
+                said("point {name}", name=name),
+                said(
+                    "unknown {names}; {placed} of {size} points placed",
+                    names=", ".join(components),
+                    placed=placed,
+                    size=len(network.points),
+                ),
                 "observations that determine it",
                 hint,
             )

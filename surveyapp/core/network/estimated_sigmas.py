@@ -22,18 +22,22 @@ import numpy as np
 from surveyapp.domain.observations import Observation
 from surveyapp_models.arrays import Floats
 
-_GRID: Final = 400
-"""Quantiles that stand for one distribution; bounds of F agree with its table within 0.3 %."""
+_GRID: Final = 160
+"""Quantiles that stand for one distribution; bounds agree with a table of F within 0.4 %."""
 _TRACE: Final = 1e-6
 """Share below which an estimate plays no part."""
 
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """Part of one estimate in the redundancy, and the degrees of freedom behind it."""
+    """Part of one estimate in the redundancy, and the degrees of freedom behind it.
+
+    ``rest_assumed``: what no reading holds (centring, heights) is a mere assumption.
+    """
 
     part: float
     dof: float
+    rest_assumed: bool = False
 
 
 def shares(observations: Sequence[Observation], control: Floats, dof: int) -> tuple[Share, ...]:
@@ -57,9 +61,10 @@ def shares(observations: Sequence[Observation], control: Floats, dof: int) -> tu
         return ()
     for obs, weight in zip(observations, np.nan_to_num(control).tolist(), strict=True):
         if obs.estimated is not None:
-            old = found.get(obs.estimated.name, Share(0.0, obs.estimated.dof))
-            part = old.part + weight * obs.estimated.variance / dof
-            found[obs.estimated.name] = Share(part, obs.estimated.dof)
+            own = obs.estimated
+            old = found.get(own.name, Share(0.0, own.dof))
+            part = old.part + weight * own.variance / dof
+            found[own.name] = Share(part, own.dof, own.rest_assumed)
     return tuple(item for item in found.values() if item.part > _TRACE)
 
 
@@ -72,6 +77,8 @@ def degrees(known: Sequence[Share]) -> float | None:
 def bounds(known: Sequence[Share], dof: int, probability: float) -> tuple[float, float]:
     """Two-sided bounds of the ratio of a-posteriori and a-priori sigma0.
 
+    The lower one without what is a mere assumption: that there is less of it is no fault.
+
     Parameters
     ----------
     known : sequence of Share
@@ -80,21 +87,25 @@ def bounds(known: Sequence[Share], dof: int, probability: float) -> tuple[float,
         Redundancy of the network.
     probability : float
     """
-    inflation = _inflation(known)
     alpha = 1.0 - probability
-    return tuple(  # type: ignore[return-value]
-        math.sqrt(_quantile(inflation, dof, p)) for p in (alpha / 2.0, 1.0 - alpha / 2.0)
+    rest = max(1.0 - sum(item.part for item in known), 0.0)
+    least = 0.0 if any(item.rest_assumed for item in known) else rest
+    return (
+        math.sqrt(_quantile(_inflation(known, least), dof, alpha / 2.0)),
+        math.sqrt(_quantile(_inflation(known, rest), dof, 1.0 - alpha / 2.0)),
     )
 
 
-def _inflation(known: Sequence[Share]) -> Floats:
+def _inflation(known: Sequence[Share], rest: float) -> Floats:
     """Equally likely values of (true variance) / (stated variance) of the whole network."""
     from scipy.special import chdtri
 
     tails = (np.arange(_GRID) + 0.5) / _GRID
-    rest = max(1.0 - sum(item.part for item in known), 0.0)
     found = np.full(1, rest)
     for item in known:
+        if math.isinf(item.dof):
+            found = found + item.part
+            continue
         own = item.part * item.dof / chdtri(item.dof, tails)
         sums = np.sort(np.add.outer(found, own), axis=None)
         found = sums.reshape(_GRID, -1).mean(axis=1)

@@ -17,6 +17,7 @@ from surveyapp.core.network.angle_pairs import with_orientations
 from surveyapp.core.network.model import Model
 from surveyapp.core.network.observation_equations import equations, linearised, misclosures
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 MOST_ITERATIONS = 60
@@ -165,8 +166,8 @@ def refuse(network_points: tuple[str, ...], failure: NotConverged) -> UnsettledE
     return UnsettledError(
         Problem(
             "The adjustment does not converge",
-            f"point {name}",
-            f"a last step of {step[worst]:.3g} m",
+            said("point {name}", name=name),
+            said("a last step of {step:.3g} m", step=step[worst]),
             "steps that shrink",
             "Look for a gross error or a mistyped point near this point, in coordinates or "
             "observations; an ill-determined point behaves so too.",

@@ -30,8 +30,9 @@ MOST_SHOWN: Final = 8
 MOST_POINTS: Final = 500
 """In larger networks each trial takes as long as the adjustment: there suspects are listed only."""
 _EFFORT: Final = 4000
-"""Points times trials: an error of degrees throws its shadow so far that a small network is tried
-with every observation."""
+_MOST_TRIALS: Final = 30
+"""At most so many, and points times trials within the effort: an error of degrees throws its shadow
+far, so that a small network is tried with more than the largest residuals."""
 _MOST_NAMED: Final = 4
 _MOST_UNSETTLED: Final = 80
 """So many trials of a network that does not converge, each of which may not converge either."""
@@ -63,7 +64,7 @@ def with_removals(network: Network, result: AdjustmentResult) -> AdjustmentResul
     gone = {item.place for item in result.left_out}
     tried = [
         removal
-        for item in tested[: max(MOST_SHOWN, _EFFORT // len(network.points))]
+        for item in tested[: _trials(network)]
         if (removal := _removal(network, gone, _Cause.of(network, item))) is not None
     ]
     found = [removal for removal, _ in tried]
@@ -71,6 +72,10 @@ def with_removals(network: Network, result: AdjustmentResult) -> AdjustmentResul
     if not _fits(result.global_test) and not any(fits for _, fits in tried):
         found = [*_common_causes(network, gone, tested), *found]
     return replace(result, removals=tuple(found[:MOST_SHOWN]))
+
+
+def _trials(network: Network) -> int:
+    return min(max(MOST_SHOWN, _EFFORT // len(network.points)), _MOST_TRIALS)
 
 
 def _fits(test: GlobalTest) -> bool:
@@ -127,7 +132,7 @@ def _common_causes(
             groups.setdefault(text, []).append(item)
     several = [(text, items) for text, items in groups.items() if len(items) > 1]
     found = []
-    for text, items in several[: max(MOST_SHOWN, _EFFORT // len(network.points))]:
+    for text, items in several[: _trials(network)]:
         places = frozenset(item.place for item in items)
         largest = items[0]
         cause = _Cause(places, text, largest.standardized or 0.0, largest.place)

@@ -77,12 +77,13 @@ def row_sigma(row: TraverseRow, header: Traverse, lengths: Lengths) -> float | N
 
 def estimated_part(row: TraverseRow, header: Traverse) -> EstimatedSigma | None:
     """What of a row's variance the header's sigma brings, where that one was estimated."""
-    if row.sigma is not None or not header.sigma_dof:
+    if row.sigma is not None or not (header.sigma_dof or header.centring_assumed):
         return None
     known = dict(header.sigma_dof)
     if row.kind in _LENGTHS:
         name, sigma = "distance", header.sigma_mm
-        sigma = None if sigma is None else sigma * MM
+        ppm = (header.sigma_ppm or 0.0) * 1e-6 * (row.value or 0.0)
+        sigma = None if sigma is None else math.hypot(sigma * MM, ppm)
     elif row.kind is K.ZENITH and header.sigma_zenith is not None:
         name, sigma = "zenith", header.sigma_zenith
     else:
@@ -91,6 +92,7 @@ def estimated_part(row: TraverseRow, header: Traverse) -> EstimatedSigma | None:
             sigma /= math.sqrt(2.0)
     if name not in known and name != "distance":
         name = "circles"
-    if sigma is None or not sigma or name not in known:
+    if not sigma or not (name in known or header.centring_assumed):
         return None
-    return EstimatedSigma(f"{header.name}: {name}", sigma**2, known[name])
+    dof = known.get(name, math.inf)
+    return EstimatedSigma(f"{header.name}: {name}", sigma**2, dof, header.centring_assumed)

@@ -51,10 +51,7 @@ def _observation(
             estimated=estimated_part(row, header),
         )
     except SurveyError as refused:
-        problems += [
-            Problem(p.what, f"{header.book}, {p.where}", p.found, p.expected, p.hint)
-            for p in refused.problems
-        ]
+        problems += [problem.within(header.book) for problem in refused.problems]
         return None
 
 
@@ -158,7 +155,7 @@ def _collect(
 def _not_oriented(row: TraverseRow, traverse: Traverse, lines: Sequence[OrientedLine]) -> Problem:
     return Problem(
         "a gyro side that no session has oriented",
-        f"{traverse.book}, line {row.line}",
+        said("{book}, line {line}", book=traverse.book, line=row.line),
         f"{row.at}-{row.to}",
         ", ".join(f"{x.station}-{x.target}" for x in lines) or "an oriented line",
         "Its station and target must be those of survey sessions with a sight.",

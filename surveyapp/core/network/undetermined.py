@@ -9,6 +9,7 @@ from surveyapp.core.network.gaussnewton import Converged
 from surveyapp.core.network.model import Model
 from surveyapp.domain.traverse import Network, Status
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 
 MOST_NAMED = 20
 
@@ -52,10 +53,13 @@ def refuse_undetermined(network: Network, state: Converged) -> SurveyError:
     for unknown in undetermined.tolist():
         owner, name = unknown_name(network, model, unknown)
         owners.setdefault(owner, []).append(name)
-    free_datum = not any(
+    names = {"plane": "en", "height": "h"}
+    lacking = {key for owner in owners.values() for key in names if set(owner) & set(names[key])}
+    free_datum = bool(lacking) and not any(
         status in (Status.FIXED, Status.CONSTRAINED)
         for point in network.points
-        for _, _, status in point.components()
+        for part, _, status in point.components()
+        if any(part in names[key] for key in lacking)
     )
     parts = _parts(network, model)
     problems = [_reason(state.solved.defect, undetermined, model, parts, free_datum=free_datum)]
@@ -71,7 +75,7 @@ def refuse_undetermined(network: Network, state: Converged) -> SurveyError:
         for owner, names in named[:MOST_NAMED]
     ]
     if len(named) > MOST_NAMED:
-        found = f"{len(named) - MOST_NAMED} further points or stations"
+        found = said("{more} further points or stations", more=len(named) - MOST_NAMED)
         problems.append(Problem("Not determined either", "network", found, "", ""))
     return SurveyError(problems)
 
@@ -79,16 +83,26 @@ def refuse_undetermined(network: Network, state: Converged) -> SurveyError:
 def _reason(
     defect: int, undetermined: Ints, model: Model, parts: list[set[str]], *, free_datum: bool
 ) -> Problem:
-    found = f"rank defect {defect}, {len(undetermined)} unknowns not determined"
+    found = said(
+        "rank defect {defect}, {size} unknowns not determined",
+        defect=defect,
+        size=len(undetermined),
+    )
     coordinates = model.slot_of < model.coordinate_slots
     touched = np.isin(np.flatnonzero(coordinates), undetermined)
     if free_datum:
-        hint = "Fix points or an azimuth, or constrain points for a free network."
+        hint = (
+            "Fix points or an azimuth, or constrain points for a free network: of a project "
+            "coordinates and fixed = true in [[station]], of an import --fix NAME."
+        )
         return Problem("The network has no datum", "network", found, "fixed points", hint)
     joined = [part for part in parts if len(part) > 1]
     if len(joined) > 1:
         small = ", ".join(sorted(joined[-1])[:8])
-        hint = f"One part is {small}. Join it to the rest, or give it its own fixed points."
+        hint = said(
+            "One part is {small}. Join it to the rest, or give it its own fixed points.",
+            small=small,
+        )
         return Problem("The network is not connected", "network", found, "one network", hint)
     if touched.all():
         hint = "Too few fixed coordinates, or no azimuth, for this kind of observations."

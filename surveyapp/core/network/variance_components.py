@@ -15,6 +15,7 @@ from surveyapp.core.network.adjustment import adjust
 from surveyapp.domain.adjustment import AdjustedObservation, AdjustmentResult
 from surveyapp.domain.traverse import Network
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 
 MOST_ITERATIONS = 60
 TOLERANCE = 1e-4
@@ -175,8 +176,8 @@ def _unsettled(group: str, factor: float) -> SurveyError:
     return SurveyError(
         Problem(
             "The variance components do not settle",
-            f"group {group}",
-            f"a factor of {factor:.3g}",
+            said("group {group}", group=group),
+            said("a factor of {factor:.3g}", factor=factor),
             "factors near 1",
             "Look for gross errors first; join groups with few observations.",
         )

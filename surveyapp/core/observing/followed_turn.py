@@ -17,6 +17,7 @@ import numpy as np
 
 from surveyapp.domain.instrument_reading import FollowedTurn
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.angles import wrap_pi_array, wrap_two_pi
 from surveyapp_models.arrays import Floats
 
@@ -59,7 +60,7 @@ def followed_turn(seconds: Sequence[float], readings: Sequence[float]) -> Follow
     """
     t, y = np.asarray(seconds, dtype=np.float64), np.asarray(readings, dtype=np.float64)
     if len(t) < LEAST:
-        raise _no_turn("too few readings", f"{len(t)}", f"{LEAST} or more")
+        raise _no_turn("too few readings", f"{len(t)}", said("{least} or more", least=LEAST))
     middle = 0.5 * (t[0] + t[-1])
     scale = max(0.5 * (t[-1] - t[0]), 1e-9)
     x = (t - middle) / scale

@@ -15,6 +15,7 @@ from surveyapp.core.orientation.campaign_columns import BY_NAME, COLUMNS, Name, 
 from surveyapp.core.swing.session import ReducedSession
 from surveyapp.domain.station_line import StationLine
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import either, said
 from surveyapp_models.arrays import Floats
 
 
@@ -49,7 +50,7 @@ class Circumstances:
                 hint = nearest_names(name, BY_NAME)
                 problems.append(Problem("no such column of a campaign", name, name, "", hint))
             elif value is not None and isinstance(value, str | StationLine) != column.named:
-                expected = "a name" if column.named else f"a number [{column.unit}]"
+                expected = "a name" if column.named else said("a number [{unit}]", unit=column.unit)
                 problems.append(
                     Problem("a column of a campaign has another kind", name, str(value), expected)
                 )
@@ -143,7 +144,7 @@ def name_of(text: str, names: Iterable[Name]) -> Name:
         if str(name) == text or (isinstance(name, StationLine) and name.unmistakable == text)
     ]
     if len(found) > 1:
-        expected = " or ".join(x.unmistakable for x in found if isinstance(x, StationLine))
+        expected = either(x.unmistakable for x in found if isinstance(x, StationLine))
         hint = "Write the station and the target with a comma between them."
         raise SurveyError(Problem("this name means several lines", "line", text, expected, hint))
     return found[0] if found else text

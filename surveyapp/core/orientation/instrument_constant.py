@@ -313,7 +313,9 @@ def _unknown_choice(constant: InstrumentConstant, choice: ConstantChoice, where:
         known.append("known")
     return Problem(
         what="the constant asked for does not exist",
-        where=f"{where}, instrument {constant.instrument.id}, constant_choice",
+        where=said(
+            "{where}, instrument {id}, constant_choice", where=where, id=constant.instrument.id
+        ),
         found=str(choice),
         expected=", ".join(["predicted", "pooled", "interpolated", "nearest", *known]),
         hint="Name a line with a calibration session, written station-target.",

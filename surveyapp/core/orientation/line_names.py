@@ -7,6 +7,7 @@ from collections.abc import Collection, Sequence
 from surveyapp.domain.results import LineResult
 from surveyapp.domain.station_line import StationLine, meanings
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import either
 
 
 def resolve_line(
@@ -45,7 +46,7 @@ def resolve_line(
                 what="this name means several lines",
                 where="line",
                 found=shown,
-                expected=" or ".join(item.unmistakable for item in found),
+                expected=either(item.unmistakable for item in found),
                 hint="Write the station and the target with a comma between them.",
             )
         )

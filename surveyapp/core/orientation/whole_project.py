@@ -343,9 +343,11 @@ def _latitude_warnings(
         if problem is None:
             problem = Problem(
                 what="the station lies beyond the latitude for which the instrument is made",
-                where=f"session {session.id}, station {session.station}",
-                found=f"latitude {math.degrees(latitude):.4f} degrees",
-                expected=f"at most {limit:g} degrees (the instrument's [range])",
+                where=said(
+                    "session {id}, station {station}", id=session.id, station=session.station
+                ),
+                found=said("latitude {latitude:.4f} degrees", latitude=math.degrees(latitude)),
+                expected=said("at most {limit:g} degrees (the instrument's [range])", limit=limit),
                 hint="Check the coordinates or the instrument's latitude_max_deg.",
             )
         raise SurveyError(problem)

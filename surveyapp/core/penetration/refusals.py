@@ -11,6 +11,7 @@ from surveyapp.core.penetration.route import REACHED_M, ahead_and_beside
 from surveyapp.domain.penetration import Heading, Penetration
 from surveyapp.domain.project import ResultWarning, Station
 from surveyapp.errors import Problem, nearest_names
+from surveyapp.languages import said
 
 WHERE = "project.toml, [penetration]"
 ACROSS = math.radians(60.0)
@@ -72,7 +73,11 @@ def _headings(plan: Penetration) -> list[Problem]:
     if len(plan.headings) != plan.case.headings:
         problems.append(
             Problem(
-                f"the case {plan.case} needs {plan.case.headings} [[penetration.heading]]",
+                said(
+                    "the case {case} needs {headings} [[penetration.heading]]",
+                    case=plan.case,
+                    headings=plan.case.headings,
+                ),
                 WHERE,
                 str(len(plan.headings)),
                 str(plan.case.headings),
@@ -117,8 +122,8 @@ def _route(heading: Heading, known: Known) -> list[Problem]:
             Problem(
                 "wall has another length than the route",
                 where,
-                f"{len(heading.wall)} entries",
-                f"{len(heading.route)} entries, one per station",
+                said("{size} entries", size=len(heading.wall)),
+                said("{size} entries, one per station", size=len(heading.route)),
             )
         )
     if placed(heading, stations):
@@ -157,12 +162,22 @@ def _meeting(plan: Penetration, heading: Heading, stations: Mapping[str, Station
     ahead, beside = ahead_and_beside(gap, azimuth)
     if math.hypot(*gap) <= REACHED_M or (ahead > 0.0 and abs(beside) <= BESIDE_M):
         return []
-    found = (
-        f"{end.name} ends {math.hypot(*gap):.2f} m away, the side passes {abs(beside):.2f} m beside"
+    found = said(
+        "{name} ends {value:.2f} m away, the side passes {beside:.2f} m beside",
+        name=end.name,
+        value=math.hypot(*gap),
+        beside=abs(beside),
     )
     if ahead <= 0.0:
-        found = f"{end.name} ends {math.hypot(*gap):.2f} m away, the meeting point lies behind"
-    expected = f"the last station within {REACHED_M:g} m, or its side pointing at the meeting point"
+        found = said(
+            "{name} ends {value:.2f} m away, the meeting point lies behind",
+            name=end.name,
+            value=math.hypot(*gap),
+        )
+    expected = said(
+        "the last station within {reached_m:g} m, or its side pointing at the meeting point",
+        reached_m=REACHED_M,
+    )
     return [Problem("the meeting point is not reached", place(heading), found, expected)]
 
 
@@ -173,9 +188,11 @@ def carried(plan: Penetration, stations: Mapping[str, Station]) -> list[ResultWa
         _, end = last_side(heading, stations)
         gap = math.hypot(plan.meeting.e - (end.e or 0.0), plan.meeting.n - (end.n or 0.0))
         if gap > REACHED_M:
-            text = (
-                f"heading {heading.name} ends {gap:.1f} m before the meeting point: its last side "
-                "is carried on"
+            text = said(
+                "heading {name} ends {gap:.1f} m before the meeting point: its last "
+                "side is carried on",
+                name=heading.name,
+                gap=gap,
             )
             warnings.append(ResultWarning("carried_to_meeting", text))
     return warnings
@@ -191,10 +208,10 @@ def _names(heading: Heading, known: Known) -> list[Problem]:
         if name and name not in names and (what == "traverse" or names):
             problems.append(
                 Problem(
-                    f"there is no such {what}",
+                    said("there is no such {what}", what=what),
                     place(heading),
                     name,
-                    f"a [[{what}]] of the project",
+                    said("a [[{what}]] of the project", what=what),
                     nearest_names(name, names),
                 )
             )
@@ -204,7 +221,7 @@ def _names(heading: Heading, known: Known) -> list[Problem]:
 def _gyro(plan: Penetration, known: Known) -> list[Problem]:
     problems = []
     for side in plan.gyro:
-        where, shown = f"{WHERE}, gyro", f"{side.at}-{side.to}"
+        where, shown = said("{where}, gyro", where=WHERE), f"{side.at}-{side.to}"
         unknown = [name for name in (side.at, side.to) if name and name not in known.stations]
         for name in unknown:
             hint = nearest_names(name, known.stations)
@@ -221,7 +238,7 @@ def _deflection(plan: Penetration, known: Known) -> list[Problem]:
     field = plan.deflection
     if field is None:
         return []
-    where, problems = f"{WHERE}, deflection", []
+    where, problems = said("{where}, deflection", where=WHERE), []
     if not math.isfinite(field.latitude):
         problems.append(
             Problem("the latitude is not known", where, "", "latitude_deg, or a crs of the project")

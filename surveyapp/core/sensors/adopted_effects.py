@@ -15,6 +15,7 @@ import numpy as np
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import Array, SensorLog
+from surveyapp.languages import said
 from surveyapp_models.effects import of_subject
 
 AXES = ("along", "across")
@@ -36,7 +37,9 @@ def without_events(
     gross: list[int] = []
     for effect in effects:
         if effect.data_sha256 and log.sha256 and effect.data_sha256 != log.sha256:
-            text = f"{effect.id} was adopted for another state of the log: it is not taken out"
+            text = said(
+                "{id} was adopted for another state of the log: it is not taken out", id=effect.id
+            )
             told.append(ResultWarning("adopted_not_applied", text))
             continue
         if effect.id == "gross_error":
@@ -44,14 +47,16 @@ def without_events(
             continue
         columns = _corrected(log, effect)
         if columns is None:
-            text = f"{effect.id} belongs to the sensor and is left to its calibration"
+            text = said("{id} belongs to the sensor and is left to its calibration", id=effect.id)
             told.append(ResultWarning("adopted_not_applied", text))
             continue
         log = replace(log, columns={**log.columns, **columns})
-        told.append(ResultWarning("adopted_applied", f"{effect.id} as adopted is taken out"))
+        told.append(
+            ResultWarning("adopted_applied", said("{id} as adopted is taken out", id=effect.id))
+        )
     if gross:
         log = _without_rows(log, gross)
-        text = f"{len(gross)} rows adopted as gross errors are left out"
+        text = said("{size} rows adopted as gross errors are left out", size=len(gross))
         told.append(ResultWarning("adopted_applied", text))
     return log, tuple(told)
 

@@ -16,6 +16,7 @@ import numpy as np
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 ROWS: Final = 2000
@@ -27,8 +28,9 @@ BETTER: Final = 3.0
 NOTICED: Final = 0.02
 """What is left, as a share of the field, below which the axes are not doubted: 1 degree of dip."""
 
-LOOSE: Final = 0.25
-"""Share above which no arrangement fits: soft iron of 15 % leaves up to .15, chance .58."""
+LOOSE: Final = 0.2
+"""Share of the whole field above which no arrangement fits: soft iron of 15 % leaves up to .15,
+forces by chance .58."""
 
 MIRRORED: Final = 3.0
 """A shown heading that runs against the known one: the resultant of their sum over that of their
@@ -66,11 +68,13 @@ def check_axes(log: SensorLog) -> tuple[ResultWarning, ...]:
     scale = float(np.median(np.linalg.norm(field - field.mean(axis=0), axis=1)))
     if as_given > NOTICED * scale and as_given > BETTER * left[best]:
         raise SurveyError(_exchanged(log.path, (as_given, left[best]), best))
-    if as_given > LOOSE * scale:
-        text = (
+    size_of_field = float(np.median(np.linalg.norm(field, axis=1)))
+    if as_given > LOOSE * size_of_field:
+        text = said(
             "the specific force does not belong to the field: the dip scatters by "
-            f"{np.degrees(np.arctan(as_given / scale)):.1f} degrees; was the compass moved "
-            "jerkily, or are the axes those of another sensor?"
+            "{value:.1f} degrees; was the compass moved jerkily, or are the axes "
+            "those of another sensor?",
+            value=np.degrees(np.arctan(as_given / scale)),
         )
         return (ResultWarning("acc_does_not_fit", text),)
     return ()
@@ -116,11 +120,11 @@ def refuse_mirrored(known: Floats, shown: Floats, where: str) -> None:
     if against > 0.7 and against > MIRRORED * along:
         raise SurveyError(
             Problem(
-                "the shown heading runs against the known one",
+                said("the shown heading runs against the known one"),
                 where,
-                "x and y are exchanged, one of them is reversed, or z points down",
-                "x towards the mark, y to the left, z up; headings clockwise",
-                "exchange the columns with --map; --scale COLUMN=-1 reverses one",
+                said("x and y are exchanged, one of them is reversed, or z points down"),
+                said("x towards the mark, y to the left, z up; headings clockwise"),
+                said("exchange the columns with --map; --scale COLUMN=-1 reverses one"),
             )
         )
 
@@ -131,9 +135,13 @@ def _exchanged(where: str, left: Sequence[float], found: Arrangement) -> Problem
         f"{'-' if s < 0.0 else ''}{'xyz'[i]}" for i, s in zip(order, sign, strict=True)
     )
     return Problem(
-        "the axes of field and specific force are exchanged or one is reversed",
+        said("the axes of field and specific force are exchanged or one is reversed"),
         where,
-        f"field along up scatters by {left[0]:.2g} uT",
-        f"as with acc ({fits}) for (x, y, z): {left[1]:.2g} uT; axes right-handed, +g up",
-        "exchange the columns with --map; --scale COLUMN=-1 reverses one",
+        said("field along up scatters by {left:.2g} uT", left=left[0]),
+        said(
+            "as with acc ({fits}) for (x, y, z): {left:.2g} uT; axes right-handed, +g up",
+            fits=fits,
+            left=left[1],
+        ),
+        said("exchange the columns with --map; --scale COLUMN=-1 reverses one"),
     )

@@ -32,6 +32,7 @@ from surveyapp.domain.calibration import (
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 from surveyapp_models.compass.heading import DEFAULT_DIP, dip_of
 
@@ -93,7 +94,10 @@ def _refuse_other_units(fit: Ellipsoid, where: str) -> None:
             "mag_x/y/z are in different units",
             where,
             "scales " + ", ".join(f"{a} {1.0 / s:.3g}" for a, s in zip("xyz", scales, strict=True)),
-            f"scales within a factor of {MOST_UNEQUAL:g}: iron makes no more",
+            said(
+                "scales within a factor of {most_unequal:g}: iron makes no more",
+                most_unequal=MOST_UNEQUAL,
+            ),
             "give each its own: --unit COLUMN=... or --scale COLUMN=VALUE",
         )
     )
@@ -285,11 +289,11 @@ def _notes(log: SensorLog, verdict: GeometryVerdict) -> dict[str, str]:
     if verdict != "restricted":
         return {}
     acc = log.vector("acc")
-    text = "holds only for tilts like those of its record"
+    text = said("holds only for tilts like those of its record")
     if acc is not None:
         unit = acc / np.linalg.norm(acc, axis=1)[:, None]
         tilt = float(np.degrees(np.arccos(np.clip(np.quantile(unit[:, 2], 0.01), -1.0, 1.0))))
-        text += f": up to {tilt:.1f} degrees"
+        text += said(": up to {tilt:.1f} degrees", tilt=tilt)
     return {"restricted": text}
 
 
@@ -331,7 +335,7 @@ def _warnings(
         found.append(ResultWarning("no_iron", text))
     failed = [t.fit.model for t in trials if not t.fit.converged]
     if failed:
-        text = f"no ellipsoid could be fitted with: {', '.join(failed)}"
+        text = said("no ellipsoid could be fitted with: {names}", names=", ".join(failed))
         found.append(ResultWarning("no_ellipsoid", text))
     if log.vector("acc") is None:
         text = "no specific force: the dip is taken as 65 degrees"
@@ -347,7 +351,11 @@ def _warnings(
 
 def _refused_short(log: SensorLog, points: Floats) -> Calibration:
     size = np.linalg.norm(points, axis=1)
-    text = f"{log.size} rows are too few: {FEWEST_ROWS} are the least for nine parameters"
+    text = said(
+        "{size} rows are too few: {fewest_rows} are the least for nine parameters",
+        size=log.size,
+        fewest_rows=FEWEST_ROWS,
+    )
     return Calibration(
         kind="compass",
         source=log.id,

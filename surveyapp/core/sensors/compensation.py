@@ -19,6 +19,7 @@ from surveyapp.core.sensors.compass_attitude import turned_back
 from surveyapp.domain.sensor_card import SensorCard
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 from surveyapp_models.compass.deviation import COEFFICIENTS, deviation_basis, undeviated
 from surveyapp_models.compass.heading import heading_of
@@ -144,6 +145,38 @@ def _corrected_field(points: Floats, card: SensorCard, where: str) -> Floats:
     field = (points - np.array([numbers[name] for name in hard])) @ matrix
     turn = [card.constants.get(f"used_{name}", 0.0) for name in MISALIGNMENT]
     return turned_back(field, np.radians(turn)) if any(turn) else np.asarray(field)
+
+
+FIELD_DIFFERS: Final = 0.05
+"""Share of the field by which its corrected size may differ or scatter: places of one country
+differ by less, and a foreign card leaves iron of several microtesla."""
+
+
+def field_doubt(log: SensorLog, card: SensorCard, *, where: str) -> str | None:
+    """What speaks against the card being of this compass; None if nothing does.
+
+    The corrected field has one size in every attitude, and about that of the calibration.
+    """
+    expected = card.constants.get("used_field")
+    if expected is None:
+        return None
+    part = log.rows(slice(None, None, max(log.size // 2000, 1)))
+    points = np.column_stack([part.columns[f"mag_{axis}_uT"] for axis in BODY])
+    size = np.linalg.norm(_corrected_field(points, card, where), axis=1)
+    low, middle, high = np.quantile(size, (0.16, 0.5, 0.84))
+    scatter = 0.5 * float(high - low)
+    noise = card.constants.get("reading_sigma_uT", 0.0)
+    if abs(float(middle) - expected) <= FIELD_DIFFERS * expected and scatter <= max(
+        FIELD_DIFFERS * expected, 3.0 * noise
+    ):
+        return None
+    return said(
+        "the corrected field is {middle:.1f} uT +- {scatter:.1f}, that of the calibration "
+        "{expected:.1f}: a log of another compass or mounting, iron near, or another country",
+        middle=float(middle),
+        scatter=scatter,
+        expected=expected,
+    )
 
 
 def _ellipsoid_sigma(card: SensorCard, field: Floats, up: Floats | None) -> Floats:

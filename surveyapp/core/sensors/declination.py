@@ -11,6 +11,7 @@ import datetime as dt
 import math
 
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 
 
 def model_declination(
@@ -38,7 +39,12 @@ def model_declination(
         life, or the horizontal field is too weak there.
     """
     problems = [
-        Problem(f"{name} is out of range", "declination", f"{value:g}", f"{low:g} to {high:g}")
+        Problem(
+            said("{name} is out of range", name=name),
+            "declination",
+            f"{value:g}",
+            said("{low:g} to {high:g}", low=low, high=high),
+        )
         for name, value, low, high in (
             ("latitude", latitude_deg, -90.0, 90.0),
             ("longitude", longitude_deg, -180.0, 360.0),
@@ -64,7 +70,13 @@ def model_declination(
         expected = "a day within the five years of the model"
         hint = "update pygeomag: a new model comes every five years"
         raise SurveyError(
-            Problem(f"the model does not hold: {error}", "declination", str(day), expected, hint)
+            Problem(
+                said("the model does not hold: {error}", error=error),
+                "declination",
+                str(day),
+                expected,
+                hint,
+            )
         ) from None
     if found.in_blackout_zone:
         found_text = f"{found.h:.0f} nT"

@@ -14,6 +14,7 @@ from typing import Final
 
 import numpy as np
 
+from surveyapp.core.sensors.dividing_head_rows import RANGES, TESTS, check_rows, rows_of
 from surveyapp.core.sensors.dynamic_test import bandwidth
 from surveyapp.core.sensors.linear import LinearFit, fit_linear, rms
 from surveyapp.core.sensors.linearity import Line, linearity, null
@@ -26,22 +27,15 @@ from surveyapp.domain.calibration import (
 )
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
-from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
-
-TESTS: Final = ("static", "transverse", "reversal", "zero", "capacitance", "dynamic")
-RANGES: Final = {1: 90, 2: 30, 3: 15}
-"""Set of the static test to its range in degrees."""
 
 ARCSEC_PER_RAD: Final = 3600.0 * 180.0 / math.pi
 TREND_P: Final = 0.001
 """Significance at which a trend of the zero is called warm-up (levelling.md)."""
 
 PF: Final = 1e12
-
-
-def _rows(log: SensorLog, test: str) -> Floats:
-    return np.array([name == test for name in log.texts["test"]])
 
 
 def calibrate_dividing_head(log: SensorLog) -> Calibration:
@@ -75,67 +69,14 @@ def calibrate_dividing_head(log: SensorLog) -> Calibration:
     parameters += _zero(log, first, warnings)
     parameters += _reversal(log, first)
     parameters += _capacitance(log)
-    parameters.append(bandwidth(log, _rows(log, "dynamic")))
+    parameters.append(bandwidth(log, rows_of(log, "dynamic")))
     return _result(log, lines, parameters, warnings)
-
-
-def check_rows(log: SensorLog) -> None:
-    """Refuse unknown tests, and rows that lack what their test needs.
-
-    Raises
-    ------
-    SurveyError
-        All of them together.
-    """
-    problems = [
-        Problem(
-            "there is no such test", log.path, name, " | ".join(TESTS), nearest_names(name, TESTS)
-        )
-        for name in sorted(set(log.texts["test"]) - set(TESTS))
-    ]
-    needs = {
-        "static": ("set", "angle_deg", "output"),
-        "transverse": ("angle_deg", "flip", "output"),
-        "reversal": ("flip", "output"),
-        "zero": ("output",),
-        "capacitance": ("set", "frequency_hz", "impedance_ohm"),
-        "dynamic": ("output",),
-    }
-    for test, columns in needs.items():
-        rows = _rows(log, test)
-        if not np.any(rows):
-            continue
-        for column in columns:
-            values = log.columns.get(column)
-            if values is None:
-                hint = f"--map {column}=COLUMN names it"
-                problems.append(
-                    Problem(
-                        f"the test {test} needs the column {column}", log.path, "", column, hint
-                    )
-                )
-                continue
-            bad = int(np.count_nonzero(~np.isfinite(values[rows])))
-            if bad:
-                what = f"{column} is not a number in {bad} rows of the test {test}"
-                problems.append(Problem(what, log.path, "NaN or an empty cell", "a number"))
-            elif column == "output" and test in ("static", "transverse"):
-                problems += _constant(test, values[rows], log.path)
-    if problems:
-        raise SurveyError(problems)
-
-
-def _constant(test: str, values: Floats, where: str) -> list[Problem]:
-    if values.size < 2 or float(np.ptp(values)) > 0.0:
-        return []
-    found, hint = f"{values[0]:g}", "is the sensor connected?"
-    return [Problem(f"output is constant in the test {test}", where, found, "it varies", hint)]
 
 
 def _line(log: SensorLog, number: int) -> Line | None:
     if "set" not in log.columns or "angle_deg" not in log.columns:
         return None
-    rows = _rows(log, "static") & (log.columns["set"] == number)
+    rows = rows_of(log, "static") & (log.columns["set"] == number)
     if np.count_nonzero(rows) < 3:
         return None
     angle, output = np.radians(log.columns["angle_deg"][rows]), log.columns["output"][rows]
@@ -158,7 +99,7 @@ def _sensitivity(line: Line | None, unit: str) -> list[SensorParameter]:
 def _transverse(log: SensorLog, first: Line | None) -> list[SensorParameter]:
     """Seven positions (equation 4.6) and the sinusoid through all of them."""
     seven, wave, place = "transverse_seven_position", "transverse_sinusoid", "transverse_direction"
-    rows = _rows(log, "transverse")
+    rows = rows_of(log, "transverse")
     if first is None or np.count_nonzero(rows) < 4:
         return [*null("%", seven, wave), *null("deg", place)]
     angle, flip = log.columns["angle_deg"][rows], log.columns["flip"][rows]
@@ -197,7 +138,7 @@ def _zero(
 ) -> list[SensorParameter]:
     """Scatter at rest, and with a straight line taken out (equations 4.7, 4.8)."""
     names = ("zero_stability", "zero_stability_detrended")
-    rows = _rows(log, "zero")
+    rows = rows_of(log, "zero")
     n = int(np.count_nonzero(rows))
     if first is None or n < 3:
         return null("arcsec", *names)
@@ -214,9 +155,11 @@ def _zero(
     p = _trend_p(fit)
     if p < TREND_P:
         drift = 2.0 * float(fit.x[1]) * to_arcsec
-        text = (
-            f"the zero drifts by {drift:+.1f} arcsec over the record (p = {p:.1e}): let the sensor "
-            "warm up, or use the detrended figure"
+        text = said(
+            "the zero drifts by {drift:+.1f} arcsec over the record (p = {p:.1e}): "
+            "let the sensor warm up, or use the detrended figure",
+            drift=drift,
+            p=p,
         )
         warnings.append(ResultWarning("warm_up", text))
     return found
@@ -231,7 +174,7 @@ def _trend_p(fit: LinearFit) -> float:
 
 def _reversal(log: SensorLog, first: Line | None) -> list[SensorParameter]:
     """Tilt by turning the sensor by 180 degrees: asin((E0 - E180) / 2 K1)."""
-    rows = _rows(log, "reversal")
+    rows = rows_of(log, "reversal")
     if first is None or not np.any(rows):
         return null("arcsec", "tilt_reversal")
     flip, output = log.columns["flip"][rows], log.columns["output"][rows]
@@ -251,7 +194,7 @@ def _capacitance(log: SensorLog) -> list[SensorParameter]:
     """C = 1 / (2 pi f |Z|) of the upper and the lower plate, and how unlike they are."""
     plates = ("capacitance_upper", "capacitance_lower")
     shares = ("capacitance_difference_over_mean", "capacitance_difference_over_sum")
-    rows = _rows(log, "capacitance")
+    rows = rows_of(log, "capacitance")
     if not np.any(rows):
         return [*null("pF", *plates), *null("%", *shares)]
     number = log.columns["set"][rows]
@@ -292,7 +235,7 @@ def _result(
 ) -> Calibration:
     unit = log.units.get("output", "LSB")
     first = lines[1]
-    present = {name for name in TESTS if np.any(_rows(log, name))}
+    present = {name for name in TESTS if np.any(rows_of(log, name))}
     undetermined: list[str] = []
     if "static" in present and first is None and _has_set(log, 1):
         undetermined += ["sensitivity", "zero"]
@@ -357,7 +300,7 @@ def _with_reason(item: SensorParameter, present: set[str], first: Line | None) -
 
 def _has_set(log: SensorLog, number: int) -> bool:
     return "set" in log.columns and bool(
-        np.any(_rows(log, "static") & (log.columns["set"] == number))
+        np.any(rows_of(log, "static") & (log.columns["set"] == number))
     )
 
 

@@ -38,6 +38,7 @@ from surveyapp.domain.calibration import (
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.traverse.distance_cyclic import LARGEST_AMPLITUDE_M, UNIT_LENGTHS_M
 
@@ -123,8 +124,13 @@ def _check_design(readings: Sequence[EdmReading], lengths: Floats, where: str) -
             Problem(
                 "the distances determine no constant",
                 where,
-                f"{len(sights)} pointings between {len(pillars)} pillars",
-                f"at least {LEAST_PILLARS} pillars in all combinations",
+                said(
+                    "{size} pointings between {size2} pillars", size=len(sights), size2=len(pillars)
+                ),
+                said(
+                    "at least {least_pillars} pillars in all combinations",
+                    least_pillars=LEAST_PILLARS,
+                ),
                 "a constant shows where a length is measured whole and in parts",
             )
         )
@@ -336,9 +342,11 @@ def _warnings(judged: _Judged, pointings: int, *, levelled: bool) -> list[Result
     else:
         found.append(ResultWarning(*_AIR[judged.atmosphere.verdict]))
     if judged.cyclic is not None and judged.cyclic.amplitude_m > LARGEST_AMPLITUDE_M:
-        text = (
-            f"a cyclic term of {judged.cyclic.amplitude_m * MM:.1f} mm is not plausible (at most "
-            f"{LARGEST_AMPLITUDE_M * MM:g} mm): another cause, or another unit length"
+        text = said(
+            "a cyclic term of {value:.1f} mm is not plausible (at most {value2:g} "
+            "mm): another cause, or another unit length",
+            value=judged.cyclic.amplitude_m * MM,
+            value2=LARGEST_AMPLITUDE_M * MM,
         )
         found.append(ResultWarning("cyclic_implausible", text))
     return found

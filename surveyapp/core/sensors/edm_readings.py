@@ -12,6 +12,7 @@ import numpy as np
 from surveyapp.core.edm import EdmReading
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import counted, said
 
 PLAUSIBLE: Final = {
     "slope_distance_m": (0.1, 20000.0),
@@ -28,7 +29,12 @@ def edm_readings(
     problems = _impossible(log)
     names = [(a, b) for a, b in zip(log.texts["from_pillar"], log.texts["to_pillar"], strict=True)]
     problems += [
-        Problem("a distance from a pillar to itself", f"{log.path}, row {i}", a, "two pillars")
+        Problem(
+            "a distance from a pillar to itself",
+            said("{path}, row {i}", path=log.path, i=i),
+            a,
+            "two pillars",
+        )
         for i, (a, b) in enumerate(names, start=1)
         if a == b or not a or not b
     ]
@@ -77,10 +83,15 @@ def _impossible(log: SensorLog) -> list[Problem]:
         bad = np.flatnonzero(~((values >= low) & (values <= high)) & np.isfinite(values))
         problems += [
             Problem(
-                f"{name} cannot be right in {bad.size} row{'s' if bad.size > 1 else ''}",
-                f"{log.path}, row {bad[0] + 1}",
+                counted(
+                    "{name} cannot be right in {count} row",
+                    "{name} cannot be right in {count} rows",
+                    name=name,
+                    count=bad.size,
+                ),
+                said("{path}, row {row}", path=log.path, row=bad[0] + 1),
                 f"{values[bad[0]]:g}",
-                f"{low:g} to {high:g}",
+                said("{low:g} to {high:g}", low=low, high=high),
             )
             for _ in range(min(bad.size, 1))
         ]

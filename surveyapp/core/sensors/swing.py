@@ -20,6 +20,7 @@ from surveyapp.domain.calibration import (
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 from surveyapp_models.compass.deviation import COEFFICIENTS, deviation_basis
 from surveyapp_models.compass.heading import heading_of
@@ -62,7 +63,13 @@ def refuse_swapped(acc: Floats, where: str) -> None:
         Problem(
             "the axes are exchanged or reversed: gravity is not on the z axis",
             where,
-            f"mean specific force ({mean[0]:.2f}, {mean[1]:.2f}, {mean[2]:.2f}) m/s2: up is {name}",
+            said(
+                "mean specific force ({mean:.2f}, {mean2:.2f}, {mean3:.2f}) m/s2: up is {name}",
+                mean=mean[0],
+                mean2=mean[1],
+                mean3=mean[2],
+                name=name,
+            ),
             "+g on the z axis, which points up; axes right-handed",
             "exchange the columns with --map; --scale COLUMN=-1 reverses one (acc and mag alike)",
         )
@@ -189,7 +196,10 @@ def _warnings(log: SensorLog, fit: LinearFit | None, *, met: bool) -> list[Resul
         text = "the headings do not determine A to E: swing through the whole circle"
         found.append(ResultWarning("geometry", text))
     if fit is not None and fit.inflation > 1.0:
-        text = f"neighbouring deviations resemble each other; sigmas widened {fit.inflation:.2f} x"
+        text = said(
+            "neighbouring deviations resemble each other; sigmas widened {inflation:.2f} x",
+            inflation=fit.inflation,
+        )
         found.append(ResultWarning("correlated", text))
     if log.vector("acc") is None:
         text = "no specific force: the headings are taken as level, not tilt-compensated"

@@ -23,6 +23,7 @@ from surveyapp.domain.calibration import (
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 
 AXES: Final = ("along", "across")
 TERMS: Final = ("zero", "scale", "cross", "temperature")
@@ -97,9 +98,9 @@ def _fit_axis(log: SensorLog, axis: str, theta: Array | None) -> AxisFit:
     if fit is None or plain is None or log.size < FEWEST_ROWS:
         raise SurveyError(
             Problem(
-                f"the references do not determine the axis {axis}",
+                said("the references do not determine the axis {axis}", axis=axis),
                 log.path,
-                f"{log.size} rows; the references follow one line or stand still",
+                said("{size} rows; the references follow one line or stand still", size=log.size),
                 "tilts along and across that vary independently, five rows or more",
             )
         )
@@ -140,13 +141,15 @@ def _refuse_other_unit(log: SensorLog, fits: list[AxisFit]) -> None:
         scale = abs(float(item.fit.x[1]))
         if SCALES[0] <= scale <= SCALES[1]:
             continue
-        hint = f"--unit COLUMN=... for tilt_{item.axis}_arcsec, or --scale for counts"
+        hint = said(
+            "--unit COLUMN=... for tilt_{axis}_arcsec, or --scale for counts", axis=item.axis
+        )
         problems.append(
             Problem(
-                f"the axis {item.axis} is in another unit than its reference",
+                said("the axis {axis} is in another unit than its reference", axis=item.axis),
                 log.path,
-                f"it changes by {scale:.4g} for each arc-second of the reference",
-                f"{SCALES[0]:g} to {SCALES[1]:g}",
+                said("it changes by {scale:.4g} for each arc-second of the reference", scale=scale),
+                said("{scales:g} to {scales2:g}", scales=SCALES[0], scales2=SCALES[1]),
                 hint,
             )
         )
@@ -161,7 +164,7 @@ def _refuse_gaps(log: SensorLog, temperature: Array) -> None:
             Problem(
                 "temperature_c is not a number in some rows",
                 log.path,
-                f"{missing} of {log.size} rows",
+                said("{missing} of {size} rows", missing=missing, size=log.size),
                 "a temperature in each row, or no such column",
                 "leave these rows out",
             )
@@ -256,19 +259,26 @@ def _warnings(
         found.append(ResultWarning("no_temperature", text))
     for item in fits:
         if item.fit.x[1] < 0.0:
-            text = f"the axis {item.axis} reads against its reference: its sign is reversed"
+            text = said(
+                "the axis {axis} reads against its reference: its sign is reversed", axis=item.axis
+            )
             found.append(ResultWarning("reversed_axis", text))
         if item.fit.inflation > 1.0:
-            text = (
-                f"neighbouring residuals of the axis {item.axis} resemble each other; its sigmas "
-                f"are widened {item.fit.inflation:.2f} times"
+            text = said(
+                "neighbouring residuals of the axis {axis} resemble each other; its "
+                "sigmas are widened {inflation:.2f} times",
+                axis=item.axis,
+                inflation=item.fit.inflation,
             )
             found.append(ResultWarning("correlated", text))
         gross = int(np.count_nonzero(np.abs(item.fit.residual) > GROSS * item.fit.sigma0))
         if gross:
-            text = (
-                f"{gross} residuals of the axis {item.axis} are larger than {GROSS:g} sigma: "
-                "diagnose the log"
+            text = said(
+                "{gross} residuals of the axis {axis} are larger than {gross2:g} "
+                "sigma: diagnose the log",
+                gross=gross,
+                axis=item.axis,
+                gross2=GROSS,
             )
             found.append(ResultWarning("gross_errors", text))
     del log

@@ -165,10 +165,7 @@ def _joined(shaft: Shaft, known: Mapping[str, Place]) -> _Join:
         return _Join(shaft, upper, solve_plane(below, {}, shaft.orient))
     except SurveyError as refused:
         raise SurveyError(
-            [
-                Problem(p.what, f"[[shaft]] {shaft.id}, {p.where}", p.found, p.expected, p.hint)
-                for p in refused.problems
-            ]
+            [problem.within(f"[[shaft]] {shaft.id}") for problem in refused.problems]
         ) from None
 
 
@@ -200,7 +197,7 @@ def _refuse_unknown_sides(shaft: Shaft, places: Collection[str]) -> None:
     problems = [
         Problem(
             "a gyro side to a point that no other row places",
-            f"[[shaft]] {shaft.id}, azimuth {row.at}-{row.to}",
+            said("[[shaft]] {id}, azimuth {at}-{to}", id=shaft.id, at=row.at, to=row.to),
             name,
             "a point of the angles and distances underground",
             nearest_names(name, places),

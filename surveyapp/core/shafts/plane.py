@@ -15,6 +15,7 @@ import numpy as np
 
 from surveyapp.domain.shaft import ShaftRow, ShaftRowKind
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.angles import wrap_pi
 from surveyapp_models.arrays import Floats
 
@@ -85,7 +86,12 @@ class PlaneSolution:
         loose = float(np.linalg.norm(slope @ self.open)) if self.open.size else 0.0
         if loose > 1e-6 * max(float(np.linalg.norm(slope)), 1e-12):
             raise SurveyError(
-                Problem(f"{what} is not determined by the rows of the book", what, "", "more rows")
+                Problem(
+                    said("{what} is not determined by the rows of the book", what=what),
+                    what,
+                    "",
+                    "more rows",
+                )
             )
         return np.asarray(slope @ self.spread, dtype=np.float64)
 
@@ -210,7 +216,9 @@ def _laid_out(
         expected = "an angle and a distance that join it to placed points"
         raise SurveyError(
             [
-                Problem("a point that cannot be placed", f"point {name}", "", expected)
+                Problem(
+                    "a point that cannot be placed", said("point {name}", name=name), "", expected
+                )
                 for name in missing
             ]
         )

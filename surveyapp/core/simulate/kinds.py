@@ -31,6 +31,7 @@ from surveyapp.core.simulate.specification import (
     parse_effect,
 )
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import said
 
 KINDS: Final[dict[str, tuple[EffectKind, ...]]] = {
     "reversal-run": RUN_EFFECTS,
@@ -90,7 +91,7 @@ def simulate_kind(
     elif programme is not None:
         raise SurveyError(Problem("this kind has no programmes", "--programme", programme))
     if coefficients and kind != "noise":
-        found, expected = f"a simulation of {kind}", "simulate noise"
+        found, expected = said("a simulation of {kind}", kind=kind), "simulate noise"
         raise SurveyError(Problem("coefficients belong to noise", "coefficient", found, expected))
     parsed: list[Effect] = []
     problems: list[Problem] = []

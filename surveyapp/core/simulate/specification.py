@@ -14,6 +14,7 @@ from datetime import UTC, datetime
 from typing import Final, Literal
 
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.gyro.suspended import SuspendedGyro, gyro_from_periods
 
@@ -157,7 +158,7 @@ def parse_effect(text: str, kinds: Iterable[EffectKind] = RUN_EFFECTS) -> Effect
     known = {kind.id: kind for kind in kinds}
     identity, _, rest = text.partition("=")
     kind = known.get(identity.strip())
-    where = f"effect {text}"
+    where = said("effect {text}", text=text)
     if kind is None:
         hint = nearest_names(identity.strip(), known)
         raise SurveyError(Problem("unknown effect", where, identity, "the id of an effect", hint))
@@ -170,7 +171,7 @@ def parse_effect(text: str, kinds: Iterable[EffectKind] = RUN_EFFECTS) -> Effect
             hint = nearest_names(name.strip(), names)
             raise SurveyError(Problem("unknown option", where, name, "an option", hint))
         options.append((name.strip(), _number(value, where, "a number")))
-    expected = f"a number in {kind.unit}, as in {kind.id}=2"
+    expected = said("a number in {unit}, as in {id}=2", unit=kind.unit, id=kind.id)
     return Effect(kind.id, _number(size, where, expected) * kind.to_internal, tuple(options))
 
 
@@ -302,7 +303,7 @@ class SessionSpec:
         if not 0.0 < self.ratio <= 1.0:
             problems.append(Problem("no amplitude ratio", "ratio", f"{self.ratio}", "0 < q <= 1"))
         if abs(self.latitude) > math.radians(89.0):
-            found = f"{math.degrees(self.latitude):.3f} degrees"
+            found = said("{value:.3f} degrees", value=math.degrees(self.latitude))
             problems.append(Problem("no north to seek", "latitude", found, "below 89 degrees"))
         if self.start.tzinfo is None:
             problems.append(Problem("time without UTC offset", "start", str(self.start)))
@@ -313,7 +314,7 @@ class SessionSpec:
             if effect.id not in known
         ]
         if self.clamped and self.first_amplitude * self.ratio**self.turns <= self._farthest_line:
-            found = f"{self.first_amplitude / abs(self.scale_value):.2f} div"
+            found = said("{value:.2f} div", value=self.first_amplitude / abs(self.scale_value))
             problems.append(Problem("the swing does not reach every line", "amplitude", found))
         if problems:
             raise SurveyError(problems)

@@ -119,7 +119,7 @@ def _rounds(
         raise SurveyError(
             Problem(
                 what="an automatic gyro delivers either azimuths of the line or readings of north",
-                where=f"session {session.id}, {session.book_path}",
+                where=said("session {id}, {book_path}", id=session.id, book_path=session.book_path),
                 found="rows of both kinds",
                 expected="azimuth rows, or north rows with sights",
                 hint="Make two sessions of it.",

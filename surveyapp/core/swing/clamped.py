@@ -21,6 +21,7 @@ from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import Reading, ReadingKind
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, circular_mean
 from surveyapp_models.arrays import Floats
 
@@ -51,7 +52,7 @@ def session_problem(
     return SurveyError(
         Problem(
             what=what,
-            where=f"session {session.id}, {session.book_path}",
+            where=said("session {id}, {book_path}", id=session.id, book_path=session.book_path),
             found=found,
             expected=expected,
             hint=hint,
@@ -65,7 +66,10 @@ def clamp_reading(session: OrientationSession) -> tuple[float, float]:
     if not rows:
         raise session_problem(
             session,
-            f"the method {session.method} needs the circle reading of the clamped alidade",
+            said(
+                "the method {method} needs the circle reading of the clamped alidade",
+                method=session.method,
+            ),
             found="no clamp row",
             expected="one clamp row before the swing",
             hint="Enter the circle reading at which the alidade was clamped.",
@@ -204,7 +208,7 @@ def observe(session: OrientationSession, card: InstrumentCard) -> Observed:
         raise session_problem(
             session,
             "the scale was read on one side of the swing only",
-            found=f"{len(readings)} readings on one side",
+            found=said("{size} readings on one side", size=len(readings)),
             expected="turning points on both sides",
             hint="The amplitude is half the distance of the two sides.",
         )
@@ -230,9 +234,18 @@ def check_scale(session: OrientationSession) -> None:
         raise SurveyError(
             Problem(
                 what="the amplitude lies beyond the scale",
-                where=f"session {session.id}, {session.book_path} line {row.line} (seq {row.seq})",
-                found=f"{row.text} div",
-                expected=f"-{SCALE_RANGE_DIV:g} to +{SCALE_RANGE_DIV:g} div",
+                where=said(
+                    "session {id}, {book_path} line {line} (seq {seq})",
+                    id=session.id,
+                    book_path=session.book_path,
+                    line=row.line,
+                    seq=row.seq,
+                ),
+                found=said("{text} div", text=row.text),
+                expected=said(
+                    "-{scale_range_div:g} to +{scale_range_div:g} div",
+                    scale_range_div=SCALE_RANGE_DIV,
+                ),
                 hint="Damp the swing or clamp nearer to north; check the decimal point.",
             )
             for row in beyond

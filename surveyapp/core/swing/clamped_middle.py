@@ -271,7 +271,7 @@ def _of_all(
     raise session_problem(
         session,
         "the full fit of readings and times does not converge",
-        found=f"{swing.count} observations that make no damped swing",
+        found=said("{number} observations that make no damped swing", number=swing.count),
         expected="turning points and passages of one swing",
         hint="Look for a passage on the wrong side of a turning point.",
     )

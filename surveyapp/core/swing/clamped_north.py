@@ -228,8 +228,11 @@ def _constants(
             missing = " and ".join(filter(None, [missing, said("the scale value")]))
         raise session_problem(
             session,
-            f"the method {session.method} needs the torsion ratio and the scale value",
-            found=f"card {card.id} without {missing}",
+            said(
+                "the method {method} needs the torsion ratio and the scale value",
+                method=session.method,
+            ),
+            found=said("card {id} without {missing}", id=card.id, missing=missing),
             expected="scale_value_arcsec, and [torsion] lambda or both periods",
             hint="Give them in the [[instrument]] table, or observe by tracking.",
         )

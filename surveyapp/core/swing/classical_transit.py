@@ -67,7 +67,7 @@ def reduce_classical(
         raise session_problem(
             session,
             "the reduction by C alone needs passages of the middle of the scale",
-            found=f"passages of division {found.division:g}",
+            found=said("passages of division {division:g}", division=found.division),
             expected="transit rows with value 0",
             hint="State the scale value and the torsion ratio, or time the middle.",
         )

@@ -180,10 +180,12 @@ def need_points(session: OrientationSession, *, found: int, needed: int, kind: s
         return
     raise SurveyError(
         Problem(
-            what=f"too few {kind} rows for the method {session.method}",
-            where=f"session {session.id}, {session.book_path}",
-            found=f"{found} {kind} rows that count",
-            expected=f"at least {needed}",
+            what=said(
+                "too few {kind} rows for the method {method}", kind=kind, method=session.method
+            ),
+            where=said("session {id}, {book_path}", id=session.id, book_path=session.book_path),
+            found=said("{found} {kind} rows that count", found=found, kind=kind),
+            expected=said("at least {needed}", needed=needed),
             hint="Observe more, or correct the session's method.",
         )
     )

@@ -28,7 +28,7 @@ from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession, ResultWarning, Station, grid_distance_m
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.errors import Problem, SurveyError, nearest_names
-from surveyapp.languages import said
+from surveyapp.languages import either, said
 from surveyapp_models.angles import wrap_two_pi
 
 ESTIMATORS: Mapping[str, tuple[str, ...]] = {
@@ -110,10 +110,14 @@ def estimator_for(session: OrientationSession, estimator: str | None) -> str | N
         return estimator
     raise SurveyError(
         Problem(
-            what=f"the estimator {estimator} does not suit the method {session.method}",
-            where=f"session {session.id}",
+            what=said(
+                "the estimator {estimator} does not suit the method {method}",
+                estimator=estimator,
+                method=session.method,
+            ),
+            where=said("session {id}", id=session.id),
             found=estimator,
-            expected=" or ".join(allowed),
+            expected=either(allowed),
             hint="Choose another estimator, or orient one session alone.",
         )
     )
@@ -244,9 +248,14 @@ def eccentric_of(
         raise SurveyError(
             Problem(
                 what="an eccentric set-up needs the distance of the two marks",
-                where=f"session {session.id}, line {session.station}-{target}",
+                where=said(
+                    "session {id}, line {station}-{target}",
+                    id=session.id,
+                    station=session.station,
+                    target=target,
+                ),
                 found="no grid positions of both" if distance is None else f"{distance:.3f} m",
-                expected=f"a distance above {eccentric.distance_m:g} m",
+                expected=said("a distance above {distance_m:g} m", distance_m=eccentric.distance_m),
                 hint="Give e and n (or lat and lon with a crs) of station and target.",
             )
         )
@@ -341,7 +350,12 @@ def _delivered_eccentric(
     raise SurveyError(
         Problem(
             what="an eccentric set-up of a delivered azimuth needs the circle reading of its line",
-            where=f"session {session.id}, line {session.station}-{target}",
+            where=said(
+                "session {id}, line {station}-{target}",
+                id=session.id,
+                station=session.station,
+                target=target,
+            ),
             found="azimuth rows without a backsight of the target",
             expected="a backsight on the circle on which the direction to the mark was read",
             hint="Enter the sights, or the azimuth of the marks itself.",
@@ -356,7 +370,7 @@ def known_target(session: OrientationSession, stations: Mapping[str, Station]) -
             raise SurveyError(
                 Problem(
                     what="a sight whose target is no station",
-                    where=f"session {session.id}",
+                    where=said("session {id}", id=session.id),
                     found=target,
                     expected="the name of a [[station]]",
                     hint=nearest_names(target, stations),

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from surveyapp.core.statistics.distributions import student_tail
 from surveyapp.domain.readings import Face, FieldBook, Place, Reading, ReadingKind
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.angles import wrap_pi, wrap_two_pi
 from surveyapp_models.arrays import Floats
 
@@ -293,8 +294,8 @@ def zenith_angle(book: FieldBook, target: str, *, default_target: str | None) ->
         raise SurveyError(
             Problem(
                 what="a sight straight up or down has no azimuth",
-                where=f"zenith angles of {target}",
-                found=f"{math.degrees(mean):.3f} degrees",
+                where=said("zenith angles of {target}", target=target),
+                found=said("{value:.3f} degrees", value=math.degrees(mean)),
                 expected="at least 1 degree from the vertical",
                 hint="Was an elevation angle entered instead of a zenith angle?",
             )

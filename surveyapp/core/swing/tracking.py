@@ -106,7 +106,7 @@ def turning_points(
         raise session_problem(
             session,
             "the turning points do not swing: nothing tells left from right",
-            found=f"{len(rows)} points on one side, or all with one reading",
+            found=said("{size} points on one side, or all with one reading", size=len(rows)),
             expected="points on both sides of north",
             hint="Was the gyro running, and was it released? Were points left out?",
         )
@@ -284,8 +284,10 @@ def _fit(session: OrientationSession, points: RunPoints) -> DampedFit:
 def _no_fit(session: OrientationSession, points: RunPoints) -> Problem:
     return Problem(
         what="the damped swing does not fit: the turning points do not swing about one middle",
-        where=f"session {session.id}, {session.book_path}",
-        found=f"{points.values.size} turning points whose amplitude does not decay smoothly",
+        where=said("session {id}, {book_path}", id=session.id, book_path=session.book_path),
+        found=said(
+            "{size} turning points whose amplitude does not decay smoothly", size=points.values.size
+        ),
         expected="readings alternating about north with slowly falling amplitude",
         hint="Look for a mistyped degree or a missed turning point.",
     )
@@ -294,7 +296,7 @@ def _no_fit(session: OrientationSession, points: RunPoints) -> Problem:
 def _no_triple(session: OrientationSession) -> Problem:
     return Problem(
         what="no three consecutive turning points: there is no Schuler mean",
-        where=f"session {session.id}, {session.book_path}",
+        where=said("session {id}, {book_path}", id=session.id, book_path=session.book_path),
         expected="three turning points without a missed one between",
         hint="Use the estimator least-squares: it bridges missed points.",
     )

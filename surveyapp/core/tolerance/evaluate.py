@@ -63,7 +63,7 @@ def apply_limit(book: RuleBook, limit: Limit, item: Measured) -> Check | None:
             return None
         bound = evaluate(limit.limit, item.variables)
     except FormulaError as error:
-        missing = missing or joined(": ", (kind.title, str(error)))
+        missing = missing or joined(": ", (kind.title, error.args[0]))
     value = None if item.value is None else kind.in_unit(item.value, limit.unit)
     passed = None
     if value is not None and bound is not None:

@@ -13,6 +13,8 @@ import operator
 from collections.abc import Callable, Mapping
 from typing import Final
 
+from surveyapp.languages import said
+
 MAX_LENGTH: Final = 120
 _LARGEST_EXPONENT: Final = 4.0
 _OPERATIONS: Final[Mapping[type[ast.operator], Callable[[float, float], float]]] = {
@@ -49,7 +51,7 @@ def parse(text: str) -> ast.expr:
     FormulaError
     """
     if len(text) > MAX_LENGTH:
-        raise FormulaError(f"longer than {MAX_LENGTH} characters")
+        raise FormulaError(said("longer than {max_length} characters", max_length=MAX_LENGTH))
     try:
         tree = ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
@@ -64,7 +66,13 @@ def _check(node: ast.expr) -> None:
             return
         case ast.Name(id=name):
             if name not in VARIABLES:
-                raise FormulaError(f"{name} is not known; known are {', '.join(VARIABLES)}")
+                raise FormulaError(
+                    said(
+                        "{name} is not known; known are {names}",
+                        name=name,
+                        names=", ".join(VARIABLES),
+                    )
+                )
         case ast.BinOp(left=left, op=op, right=right) if type(op) in _OPERATIONS:
             _check(left)
             _check(right)
@@ -108,9 +116,9 @@ def evaluate(formula: float | str, variables: Mapping[str, float]) -> float:
     except (ArithmeticError, TypeError, ValueError) as error:
         if isinstance(error, FormulaError):
             raise
-        raise FormulaError(f"{formula} has no value here") from None
+        raise FormulaError(said("{formula} has no value here", formula=formula)) from None
     if not math.isfinite(value):
-        raise FormulaError(f"{formula} has no finite value here")
+        raise FormulaError(said("{formula} has no finite value here", formula=formula))
     return value
 
 
@@ -131,12 +139,17 @@ def _value(node: ast.expr, variables: Mapping[str, float]) -> float:
             return float(number)
         case ast.Name(id=name):
             if name not in variables:
-                raise FormulaError(f"{name} is not known here")
+                raise FormulaError(said("{name} is not known here", name=name))
             return variables[name]
         case ast.BinOp(left=left, op=op, right=right):
             a, b = _value(left, variables), _value(right, variables)
             if isinstance(op, ast.Pow) and abs(b) > _LARGEST_EXPONENT:
-                raise FormulaError(f"an exponent beyond {_LARGEST_EXPONENT:g}")
+                raise FormulaError(
+                    said(
+                        "an exponent beyond {largest_exponent:g}",
+                        largest_exponent=_LARGEST_EXPONENT,
+                    )
+                )
             return _OPERATIONS[type(op)](a, b)
         case ast.UnaryOp(op=op, operand=operand):
             value = _value(operand, variables)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.long_records.lines import judges_lines
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Effect
 
@@ -191,7 +192,7 @@ def _check(problem: Case, blocks: Blocks) -> None:
             Problem(
                 "a swing cannot be averaged over blocks",
                 problem.identity,
-                f"{problem.size} turning points",
+                said("{size} turning points", size=problem.size),
                 "a record without a swing",
             )
         )
@@ -200,8 +201,10 @@ def _check(problem: Case, blocks: Blocks) -> None:
             Problem(
                 "too few blocks to diagnose a long record",
                 problem.identity,
-                f"{blocks.first.size} blocks from {problem.size} samples",
-                f"at least {LEAST_BLOCKS}",
+                said(
+                    "{size} blocks from {size2} samples", size=blocks.first.size, size2=problem.size
+                ),
+                said("at least {least_blocks}", least_blocks=LEAST_BLOCKS),
                 "Record longer, and at more different times.",
             )
         )

@@ -33,6 +33,7 @@ from surveyapp.diagnosis.loop import Search
 from surveyapp.diagnosis.result import CandidateResult, CandidateVerdict, Diagnosis
 from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 LONG = 400
@@ -103,7 +104,7 @@ def reduce_record(problem: Case) -> LongRecord:
             problem,
             "too many turning points for one run",
             found=f"{problem.size}",
-            expected=f"at most {LONG}",
+            expected=said("at most {long}", long=LONG),
             hint="Divide the run and diagnose its parts.",
         )
     clean = _sorted_and_finite(problem)
@@ -159,7 +160,7 @@ def _sorted_and_finite(problem: Case) -> Case:
             problem,
             "too few samples that are numbers",
             found=f"{rows.size} of {problem.size}",
-            expected=f"at least {2 * LEAST_BLOCKS}",
+            expected=said("at least {least}", least=2 * LEAST_BLOCKS),
             hint="Look for what interrupted the record.",
         )
     weights = problem.value_weights[rows]
@@ -190,7 +191,7 @@ def _need_variation(problem: Case, residual: Floats) -> None:
         _refuse(
             problem,
             "the record does not vary",
-            found=f"{problem.size} samples without any noise",
+            found=said("{size} samples without any noise", size=problem.size),
             expected="samples that scatter",
             hint="Look for a sensor that stands still or a range that is exceeded.",
         )
@@ -204,9 +205,17 @@ def _until_white(problem: Case) -> tuple[Case, Blocks, tuple[Whiteness, ...]]:
         _refuse(
             problem,
             "numbered columns change too often to average over blocks",
-            found=f"{runs.size} runs of equal {names} in {problem.size} observations",
-            expected=f"at most {LONG} runs",
-            hint=f"Diagnose parts of at most {LONG} observations, or one line or set-up at a time.",
+            found=said(
+                "{size} runs of equal {names} in {size2} observations",
+                size=runs.size,
+                names=names,
+                size2=problem.size,
+            ),
+            expected=said("at most {long} runs", long=LONG),
+            hint=said(
+                "Diagnose parts of at most {long} observations, or one line or set-up at a time.",
+                long=LONG,
+            ),
         )
     seed = int(problem.digest()[:15], 16)
     tests: list[Whiteness] = []
@@ -259,23 +268,31 @@ def _warnings(
     found = []
     test, samples = tests[-1], int(np.median(blocks.counts))
     unit = f" {problem.position_unit}" if problem.position_unit else ""
-    text = (
-        f"{problem.size} samples: the means of {test.blocks} blocks of {blocks.duration:.4g}{unit} "
-        f"(about {samples} samples each) are judged, not the samples"
+    text = said(
+        "{size} samples: the means of {blocks} blocks of {duration:.4g}{unit} "
+        "(about {samples} samples each) are judged, not the samples",
+        size=problem.size,
+        blocks=test.blocks,
+        duration=blocks.duration,
+        unit=unit,
+        samples=samples,
     )
     found.append(ResultWarning("block_means", text))
     if not test.white:
-        text = (
-            f"neighbouring means of {test.blocks} blocks are still correlated (p = {test.p:.4f}; "
-            "independent ones were expected): the noise wanders as slowly as an effect, and "
-            "nothing is named; record several times as long, or shield what makes it wander"
+        text = said(
+            "neighbouring means of {blocks} blocks are still correlated (p = "
+            "{p:.4f}; independent ones were expected): the noise wanders as slowly "
+            "as an effect, and nothing is named; record several times as long, or "
+            "shield what makes it wander",
+            blocks=test.blocks,
+            p=test.p,
         )
         found.append(ResultWarning("blocks_not_white", text))
     if missing:
-        text = f"{missing} samples without a value or time are left out"
+        text = said("{missing} samples without a value or time are left out", missing=missing)
         found.append(ResultWarning("missing_samples", text))
     if search.unsearched:
-        text = f"no spectral lines were looked for: {search.unsearched}"
+        text = said("no spectral lines were looked for: {unsearched}", unsearched=search.unsearched)
         found.append(ResultWarning("no_spectrum", text))
     if search.crowded:
         text = "more peaks stand out than can be lines: only the strongest are listed"

@@ -36,6 +36,7 @@ from surveyapp.diagnosis.sensors.records import SensorRecord
 from surveyapp.diagnosis.sensors.windows import block_means, switched
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.domain.project import ResultWarning
+from surveyapp.languages import joined
 from surveyapp_models.arrays import Floats
 
 ROOM_GRADIENT_UT: Final = 3.0
@@ -127,7 +128,7 @@ def diagnose_sensor(
     notes = list(warnings)
     if proof is not None:
         after = proof.fit
-        notes += [ResultWarning("not_adopted", f"{n}: {why}") for n, why in proof.refused]
+        notes += [ResultWarning("not_adopted", joined(": ", (n, why))) for n, why in proof.refused]
     best = _refined(record, found.best) if found.ambiguous else after
     fits = {"before": found.before, "after": after, "after_best": best}
     verdict: Verdict = _verdict(record, found)

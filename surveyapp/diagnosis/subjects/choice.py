@@ -81,8 +81,8 @@ def run_problem(
         raise SurveyError(
             Problem(
                 "only a reversal run can be diagnosed by itself",
-                f"session {session.id}",
-                f"method {session.method} without reversal rows",
+                said("session {id}", id=session.id),
+                said("method {method} without reversal rows", method=session.method),
                 "turning points on the circle",
                 "Diagnose the campaign of its instrument instead.",
             )
@@ -288,7 +288,7 @@ def campaign_problem(
                     "the confirming session is no determination of this instrument",
                     "confirm",
                     confirm_from,
-                    f"a calibration session of {instrument}",
+                    said("a calibration session of {instrument}", instrument=instrument),
                     nearest_names(confirm_from, sessions),
                 )
             )
@@ -312,7 +312,12 @@ def _check_parts(cut: int, count: int, confirm_from: str) -> None:
             Problem(
                 "the confirming session leaves no two parts of the campaign",
                 "confirm",
-                f"{confirm_from}: {cut} determinations before it, {count - cut} from it on",
+                said(
+                    "{confirm_from}: {cut} determinations before it, {value} from it on",
+                    confirm_from=confirm_from,
+                    cut=cut,
+                    value=count - cut,
+                ),
                 "at least 2 in each part; from 8 before it on an effect can be named",
                 "Name the session from which on, in time, the determinations only confirm.",
             )

@@ -17,6 +17,7 @@ from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.subject import Record, Subject, case_of
 from surveyapp.diagnosis.subjects.rate import COLUMNS
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Column, Columns, Effect
@@ -87,7 +88,12 @@ def fog_case(turns: Sequence[FogTurn], *, identity: str, extra: tuple[Effect, ..
     sets = {(t.pass_id, t.set_id) for t in turns}
     if len(sets) < LEAST_SETS:
         raise SurveyError(
-            Problem("too few sets to diagnose", identity, str(len(sets)), f"{LEAST_SETS} or more")
+            Problem(
+                "too few sets to diagnose",
+                identity,
+                str(len(sets)),
+                said("{least_sets} or more", least_sets=LEAST_SETS),
+            )
         )
     turns = sorted(turns, key=lambda t: t.elapsed_s)
     rate = np.array([t.rate for t in turns])

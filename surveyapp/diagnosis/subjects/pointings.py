@@ -12,6 +12,7 @@ from dataclasses import replace
 from surveyapp.domain.observations import CorrelatedBlock, Observation, ObservationKind
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network
+from surveyapp.languages import said
 
 _KINDS = frozenset({ObservationKind.DISTANCE, ObservationKind.SLOPE_DISTANCE})
 
@@ -35,9 +36,11 @@ def one_a_pointing(network: Network) -> tuple[Network, tuple[ResultWarning, ...]
     )
     found = tuple(_mean([network.observations[i] for i in group]) for group in groups)
     many = [group for group in groups if len(group) > 1]
-    text = (
-        f"{sum(len(group) for group in many)} readings of distances that follow each other are "
-        f"{len(many)} pointings: each counts once, with the sigma of one reading"
+    text = said(
+        "{value} readings of distances that follow each other are {size} "
+        "pointings: each counts once, with the sigma of one reading",
+        value=sum(len(group) for group in many),
+        size=len(many),
     )
     changed = replace(network, observations=found, blocks=blocks)
     return changed, (ResultWarning("repeated_pointings", text),)

@@ -18,6 +18,7 @@ from surveyapp.diagnosis.action import Action, last_rows
 from surveyapp.diagnosis.case import Case, OwnScale
 from surveyapp.diagnosis.subject import Record, Subject, case_of
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Columns, Effect
@@ -179,7 +180,10 @@ def rate_case(
     if len(stops) < LEAST_STOPS:
         raise SurveyError(
             Problem(
-                "too few stops to diagnose", identity, str(len(stops)), f"{LEAST_STOPS} or more"
+                "too few stops to diagnose",
+                identity,
+                str(len(stops)),
+                said("{least_stops} or more", least_stops=LEAST_STOPS),
             )
         )
     columns = _stop_columns(stops)

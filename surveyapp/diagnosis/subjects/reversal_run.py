@@ -132,7 +132,10 @@ def _check(points: TurningPoints, readings: Floats) -> None:
                 "too few turning points to diagnose a run",
                 points.identity,
                 str(readings.size),
-                f"at least {LEAST_POINTS}; from 8 on an effect can be named",
+                said(
+                    "at least {least_points}; from 8 on an effect can be named",
+                    least_points=LEAST_POINTS,
+                ),
                 "Three turning points give north but nothing to check it with.",
             )
         )
@@ -150,7 +153,7 @@ def _check(points: TurningPoints, readings: Floats) -> None:
         if values is not None and len(values) != readings.size:
             faults.append(
                 Problem(
-                    f"{name} does not belong to these readings",
+                    said("{name} does not belong to these readings", name=name),
                     points.identity,
                     str(len(values)),
                     str(readings.size),
@@ -158,7 +161,12 @@ def _check(points: TurningPoints, readings: Floats) -> None:
             )
         elif values is not None and np.any(np.diff(np.asarray(values, dtype=float)) <= 0.0):
             faults.append(
-                Problem(f"{name} does not increase", points.identity, "", "increasing values")
+                Problem(
+                    said("{name} does not increase", name=name),
+                    points.identity,
+                    "",
+                    "increasing values",
+                )
             )
     if not np.isfinite(readings).all():
         faults.append(Problem("a reading is no number", points.identity, "nan", "angles"))

@@ -52,7 +52,7 @@ def _refuse_many(network: Network, identity: str) -> None:
                 "too many observations to diagnose them together",
                 identity,
                 str(len(network.observations)),
-                f"at most {MOST_OBSERVATIONS}",
+                said("at most {most_observations}", most_observations=MOST_OBSERVATIONS),
                 "Diagnose one traverse at a time.",
             )
         )
@@ -101,7 +101,7 @@ def traverse(
             Problem(
                 "nothing controls the traverse",
                 identity,
-                f"{len(model.observations)} observations, all of them necessary",
+                said("{size} observations, all of them necessary", size=len(model.observations)),
                 "a closure, a repetition, a fixed point or gyro side more",
             )
         )

@@ -22,6 +22,7 @@ from surveyapp.io.filing.ledger import LEDGER_FILE
 from surveyapp.io.filing.sealed_files import WITNESS_FILE, hash_inside, project_file_names
 from surveyapp.io.guarded import MAX_LOG_BYTES, is_regular, open_regular, place_inside
 from surveyapp.io.project import check_project_folder
+from surveyapp.languages import said
 
 MANIFEST: Final = "MANIFEST.sha256"
 _MOMENT: Final = (1980, 1, 1, 0, 0, 0)
@@ -68,7 +69,9 @@ def _bytes_outside(folder: Path, name: str, sha256: str) -> bytes:
             data = stream.read(MAX_LOG_BYTES + 1)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise SurveyError(Problem(f"the file cannot be read ({reason})", shown(name))) from None
+        raise SurveyError(
+            Problem(said("the file cannot be read ({reason})", reason=reason), shown(name))
+        ) from None
     found = hashlib.sha256(data).hexdigest()
     if len(data) > MAX_LOG_BYTES or found != sha256.lower():
         raise SurveyError(
@@ -130,5 +133,8 @@ def _store(packed: zipfile.ZipFile, path: Path, name: str) -> None:
             shutil.copyfileobj(source, target, 1 << 20)
     except OSError as error:
         raise SurveyError(
-            Problem(f"the file cannot be read ({error.strerror or error})", str(path))
+            Problem(
+                said("the file cannot be read ({strerror})", strerror=error.strerror or error),
+                str(path),
+            )
         ) from None

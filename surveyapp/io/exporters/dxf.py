@@ -11,6 +11,7 @@ from collections.abc import Iterator
 
 from surveyapp.domain.exported import ExportedPoint, ExportedSurvey, Written
 from surveyapp.domain.project import ResultWarning
+from surveyapp.languages import said
 
 LAYERS = (("STATIONS", 7), ("NAMES", 7), ("SIDES", 8), ("ELLIPSES", 1), ("GYRO", 5))
 """Layers with their colour numbers."""
@@ -128,5 +129,5 @@ def _told(survey: ExportedSurvey) -> tuple[ResultWarning, ...]:
     flat = [p.name for p in survey.points if p.h is None]
     if not flat or len(flat) == len(survey.points):
         return ()
-    text = f"points without a height are drawn at height 0: {', '.join(flat)}"
+    text = said("points without a height are drawn at height 0: {names}", names=", ".join(flat))
     return (ResultWarning("height_zero", text),)

@@ -19,6 +19,7 @@ from surveyapp.domain.observations import CorrelatedBlock, Observation, Observat
 from surveyapp.domain.traverse import Network, NetworkPoint, Status
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.importers.gkf_document import CC, GON, KINDS, MM, NEVER_MM, Axes
+from surveyapp.languages import said
 
 ELEMENTS = {kind: name for name, kind in KINDS.items()}
 K = ObservationKind
@@ -127,7 +128,7 @@ def _covariance_of_sides(
     problems = [
         Problem(
             "A .gkf file cannot hold an instrument constant that the network is to find",
-            f"constant {name}",
+            said("constant {name}", name=name),
             "no standard deviation",
             "a constant known beforehand",
         )
@@ -169,7 +170,7 @@ def _point(point: NetworkPoint, axes: Axes) -> str:
         raise SurveyError(
             Problem(
                 "A .gkf file cannot treat east and north differently",
-                f"point {point.name}",
+                said("point {name}", name=point.name),
                 f"e {point.status_e}, n {point.status_n}",
                 "one status for both",
             )
@@ -243,8 +244,9 @@ def _check_sets(network: Network, gathered: dict[tuple[object, ...], list[int]])
                     "",
                 )
             )
+    text = "A .gkf file needs one covariance matrix for a whole set"
     problems += [
-        Problem("A .gkf file needs one covariance matrix for a whole set", f"station {at}", name)
+        Problem(text, said("station {at}", at=at), name)
         for (at, name), keys in homes.items()
         if len(keys) > 1
     ]

@@ -14,6 +14,7 @@ from xml.sax.saxutils import escape
 from surveyapp.domain.exported import ExportedPoint, ExportedSurvey, Written
 from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 
 
 def _degrees(point: ExportedPoint) -> tuple[float, float] | None:
@@ -34,15 +35,15 @@ def _placed(survey: ExportedSurvey) -> tuple[dict[str, tuple[float, float]], lis
                 "a crs, or lat and lon of the stations",
             )
         )
-    text = (
-        "positions are those of the grid's own datum"
-        + (f" ({survey.crs})" if survey.crs and "\n" not in survey.crs else "")
-        + ": no shift to WGS 84 is applied, on old datums maps are some hundred metres off"
+    text = said(
+        "positions are those of the grid's own datum{crs}: no shift to WGS 84 is applied, on old "
+        "datums maps are some hundred metres off",
+        crs=f" ({survey.crs})" if survey.crs and "\n" not in survey.crs else "",
     )
     warnings = [ResultWarning("datum", text)]
     lost = [p.name for p in survey.points if p.name not in places]
     if lost:
-        left_out = f"no position on the earth: {', '.join(lost)}"
+        left_out = said("no position on the earth: {names}", names=", ".join(lost))
         warnings.append(ResultWarning("station_left_out", left_out))
     return places, warnings
 

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from surveyapp.domain.exported import ExportedPoint, ExportedSurvey, Written
 from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 
 _WIDTH = 16
 
@@ -24,7 +25,7 @@ def _names(points: Sequence[ExportedPoint]) -> list[ResultWarning]:
                     "the name does not fit the format",
                     "stations",
                     name,
-                    f"at most {_WIDTH} characters of ASCII",
+                    said("at most {width} characters of ASCII", width=_WIDTH),
                     "rename the station for this export",
                 )
                 for name in bad
@@ -33,7 +34,10 @@ def _names(points: Sequence[ExportedPoint]) -> list[ResultWarning]:
     zeros = [p.name for p in points if p.name[:1] == "0" and p.name != "0"]
     if not zeros:
         return []
-    text = f"GSI pads names with zeros, those in front of a name are lost: {', '.join(zeros)}"
+    text = said(
+        "GSI pads names with zeros, those in front of a name are lost: {names}",
+        names=", ".join(zeros),
+    )
     return [ResultWarning("leading_zeros", text)]
 
 

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from surveyapp.domain.exported import ExportedSurvey, Written
 from surveyapp.domain.observations import Observation, ObservationKind
 from surveyapp.domain.project import ResultWarning
+from surveyapp.languages import said
 from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, format_angle, wrap_two_pi
 
 K = ObservationKind
@@ -135,11 +136,18 @@ def _told(writer: _Writer) -> tuple[ResultWarning, ...]:
     told = []
     changed = [f"{old} -> {new}" for old, new in writer.names.items() if old != new]
     if changed:
-        text = f"names were replaced (no blanks, hyphens or other letters): {', '.join(changed)}"
+        text = said(
+            "names were replaced (no blanks, hyphens or other letters): {names}",
+            names=", ".join(changed),
+        )
         told.append(ResultWarning("names_replaced", text))
     if writer.lost:
         parts = ", ".join(f"{kind} ({count})" for kind, count in writer.lost.items())
-        told.append(ResultWarning("observations_left_out", f"the format has no word for: {parts}"))
+        told.append(
+            ResultWarning(
+                "observations_left_out", said("the format has no word for: {parts}", parts=parts)
+            )
+        )
     correlated = [o for o in writer.survey.observations if o.kind is K.AZIMUTH]
     if len(correlated) > 1:
         text = "azimuths are written as independent: a constant that they share is in each of them"

@@ -8,6 +8,7 @@ from pathlib import Path
 from surveyapp.core.observing.retyped import seconds_between
 from surveyapp.domain.readings import FieldBook, Reading, ReadingKind
 from surveyapp.errors import Problem
+from surveyapp.languages import said
 
 
 def edited_problem(path: Path) -> Problem:
@@ -61,7 +62,7 @@ def _moment_problem(where: str, earlier: Reading, row: Reading) -> Problem:
         for item in (row, earlier)
     ]
     return Problem(
-        f"its moment does not lie behind the {name} of row {earlier.seq}",
+        said("its moment does not lie behind the {name} of row {seq}", name=name, seq=earlier.seq),
         where,
         " against ".join(clocks),
         "moments in the order of the swing",

@@ -20,6 +20,7 @@ from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.fieldbook.rows import RawBook, parse_rows
 from surveyapp.io.files import decode, read_bytes, shown
 from surveyapp.io.guarded import open_regular
+from surveyapp.languages import said
 from surveyapp_models.angles import AngleUnit
 
 _MOST_PROBLEMS: Final = 100
@@ -90,7 +91,7 @@ def _at_most(problems: Sequence[Problem], where: str) -> tuple[Problem, ...]:
     """The first problems of a book; of a file of another kind every line would be one."""
     if len(problems) <= _MOST_PROBLEMS:
         return tuple(problems)
-    further = Problem(f"{len(problems) - _MOST_PROBLEMS} further problems", where)
+    further = Problem(said("{more} further problems", more=len(problems) - _MOST_PROBLEMS), where)
     return (*problems[:_MOST_PROBLEMS], further)
 
 
@@ -112,8 +113,14 @@ def _elapsed_problems(raw: RawBook, void: set[int], where: str) -> list[Problem]
             problems.append(
                 Problem(
                     "elapsed_s goes back",
-                    f"{where}, line {row.line} (seq {row.seq})",
-                    f"{row.elapsed_s:g} after {latest.elapsed_s:g}",
+                    said(
+                        "{where}, line {line} (seq {seq})", where=where, line=row.line, seq=row.seq
+                    ),
+                    said(
+                        "{elapsed_s:g} after {elapsed_s2:g}",
+                        elapsed_s=row.elapsed_s,
+                        elapsed_s2=latest.elapsed_s,
+                    ),
                     "seconds that do not decrease",
                     "a wrong row is struck and entered anew",
                 )

@@ -17,6 +17,7 @@ from typing import Final
 from surveyapp.domain.readings import QUANTITY, Dimension, Face, Reading, ReadingKind, Side
 from surveyapp.errors import Problem, nearest_names
 from surveyapp.io.files import MAX_COLUMNS, has_control, shown, too_many_columns, visible
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, TWO_PI, AngleError, AngleUnit, parse_angle
 
 COLUMNS: Final = (
@@ -86,7 +87,7 @@ def parse_rows(text: str, *, angle_unit: AngleUnit, where: str) -> RawBook:
     for number, line in enumerate(lines, start=1):
         if not line.strip():
             continue
-        place = f"{where}, line {number}"
+        place = said("{where}, line {number}", where=where, number=number)
         if has_control(line.rstrip("\r")) or "\r" in line.rstrip("\r"):
             problem = Problem("the line holds control characters", place, shown(line))
             book.problems.append((None, problem))
@@ -94,14 +95,19 @@ def parse_rows(text: str, *, angle_unit: AngleUnit, where: str) -> RawBook:
         try:
             cells = next(csv.reader([line.rstrip("\r")], strict=True))
         except (csv.Error, StopIteration) as error:
-            problem = Problem(f"the line is no CSV ({error})", place, shown(line))
+            problem = Problem(said("the line is no CSV ({error})", error=error), place, shown(line))
             book.problems.append((None, problem))
             if header is None:
                 return book
             continue
         cells = [cell.strip() for cell in cells]
         if len(book.rows) >= _MOST_ROWS:
-            problem = Problem("the book is too long", place, "", f"at most {_MOST_ROWS} rows")
+            problem = Problem(
+                "the book is too long",
+                place,
+                "",
+                said("at most {most_rows} rows", most_rows=_MOST_ROWS),
+            )
             book.problems.append((None, problem))
             return book
         if header is None:
@@ -128,7 +134,7 @@ def _header_problems(header: Sequence[str], line: str, place: str) -> list[Probl
         ]
     problems = [
         Problem(
-            f"there is no column {name}",
+            said("there is no column {name}", name=name),
             place,
             shown(line),
             ",".join(COLUMNS),
@@ -139,7 +145,8 @@ def _header_problems(header: Sequence[str], line: str, place: str) -> list[Probl
     ]
     doubled = sorted({name for name in header if name and header.count(name) > 1})
     problems += [
-        Problem(f"there are two columns {shown(name)}", place, shown(line)) for name in doubled
+        Problem(said("there are two columns {name}", name=shown(name)), place, shown(line))
+        for name in doubled
     ]
     return problems
 
@@ -150,9 +157,13 @@ def _check_seq(book: RawBook, where: str) -> None:
         if previous is not None and row.seq <= previous.seq:
             what = "twice" if row.seq == previous.seq else "not in increasing order"
             problem = Problem(
-                f"the row numbers do not increase: seq {row.seq} stands {what}",
-                f"{where}, line {row.line}",
-                f"{row.seq} after {previous.seq}",
+                said(
+                    "the row numbers do not increase: seq {seq} stands {what}",
+                    seq=row.seq,
+                    what=what,
+                ),
+                said("{where}, line {line}", where=where, line=row.line),
+                said("{seq} after {seq2}", seq=row.seq, seq2=previous.seq),
                 "a seq larger than all above",
             )
             book.problems.append((None, problem))
@@ -190,7 +201,7 @@ class _RowReader:
             self.fail(
                 "the row has more values than the header has columns",
                 ",".join(cells),
-                f"at most {len(header)} values",
+                said("at most {size} values", size=len(header)),
                 _POINT_HINT,
             )
             return
@@ -254,7 +265,9 @@ class _RowReader:
         if token in allowed:
             return token
         hint = _POINT_HINT if token.isdigit() else ""
-        self.fail_value(f"the unit does not suit {kind}", token, " | ".join(allowed), hint)
+        self.fail_value(
+            said("the unit does not suit {kind}", kind=kind), token, " | ".join(allowed), hint
+        )
         return None
 
     def _value(self, kind: ReadingKind, text: str, unit: str) -> float | None:
@@ -271,7 +284,12 @@ class _RowReader:
         if not text:
             swing = kind in (ReadingKind.REVERSAL, ReadingKind.SCALE_REVERSAL)
             hint = "a turning point that was not read is entered as missed" if swing else ""
-            self.fail_value(f"{kind} has no value", "", f"a reading in {unit}", hint)
+            self.fail_value(
+                said("{kind} has no value", kind=kind),
+                "",
+                said("a reading in {unit}", unit=unit),
+                hint,
+            )
             return None
         if quantity is Dimension.ANGLE:
             return self._angle(text, AngleUnit(unit))
@@ -288,7 +306,9 @@ class _RowReader:
             return None
         if value < 0.0:
             full = "400 gon" if unit is AngleUnit.GON else "360 degrees"
-            self.fail_value("a circle reading is not negative", text, f"0 to {full}")
+            self.fail_value(
+                "a circle reading is not negative", text, said("0 to {full}", full=full)
+            )
             return None
         return abs(value) % TWO_PI
 
@@ -296,10 +316,14 @@ class _RowReader:
         value = float(text.replace("−", "-")) if _NUMBER.fullmatch(text) else math.nan
         if not math.isfinite(value):
             hint = _POINT_HINT if _DECIMAL_COMMA.fullmatch(text) else ""
-            self.fail_value(f"{name} is no number", text, "a plain number", hint)
+            self.fail_value(said("{name} is no number", name=name), text, "a plain number", hint)
             return None
         if not low <= value <= high:
-            self.fail_value(f"{name} is out of range", text, f"{low:g} to {high:g}")
+            self.fail_value(
+                said("{name} is out of range", name=name),
+                text,
+                said("{low:g} to {high:g}", low=low, high=high),
+            )
             return None
         return value
 

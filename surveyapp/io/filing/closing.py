@@ -16,6 +16,7 @@ from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.io.filing.seals import CLOSING, REOPENING, changes, closings_in_force, seal_of
 from surveyapp.io.filing.witness import add_witness, head_of
 from surveyapp.io.project import read_project
+from surveyapp.languages import said
 
 
 def close_project(
@@ -39,7 +40,7 @@ def close_project(
                 Problem(
                     "it is closed already",
                     _where(name),
-                    f"closed at {in_force[name].at}",
+                    said("closed at {at}", at=in_force[name].at),
                     "an open project or session",
                     "surveyapp reopen DIR --reason TEXT opens it again",
                 )
@@ -95,7 +96,13 @@ def reopen_project(
         if name not in in_force:
             known = ", ".join(_where(item) for item in in_force) or "nothing"
             raise SurveyError(
-                Problem("it is not closed", _where(name), "", "a closed one", f"Closed: {known}")
+                Problem(
+                    "it is not closed",
+                    _where(name),
+                    "",
+                    "a closed one",
+                    said("Closed: {known}", known=known),
+                )
             )
         found = changes(folder, in_force[name])
         data = {

@@ -21,6 +21,7 @@ from surveyapp.io.fieldbook.reading import move_tail_aside
 from surveyapp.io.files import shown
 from surveyapp.io.guarded import open_regular
 from surveyapp.io.tomltext import sync_folder
+from surveyapp.languages import said
 
 LEDGER_FILE: Final = "ledger.jsonl"
 MAX_LEDGER_BYTES: Final = 64 * 1024 * 1024
@@ -125,7 +126,10 @@ def read_ledger(folder: Path) -> Ledger:
         data = _ledger_bytes(path)
     except OSError as error:
         raise SurveyError(
-            Problem(f"the ledger cannot be read ({error.strerror or error})", LEDGER_FILE)
+            Problem(
+                said("the ledger cannot be read ({strerror})", strerror=error.strerror or error),
+                LEDGER_FILE,
+            )
         ) from None
     return parse_ledger(data)
 
@@ -216,7 +220,9 @@ def append_entries(
     except OSError as error:
         raise SurveyError(
             Problem(
-                f"the ledger could not be written ({error.strerror or error})",
+                said(
+                    "the ledger could not be written ({strerror})", strerror=error.strerror or error
+                ),
                 shown(str(path)),
                 "",
                 "a folder with room that may be written to",

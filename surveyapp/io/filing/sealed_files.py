@@ -23,6 +23,7 @@ from surveyapp.io.guarded import (
     outside_problem,
     place_inside,
 )
+from surveyapp.languages import said
 
 WITNESS_FILE: Final = "closings.txt"
 _LEFT_OUT: Final = frozenset({"results"})
@@ -64,7 +65,11 @@ def hash_inside(folder: Path, name: str) -> SealedFile:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise SurveyError(
-            Problem(f"the file cannot be read ({reason})", shown(name), shown(str(path)))
+            Problem(
+                said("the file cannot be read ({reason})", reason=reason),
+                shown(name),
+                shown(str(path)),
+            )
         ) from None
     return SealedFile(name, size, digest.hexdigest())
 
@@ -91,7 +96,7 @@ def _walk(folder: Path) -> Iterator[str]:
                         Problem(
                             "the project folder holds too many files",
                             shown(str(folder)),
-                            f"more than {_MOST_FILES}",
+                            said("more than {most_files}", most_files=_MOST_FILES),
                             "a folder of its own for each project",
                         )
                     )

@@ -18,6 +18,7 @@ from surveyapp.io.filing.witness import head_of
 from surveyapp.io.guarded import checked_inside
 from surveyapp.io.minisign import SUFFIX, PublicKey, SecretKey, signature_text, verified
 from surveyapp.io.tomltext import atomic_write
+from surveyapp.languages import said
 
 SIGNATURES: Final = "signatures"
 
@@ -53,7 +54,9 @@ def sign_closing(folder: Path, seq: int, secret: SecretKey) -> str:
     try:
         (folder / SIGNATURES).mkdir(exist_ok=True)
     except OSError as error:
-        what = f"the signature cannot be written ({error.strerror or error})"
+        what = said(
+            "the signature cannot be written ({strerror})", strerror=error.strerror or error
+        )
         raise SurveyError(Problem(what, SIGNATURES, "", "", "the closing stands")) from None
     atomic_write(folder / name, data)
     atomic_write(folder / f"{name}{SUFFIX}", text.encode("utf-8"))

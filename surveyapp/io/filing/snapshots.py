@@ -15,6 +15,7 @@ from surveyapp.domain.rulebook import RuleBook
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import decode, read_inside, read_text, shown
 from surveyapp.io.filing.sealed_files import hash_inside, project_file_names
+from surveyapp.languages import either
 
 _SCHEMAS = ("surveyapp.snapshot/1", "surveyapp.orient/1")
 
@@ -71,7 +72,7 @@ def read_snapshot(path: Path) -> Snapshot:
                 "this is no result",
                 where,
                 shown(schema),
-                " or ".join(_SCHEMAS),
+                either(_SCHEMAS),
                 "surveyapp orient --json and surveyapp export json write such files",
             )
         )

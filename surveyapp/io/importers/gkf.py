@@ -22,6 +22,7 @@ from surveyapp.io.files import MAX_BYTES
 from surveyapp.io.guarded import open_regular
 from surveyapp.io.importers.gkf_document import GkfDocument
 from surveyapp.io.importers.gkf_network import network_from
+from surveyapp.languages import said
 
 if TYPE_CHECKING:
     from xml.sax.handler import ContentHandler
@@ -123,7 +124,7 @@ def _parse(path: Path, document: GkfDocument) -> None:
         raise SurveyError(
             Problem(
                 "The file is no well-formed XML",
-                f"{path.name}, line {failure.getLineNumber()}",
+                said("{name}, line {line}", name=path.name, line=failure.getLineNumber()),
                 failure.getMessage(),
                 "gama-local XML",
             )

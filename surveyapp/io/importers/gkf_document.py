@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 
 from surveyapp.domain.observations import Observation, ObservationKind
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import joined, said
 
 GON = math.pi / 200.0
 CC = GON * 1e-4
@@ -169,8 +170,16 @@ class GkfDocument:
             self.problem(
                 "The file is no network of this size",
                 line,
-                f"{self._elements} elements, {len(self._path)} deep",
-                expected=f"at most {MOST_ELEMENTS} elements, {DEEPEST} deep",
+                said(
+                    "{elements} elements, {size} deep",
+                    elements=self._elements,
+                    size=len(self._path),
+                ),
+                expected=said(
+                    "at most {most_elements} elements, {deepest} deep",
+                    most_elements=MOST_ELEMENTS,
+                    deepest=DEEPEST,
+                ),
             )
             raise SurveyError(self.problems)
         if len(self.problems) > MOST_PROBLEMS:
@@ -218,11 +227,22 @@ class GkfDocument:
         if abs(value) <= LARGEST_NUMBER and (value == 0.0 or abs(value) >= SMALLEST_NUMBER):
             return value
         if math.isfinite(value):
-            expected = f"{SMALLEST_NUMBER:g} to {LARGEST_NUMBER:g}, or 0"
-            self.problem(f"{what} is beyond all measures", line, repr(text[:40]), expected=expected)
+            expected = said(
+                "{smallest_number:g} to {largest_number:g}, or 0",
+                smallest_number=SMALLEST_NUMBER,
+                largest_number=LARGEST_NUMBER,
+            )
+            self.problem(
+                said("{what} is beyond all measures", what=what),
+                line,
+                repr(text[:40]),
+                expected=expected,
+            )
             return None
         hint = "Use a decimal point." if "," in text else ""
-        self.problem(f"{what} is no number", line, repr(text), expected="a number", hint=hint)
+        self.problem(
+            said("{what} is no number", what=what), line, repr(text), expected="a number", hint=hint
+        )
         return None
 
     def angle(self, text: str, line: int) -> tuple[float, float] | None:
@@ -282,7 +302,11 @@ class GkfDocument:
             self._cluster.dim = int(attributes["dim"])
             self._cluster.band = int(attributes["band"])
         except (KeyError, ValueError):
-            found = f"dim={attributes.get('dim')}, band={attributes.get('band')}"
+            found = said(
+                "dim={value}, band={value2}",
+                value=attributes.get("dim"),
+                value2=attributes.get("band"),
+            )
             self.problem(
                 "Size of a covariance matrix", self._line, found, expected="two whole numbers"
             )
@@ -305,7 +329,9 @@ class GkfDocument:
                 text[:2].lower() == "xy" and text[:2] not in ("xy", "XY")
             ):
                 expected = "xy, XY, z, Z, xyz, XYZ, XYz or xyZ"
-                self.problem(f"Unknown value of {key}", self._line, text, expected=expected)
+                self.problem(
+                    said("Unknown value of {key}", key=key), self._line, text, expected=expected
+                )
             elif text and key == "fix":
                 entry.fix += text
             elif text:
@@ -321,8 +347,13 @@ class GkfDocument:
                 self.problem(
                     "Two points have one name",
                     self._line,
-                    f"{entry.name} with {axis} = {value:g}",
-                    expected=f"{axis} = {old:g} as in line {entry.line}, or another name",
+                    said("{name} with {axis} = {value:g}", name=entry.name, axis=axis, value=value),
+                    expected=said(
+                        "{axis} = {old:g} as in line {line}, or another name",
+                        axis=axis,
+                        old=old,
+                        line=entry.line,
+                    ),
                     hint="Rename one of them.",
                 )
             elif value is not None:
@@ -341,7 +372,7 @@ class GkfDocument:
             return values() if callable(values) else values
         except SurveyError as refused:
             self.problems += [
-                Problem(p.what, f"{self.name}, {p.where}", p.found, p.expected, p.hint)
+                Problem(p.what, joined(", ", (self.name, p.where)), p.found, p.expected, p.hint)
                 for p in refused.problems
             ]
             return None

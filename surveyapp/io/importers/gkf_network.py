@@ -19,6 +19,7 @@ from surveyapp.domain.traverse import Network
 from surveyapp.errors import SurveyError
 from surveyapp.io.importers.gkf_document import DEFAULTS, KINDS, MM, NEVER_MM, Cluster, GkfDocument
 from surveyapp.io.importers.gkf_points import declared_only, network_point, without_idle
+from surveyapp.languages import said, some
 
 ANGLES = frozenset(
     {
@@ -107,7 +108,10 @@ class _Builder:
         missing = [item for item in needed if item not in attributes]
         if missing:
             document.problem(
-                f"<{name}> is incomplete", line, "no " + ", ".join(missing), expected="these"
+                said("<{name}> is incomplete", name=name),
+                line,
+                said("no {names}", names=", ".join(missing)),
+                expected="these",
             )
             return
         if kind in ANGLES:
@@ -204,7 +208,8 @@ class _Builder:
         ]
         for axis, key in enumerate(("dx", "dy", "dz")):
             if key not in attributes:
-                document.problem("<vec> is incomplete", line, f"no {key}", expected="dx, dy and dz")
+                absent = said("no {key}", key=key)
+                document.problem("<vec> is incomplete", line, absent, expected="dx, dy and dz")
                 continue
             value = document.number(attributes[key], line, key)
             if value is None:
@@ -260,8 +265,8 @@ class _Builder:
             document.problem(
                 "The covariance matrix has a wrong size",
                 cluster.line,
-                f"dim {cluster.dim}",
-                expected=f"{size}, the number of observations",
+                said("dim {dim}", dim=cluster.dim),
+                expected=said("{size}, the number of observations", size=size),
             )
             return
         matrix = _banded(document, cluster, size)
@@ -312,8 +317,7 @@ def _banded(document: GkfDocument, cluster: Cluster, size: int) -> NDArray[np.fl
 
 
 def _lines(lines: Sequence[int]) -> str:
-    more = f" and {len(lines) - 6} more" if len(lines) > 6 else ""
-    return ", ".join(str(line) for line in lines[:6]) + more
+    return some([str(line) for line in lines], 6)
 
 
 def _reading_notes(builder: _Builder) -> list[ResultWarning]:
@@ -321,10 +325,15 @@ def _reading_notes(builder: _Builder) -> list[ResultWarning]:
     notes = []
     if builder.face_right:
         places = _lines(builder.face_right)
-        text = f"zenith angles of face right, taken as 360 degrees minus: lines {places}"
+        text = said(
+            "zenith angles of face right, taken as 360 degrees minus: lines {places}", places=places
+        )
         notes.append(ResultWarning("face_right", text))
     if builder.document.carried:
-        text = f"60 seconds or minutes carried over: lines {_lines(builder.document.carried)}"
+        text = said(
+            "60 seconds or minutes carried over: lines {lines}",
+            lines=_lines(builder.document.carried),
+        )
         notes.append(ResultWarning("sixty_carried", text))
     return notes
 
@@ -353,7 +362,10 @@ def network_from(document: GkfDocument) -> Network:
     used, warnings = without_idle([p for p in points if p is not None], observations)
     warnings += [*told, *_reading_notes(builder)]
     warnings += [
-        ResultWarning("unknown_attribute", f"{document.where(line)}: {name} was not understood")
+        ResultWarning(
+            "unknown_attribute",
+            said("{place}: {name} was not understood", place=document.where(line), name=name),
+        )
         for name, line in document.unknown_attributes.items()
     ]
     if "ellipsoid" in document.parameters:

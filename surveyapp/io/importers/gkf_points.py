@@ -11,6 +11,7 @@ from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import NetworkPoint, Status
 from surveyapp.errors import SurveyError, nearest_names
 from surveyapp.io.importers.gkf_document import GkfDocument, PointEntry
+from surveyapp.languages import joined, said, some
 
 
 def _status(entry: PointEntry, letters: str) -> Status:
@@ -37,7 +38,7 @@ def network_point(document: GkfDocument, entry: PointEntry) -> NetworkPoint | No
             document.problem(
                 item.what,
                 entry.line,
-                f"{item.where}: {item.found}",
+                joined(": ", (item.where, item.found)),
                 expected=item.expected,
                 hint=item.hint,
             )
@@ -73,11 +74,11 @@ def declared_only(
             document.problem(
                 "Unknown point", lines[0], name, expected="a point of the file", hint=hint
             )
-    names = ", ".join(f"{name} (line {lines[0]})" for name, lines in list(lost.items())[:6])
-    more = f" and {len(lost) - 6} more" if len(lost) > 6 else ""
-    text = (
-        f"{len(observations) - len(keep)} observations to points that the file does not declare "
-        f"were left out: {names}{more}"
+    named = [said("{name} (line {line})", name=name, line=lines[0]) for name, lines in lost.items()]
+    text = said(
+        "{value} observations to points that the file does not declare were left out: {names}",
+        value=len(observations) - len(keep),
+        names=some(named, 6),
     )
     warning = ResultWarning("undeclared_points", text)
     return [observations[i] for i in keep], kept_blocks, [warning]
@@ -101,5 +102,5 @@ def without_idle(
         result.append(point)
     if not idle:
         return result, []
-    text = "To be adjusted but not observed, left out: " + ", ".join(idle)
+    text = said("To be adjusted but not observed, left out: {names}", names=", ".join(idle))
     return result, [ResultWarning("points_not_observed", text)]

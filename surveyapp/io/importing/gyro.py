@@ -24,6 +24,7 @@ from surveyapp.io.importing.stations import check_names, match_stations
 from surveyapp.io.importing.texts import RAW_COLUMNS, csv_text, degrees, plain
 from surveyapp.io.importing.traverse import ImportOptions, Planned, traverse_name
 from surveyapp.io.importing.writing import Additions, Content, FileCopy, stored_name, taken_files
+from surveyapp.languages import said
 from surveyapp_models.angles import RHO_ARCSEC
 
 _UNSAFE: Final = '/\\:*?"<>| '
@@ -158,8 +159,14 @@ def _instrument(
     )
     warning = ResultWarning(
         "instrument_added",
-        f"{instrument} was no instrument of the project ({known}): it was added with the card "
-        f"{path}, which knows no sigma; name its real card in project.toml",
+        said(
+            "{instrument} was no instrument of the project ({known}): it was added "
+            "with the card {path}, which knows no sigma; name its real card in "
+            "project.toml",
+            instrument=instrument,
+            known=known,
+            path=path,
+        ),
     )
     return {path: (text, {"id": instrument, "card": path})}, [warning]
 

@@ -12,6 +12,7 @@ from typing import Final
 from surveyapp.domain.fieldfile import ImportedStation, KnownPoint, State
 from surveyapp.domain.project import Project, ResultWarning, Station
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import said
 
 SAME_M: Final = 1e-3
 """Coordinates that agree within a millimetre are the same (formats.md)."""
@@ -37,13 +38,15 @@ def _gap(station: Station, point: KnownPoint) -> float:
 
 def _conflict(station: Station, point: KnownPoint) -> ResultWarning:
     gap = _gap(station, point)
-    text = (
-        f"{station.name}: the file (line {point.line}) lies {gap:.3f} m away; the project's "
-        "coordinates were kept"
+    text = said(
+        "{name}: the file (line {line}) lies {gap:.3f} m away; the project's coordinates were kept",
+        name=station.name,
+        line=point.line,
+        gap=gap,
     )
     rest = math.remainder(gap, _LOST_FRONT_M)
     if gap > 0.5 * _LOST_FRONT_M and abs(rest) < 1.0:
-        text += "; GSI-8 cuts coordinates beyond 99,999.999 m: is the front missing?"
+        text += said("; GSI-8 cuts coordinates beyond 99,999.999 m: is the front missing?")
     return ResultWarning("station_conflict", text)
 
 
@@ -107,14 +110,21 @@ def match_stations(
             stations.append(ImportedStation(name, point.e, point.n, point.h, "added"))
             near = folded.get(name.casefold())
             if near is not None:
-                text = f"{name} is new, though the project has {near}: is it the same point?"
+                text = said(
+                    "{name} is new, though the project has {near}: is it the same point?",
+                    name=name,
+                    near=near,
+                )
                 warnings.append(ResultWarning("similar_name", text))
             continue
         clash = _gap(old, point) > SAME_M
         if clash:
             warnings.append(_conflict(old, point))
         elif (old.e is None and point.e is not None) or (old.h is None and point.h is not None):
-            text = f"{name}: the file holds coordinates that the project has not; not taken over"
+            text = said(
+                "{name}: the file holds coordinates that the project has not; not taken over",
+                name=name,
+            )
             warnings.append(ResultWarning("coordinates_not_taken", text))
         state: State = "conflict" if clash else "same"
         stations.append(ImportedStation(name, old.e, old.n, old.h, state))

@@ -27,6 +27,7 @@ from surveyapp.io.importers.fieldfiles.lines import field_digest
 from surveyapp.io.importing.stations import check_names, match_stations
 from surveyapp.io.importing.texts import book_text, raw_text
 from surveyapp.io.importing.writing import Additions, Content, FileCopy, stored_name, taken_files
+from surveyapp.languages import said
 from surveyapp_models.angles import RHO_ARCSEC
 
 ASSUMED_ANGLE_ARCSEC: Final = 5.0
@@ -88,7 +89,7 @@ def traverse_name(options: ImportOptions, file: Path) -> str:
         or len(told) > 100
         or any(c in _UNSAFE or not c.isprintable() for c in told)
     ):
-        expected = f"printable characters without {_UNSAFE}, no dot in front"
+        expected = said("printable characters without {unsafe}, no dot in front", unsafe=_UNSAFE)
         raise SurveyError(Problem("this is no name", "--traverse", shown(told), expected))
     return told
 
@@ -139,15 +140,17 @@ def _sigmas(
     angle, first = _angle_sigma(options.sigma_angle_arcsec, faces)
     zenith, more = _zenith_sigma(options.sigma_angle_arcsec, zeniths)
     distance, second = _distance_sigma(options.sigma_distance, lengths)
-    centring = (
-        f"{ASSUMED_CENTRING_MM:g} mm are assumed for centring and for the height of instrument and "
-        "target, each once for a set-up"
+    centring = said(
+        "{assumed_centring_mm:g} mm are assumed for centring and for the "
+        "height of instrument and target, each once for a set-up",
+        assumed_centring_mm=ASSUMED_CENTRING_MM,
     )
     table: dict[str, object] = {
         "sigma_angle_arcsec": float(angle),
         **({} if zenith is None else {"sigma_zenith_arcsec": zenith}),
         "sigma_distance": {"mm": float(distance[0]), "ppm": float(distance[1])},
         **({"sigma_dof": dof} if dof else {}),
+        "centring_assumed": True,
         "centring_mm": {"instrument": ASSUMED_CENTRING_MM, "target": ASSUMED_CENTRING_MM},
         "sigma_height_mm": {"instrument": ASSUMED_CENTRING_MM, "target": ASSUMED_CENTRING_MM},
     }
@@ -185,12 +188,19 @@ def _angle_sigma(
     angle = told
     if angle is None and faces is not None:
         angle = _two_digits(faces.angle * RHO_ARCSEC)
-        text = f'sigma of an angle {angle:g}" from faces and sets ({faces.dof} degrees of freedom)'
+        text = said(
+            'sigma of an angle {angle:g}" from faces and sets ({dof} degrees of freedom)',
+            angle=angle,
+            dof=faces.dof,
+        )
         warnings.append(ResultWarning("sigma_from_faces", text))
     elif angle is None:
         angle = ASSUMED_ANGLE_ARCSEC
-        text = f'sigma of an angle {angle:g}" is assumed: too few pairs of faces to estimate it'
-        warnings.append(ResultWarning("sigma_assumed", text + " (--sigma-angle tells it)"))
+        text = said(
+            'sigma of an angle {angle:g}" is assumed: too few pairs of faces to estimate it',
+            angle=angle,
+        )
+        warnings.append(ResultWarning("sigma_assumed", text + said(" (--sigma-angle tells it)")))
     return angle, warnings
 
 
@@ -201,8 +211,10 @@ def _zenith_sigma(
     if told is not None or scatter is None:
         return None, []
     zenith = _two_digits(scatter[0] * RHO_ARCSEC)
-    text = (
-        f'sigma of a zenith angle {zenith:g}" from faces and sets ({scatter[1]} degrees of freedom)'
+    text = said(
+        'sigma of a zenith angle {zenith:g}" from faces and sets ({scatter} degrees of freedom)',
+        zenith=zenith,
+        scatter=scatter[1],
     )
     return zenith, [ResultWarning("sigma_from_faces", text)]
 
@@ -214,12 +226,20 @@ def _distance_sigma(
         return told, []
     if scatter is None:
         distance = (ASSUMED_MM, ASSUMED_PPM)
-        text = f"sigma of a distance {distance[0]:g} mm + {distance[1]:g} ppm is assumed"
-        return distance, [ResultWarning("sigma_assumed", text + " (--sigma-distance tells it)")]
+        text = said(
+            "sigma of a distance {distance:g} mm + {distance2:g} ppm is assumed",
+            distance=distance[0],
+            distance2=distance[1],
+        )
+        return distance, [
+            ResultWarning("sigma_assumed", text + said(" (--sigma-distance tells it)"))
+        ]
     distance = (_two_digits(scatter[0] * 1000.0), 0.0)
-    text = (
-        f"sigma of a distance {distance[0]:g} mm from faces and sets ({scatter[1]} degrees of "
-        "freedom): zero and scale of the instrument are not in it"
+    text = said(
+        "sigma of a distance {distance:g} mm from faces and sets ({scatter} "
+        "degrees of freedom): zero and scale of the instrument are not in it",
+        distance=distance[0],
+        scatter=scatter[1],
     )
     return distance, [ResultWarning("sigma_from_sets", text)]
 
@@ -310,7 +330,7 @@ def _planned(project: Project, form: str, file: Path, options: ImportOptions) ->
     sets, told = reduce_file(read)
     stations, tables, station_warnings = match_stations(project, names, points, options.fixed)
     sigmas, sigma_warnings = _sigmas(options, sets)
-    book, raw = f"observations/{name}.csv", f"imports/{name}.raw.csv"
+    book, raw = said("observations/{name}.csv", name=name), f"imports/{name}.raw.csv"
     text, rows = book_text(sets)
     stored = stored_name(folder, copied, name)
     files: dict[str, Content] = {stored: copied, raw: raw_text(read), book: text}

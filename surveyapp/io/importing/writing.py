@@ -18,6 +18,7 @@ from surveyapp.io.importers.fieldfiles.lines import field_digest, open_field_fil
 from surveyapp.io.importers.fieldfiles.parts import parts_hint
 from surveyapp.io.tomltext import atomic_write
 from surveyapp.io.writing import append_tables
+from surveyapp.languages import said
 
 _CHUNK: Final = 1 << 20
 
@@ -109,7 +110,7 @@ def taken_files(
                     "the readings are too many for one book",
                     shown(name),
                     f"{len(content) / 1e6:.0f} MB",
-                    f"at most {MAX_BYTES // 2**20} MB",
+                    said("at most {size} MB", size=MAX_BYTES // 2**20),
                     parts_hint(parts),
                 )
             )
@@ -172,7 +173,10 @@ def _write_new(folder: Path, name: str, content: Content, made: list[Path]) -> N
             made.append(parent)
     except OSError as error:
         raise SurveyError(
-            Problem(f"the folder cannot be made ({error.strerror or error})", shown(str(parent)))
+            Problem(
+                said("the folder cannot be made ({strerror})", strerror=error.strerror or error),
+                shown(str(parent)),
+            )
         ) from None
     made.append(path)
     atomic_write(path, content if isinstance(content, bytes) else _pieces(content))

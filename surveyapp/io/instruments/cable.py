@@ -11,6 +11,7 @@ from typing import Any, Final
 
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import shown
+from surveyapp.languages import said
 
 BAUD: Final = 9600
 _LONGEST: Final = 400
@@ -20,7 +21,9 @@ _LONGEST: Final = 400
 def cable_problem(what: str, port: str, found: str = "", hint: str = "") -> SurveyError:
     """An error of the cable."""
     return SurveyError(
-        Problem(what, f"instrument on {port}", shown(found) if found else "", "", hint)
+        Problem(
+            what, said("instrument on {port}", port=port), shown(found) if found else "", "", hint
+        )
     )
 
 
@@ -80,7 +83,9 @@ class Cable:
         text = answer.decode("latin-1").strip("\r\n\x02\x03 ")
         if not text:
             hint = "is the instrument on, in measuring mode, with this protocol and baud rate?"
-            raise cable_problem(f"no answer within {limit:g} s", self.port, "", hint)
+            raise cable_problem(
+                said("no answer within {limit:g} s", limit=limit), self.port, "", hint
+            )
         return text
 
     def _line(self, limit: float) -> bytes:

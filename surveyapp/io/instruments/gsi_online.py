@@ -12,6 +12,7 @@ from surveyapp.domain.instrument_reading import InstrumentReading
 from surveyapp.io.importers.fieldfiles.gsi_words import Word, WordError, words
 from surveyapp.io.importers.fieldfiles.units import FOOT
 from surveyapp.io.instruments.cable import Cable, cable_problem
+from surveyapp.languages import said
 
 _MEASURE_S = 15.0
 
@@ -26,7 +27,7 @@ def _words(cable: Cable, request: str, timeout_s: float | None = None) -> dict[s
     except WordError as error:
         hint = "is the instrument in GSI online mode?"
         raise cable_problem(
-            f"this is no answer of GSI: {error}", cable.port, answer, hint
+            said("this is no answer of GSI: {error}", error=error), cable.port, answer, hint
         ) from None
 
 
@@ -40,7 +41,7 @@ def _reading(cable: Cable, found: dict[str, Word]) -> InstrumentReading:
         if "31" in found and not found["31"].empty:
             length = found["31"].length(FOOT)[0] or None
     except WordError as error:
-        raise cable_problem(str(error), cable.port) from None
+        raise cable_problem(error.args[0], cable.port) from None
     if not (0.0 <= hz <= 2.0 * math.pi and (v is None or 0.0 <= v <= 2.0 * math.pi)):
         raise cable_problem("the angles are beyond the circle", cable.port)
     return InstrumentReading(math.fmod(hz, 2.0 * math.pi), v, length, f"GSI Online on {cable.port}")

@@ -14,6 +14,7 @@ import re
 
 from surveyapp.domain.instrument_reading import InstrumentReading
 from surveyapp.io.instruments.cable import Cable, cable_problem
+from surveyapp.languages import said
 
 _ANSWER = re.compile(r"(\S+)\s+(-?\d{1,7})\s+(-?\d{1,7})(?:\s+\S+)?")
 _MEASURE_S = 15.0
@@ -29,7 +30,7 @@ def _check_settings(cable: Cable) -> None:
         raise cable_problem("this is no answer of the settings", cable.port, answer, hint)
     wrong = [name for place, value, name in _SETTINGS if parts[place] != value]
     if wrong:
-        hint = f"set it to {', '.join(wrong)}"
+        hint = said("set it to {names}", names=", ".join(wrong))
         raise cable_problem("the instrument is set to other units", cable.port, answer, hint)
 
 

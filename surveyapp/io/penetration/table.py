@@ -33,6 +33,7 @@ from surveyapp.domain.penetration import (
 )
 from surveyapp.errors import Problem, nearest_names
 from surveyapp.io.tables import Findings, Table, as_number
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, TWO_PI, AngleUnit
 
 MM: Final = 1e-3
@@ -94,13 +95,17 @@ def read_penetration(
 def axis(table: Table, key: str, unit: AngleUnit) -> float:
     """Direction [rad]: text in the project's unit, a number in decimal degrees."""
     if key not in table:
-        table.problem(f"{key} is missing", "", f'{key} = "..." or a number in decimal degrees')
+        table.problem(
+            said("{key} is missing", key=key),
+            "",
+            said('{key} = "..." or a number in decimal degrees', key=key),
+        )
         return 0.0
     number = as_number(table.get(key))
     if number is None:
         return table.angle(key, unit) or 0.0
     if not -360.0 <= number <= 360.0:
-        table.problem(f"{key} is out of range", number, "0 to 360 degrees")
+        table.problem(said("{key} is out of range", key=key), number, "0 to 360 degrees")
     return math.radians(number) % TWO_PI
 
 
@@ -146,7 +151,7 @@ def texts(table: Table, key: str) -> list[str] | None:
     if value is None:
         return None
     if not isinstance(value, list) or not all(isinstance(item, str) and item for item in value):
-        table.problem(f"{key} is no list of texts", value, f'{key} = ["...", "..."]')
+        table.problem(said("{key} is no list of texts", key=key), value, f'{key} = ["...", "..."]')
         return None
     return [str(item) for item in value]
 
@@ -235,7 +240,11 @@ def whole(table: Table, key: str, *, default: int, low: int, high: int) -> int:
     if value is None:
         return default
     if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
-        table.problem(f"{key} is out of range", value, f"a whole number from {low} to {high}")
+        table.problem(
+            said("{key} is out of range", key=key),
+            value,
+            said("a whole number from {low} to {high}", low=low, high=high),
+        )
         return default
     return value
 

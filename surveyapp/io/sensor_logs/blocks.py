@@ -21,6 +21,7 @@ from surveyapp.domain.sensor_log import Array
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import shown, shown_path
 from surveyapp.io.sensor_logs.layout import Layout
+from surveyapp.languages import said
 
 BLOCK_BYTES: Final = 8 * 1024 * 1024
 MAPPED_VALUES: Final = 8_000_000
@@ -45,7 +46,7 @@ class Wrong:
         """Note one."""
         self.count += 1
         if self.count <= MAX_TOLD:
-            place = f"{self.where}, line {line}"
+            place = said("{where}, line {line}", where=self.where, line=line)
             self.problems.append(Problem(what, place, shown(found), expected, hint))
 
     def all(self) -> list[Problem]:
@@ -53,7 +54,10 @@ class Wrong:
         more = self.count - len(self.problems)
         if not more:
             return list(self.problems)
-        return [*self.problems, Problem(f"{more} further cells are wrong", self.where)]
+        return [
+            *self.problems,
+            Problem(said("{more} further cells are wrong", more=more), self.where),
+        ]
 
 
 @dataclass(slots=True)
@@ -96,7 +100,7 @@ def text_blocks(path: Path, *, where: str, digest: bool = True) -> Iterator[tupl
                 rest = data[cut:]
     except OSError as error:
         reason = error.strerror or str(error)
-        what = f"the file cannot be read ({reason})"
+        what = said("the file cannot be read ({reason})", reason=reason)
         raise SurveyError(Problem(what, where, shown_path(path))) from None
     yield rest, total
 
@@ -179,9 +183,14 @@ def _decoded(block: bytes, line: int, where: str) -> str:
         return block.decode("utf-8-sig" if line == 1 else "utf-8").replace("\r\n", "\n")
     except UnicodeDecodeError as error:
         at = line + block.count(b"\n", 0, error.start)
-        found = f"byte 0x{block[error.start]:02x}"
+        found = said("byte 0x{block:02x}", block=block[error.start])
         raise SurveyError(
-            Problem("this is no UTF-8 text", f"{where}, line {at}", found, "text in UTF-8")
+            Problem(
+                "this is no UTF-8 text",
+                said("{where}, line {at}", where=where, at=at),
+                found,
+                "text in UTF-8",
+            )
         ) from None
 
 
@@ -229,7 +238,7 @@ def _parse_lines(
             wrong.add(
                 line,
                 "a row of another width",
-                f"{len(cells)} cells",
+                said("{size} cells", size=len(cells)),
                 expected=str(width),
                 hint=hint,
             )
@@ -256,5 +265,11 @@ def _number(cell: str, place: tuple[int, str], wrong: Wrong) -> float:
         return float(text)
     except ValueError:
         hint = "numbers take a decimal point" if "," in text else ""
-        wrong.add(place[0], f"{place[1]} is no number", cell, expected="a number", hint=hint)
+        wrong.add(
+            place[0],
+            said("{place} is no number", place=place[1]),
+            cell,
+            expected="a number",
+            hint=hint,
+        )
         return 0.0

@@ -16,6 +16,7 @@ import numpy as np
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import NUMBER_COLUMNS, SENSOR_COLUMNS, TRIPLES, Array, Gap
 from surveyapp.errors import Problem
+from surveyapp.languages import counted, either, said
 
 GAP_FACTOR: Final = 2.5
 """An interval of more than so many median ones is a gap."""
@@ -69,8 +70,13 @@ def not_finite(
         return []
     return [
         Problem(
-            f"{name} is not a number in {count} {'row' if count == 1 else 'rows'}",
-            f"{where}, line {first_row + first}",
+            counted(
+                "{name} is not a number in {count} row",
+                "{name} is not a number in {count} rows",
+                name=name,
+                count=count,
+            ),
+            said("{where}, line {line}", where=where, line=first_row + first),
             str(values[first]) if not np.isnan(values[first]) else "NaN or an empty cell",
             "a number that a sensor can give, in each row",
             "cut the log where the sensor was silent, or leave these rows out",
@@ -83,8 +89,11 @@ def constant(name: str, values: Array, *, where: str) -> list[Problem]:
     if values.size < 2 or any(np.any(piece != values[0]) for piece in pieces(values)):
         return []
     hint = "is the sensor connected, and is it the right column?"
-    found, expected = f"{values[0]:g} in all {values.size} rows", "a column that varies"
-    return [Problem(f"{name} is constant", where, found, expected, hint)]
+    found, expected = (
+        said("{values:g} in all {size} rows", values=values[0], size=values.size),
+        "a column that varies",
+    )
+    return [Problem(said("{name} is constant", name=name), where, found, expected, hint)]
 
 
 def bad_times(time: Array, *, where: str, first_row: int) -> list[Problem]:
@@ -97,13 +106,25 @@ def bad_times(time: Array, *, where: str, first_row: int) -> list[Problem]:
             if found[0] == 0 and bad.any():
                 found[1] = start + int(np.argmax(bad)) + 1
             found[0] += int(np.count_nonzero(bad))
-    for (count, row), what in ((back, "runs backwards"), (twice, "stands twice")):
+    told = (
+        counted(
+            "time_s runs backwards in {count} place",
+            "time_s runs backwards in {count} places",
+            count=back[0],
+        ),
+        counted(
+            "time_s stands twice in {count} place",
+            "time_s stands twice in {count} places",
+            count=twice[0],
+        ),
+    )
+    for (count, row), what in zip((back, twice), told, strict=True):
         if count:
             problems.append(
                 Problem(
-                    f"time_s {what} in {count} {'place' if count == 1 else 'places'}",
-                    f"{where}, line {first_row + row}",
-                    f"{time[row]:.12g} after {time[row - 1]:.12g}",
+                    what,
+                    said("{where}, line {line}", where=where, line=first_row + row),
+                    said("{time:.12g} after {time2:.12g}", time=time[row], time2=time[row - 1]),
                     "increasing times",
                     "are two records in one file, or was it sorted by another column?",
                 )
@@ -166,15 +187,22 @@ def implausible(
             continue
         unstated = not all(column in stated for column in names)
         whole = all(_whole(columns[c]) for c in names)
-        what = f"{name}_x/y/z cannot be in {bounds.unit}"
+        what = said("{name}_x/y/z cannot be in {unit}", name=name, unit=bounds.unit)
         if unstated and whole:
-            what = f"{name}_x/y/z are counts without a unit"
+            what = said("{name}_x/y/z are counts without a unit", name=name)
         units = [unit for unit, low, high in bounds.looks_like if low <= median <= high]
         hint = "counts take --scale COLUMN=VALUE"
         if units:
-            hint = f"is it {' or '.join(units)}? --unit COLUMN={units[0]}; {hint}"
-        found = f"a median size of {median:.6g} {bounds.unit}"
-        expected = f"{bounds.low:g} to {bounds.high:g} {bounds.unit}"
+            hint = said(
+                "is it {names}? --unit COLUMN={units}; {hint}",
+                names=either(units),
+                units=units[0],
+                hint=hint,
+            )
+        found = said("a median size of {median:.6g} {unit}", median=median, unit=bounds.unit)
+        expected = said(
+            "{low:g} to {high:g} {unit}", low=bounds.low, high=bounds.high, unit=bounds.unit
+        )
         problems.append(Problem(what, where, found, expected, hint))
     return problems
 
@@ -195,10 +223,16 @@ def unstated_counts(
             continue
         if _whole(values) and float(np.ptp(values)) > 0.0:
             unit = "deg/s" if name in TRIPLES["gyr"] else NUMBER_COLUMNS[name]
-            hint = f"counts take --scale COLUMN=VALUE (and --unit COLUMN={unit})"
-            found = f"whole numbers from {values.min():g} to {values.max():g}"
+            hint = said("counts take --scale COLUMN=VALUE (and --unit COLUMN={unit})", unit=unit)
+            found = said(
+                "whole numbers from {value:g} to {value2:g}",
+                value=values.min(),
+                value2=values.max(),
+            )
             problems.append(
-                Problem(f"{name} is counts without a unit", where, found, "a unit", hint)
+                Problem(
+                    said("{name} is counts without a unit", name=name), where, found, "a unit", hint
+                )
             )
     return problems
 
@@ -225,11 +259,14 @@ def mixed_units(columns: Mapping[str, Array], *, where: str) -> list[Problem]:
             found = ", ".join(f"{c} {s:.4g}" for c, s in zip(names, spans, strict=True))
             problems.append(
                 Problem(
-                    f"{name}_x/y/z are in different units",
+                    said("{name}_x/y/z are in different units", name=name),
                     where,
-                    f"ranges {found}",
+                    said("ranges {found}", found=found),
                     "one unit for the three axes",
-                    f"give each its own: --unit COLUMN=..., for {names[large]} as well",
+                    said(
+                        "give each its own: --unit COLUMN=..., for {names} as well",
+                        names=names[large],
+                    ),
                 )
             )
     return problems
@@ -255,9 +292,12 @@ def gap_warning(gaps: tuple[Gap, ...]) -> list[ResultWarning]:
     if not gaps:
         return []
     longest = max(gaps, key=lambda gap: gap.end_s - gap.start_s)
-    text = (
-        f"{len(gaps)} {'gap' if len(gaps) == 1 else 'gaps'} in the record; the longest from "
-        f"{longest.start_s:g} to {longest.end_s:g} s."
+    text = counted(
+        "{count} gap in the record; the longest from {start_s:g} to {end_s:g} s.",
+        "{count} gaps in the record; the longest from {start_s:g} to {end_s:g} s.",
+        count=len(gaps),
+        start_s=longest.start_s,
+        end_s=longest.end_s,
     )
     return [ResultWarning("gaps", text)]
 
@@ -267,7 +307,12 @@ def clip_warning(clipped: Mapping[str, int]) -> list[ResultWarning]:
     return [
         ResultWarning(
             "clipped",
-            f"{name} stands at the end of its range in {rows} rows: larger values were lost there.",
+            said(
+                "{name} stands at the end of its range in {rows} rows: larger values "
+                "were lost there.",
+                name=name,
+                rows=rows,
+            ),
         )
         for name, rows in clipped.items()
     ]

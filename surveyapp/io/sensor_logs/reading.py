@@ -28,6 +28,7 @@ from surveyapp.io.sensor_logs import checks
 from surveyapp.io.sensor_logs.blocks import Progress, Rows, Wrong, count_lines, read_rows
 from surveyapp.io.sensor_logs.layout import LOOKED_AT, Layout, find_layout
 from surveyapp.io.sensor_logs.units import COUNTS, DIMENSIONLESS, UNITS, factor_to, unit_in_name
+from surveyapp.languages import said
 
 _HEAD_BYTES: Final = 1 << 18
 
@@ -171,17 +172,21 @@ class LogFile:
         for name in dict.fromkeys(wanted):
             if name in self.places:
                 continue
-            hint = f"--map {name}=COLUMN names it" if name not in need.others else ""
+            hint = ""
+            if name not in need.others:
+                hint = said("--map {name}=COLUMN names it", name=name)
             if name == "time_s":
-                hint += "; --rate-hz replaces it"
+                hint += said("; --rate-hz replaces it")
             listing = ", ".join(shown(n) for n in self.layout.names)
-            problems.append(Problem(f"the column {name} is missing", where, listing, name, hint))
+            what = said("the column {name} is missing", name=name)
+            problems.append(Problem(what, where, listing, name, hint))
         for name in need.unit_stated:
             if name in self.places and not self.places[name].stated:
                 column = self.places[name].name
-                hint = f"--unit {column}=LSB for counts"
+                hint = said("--unit {column}=LSB for counts", column=column)
                 expected = "a unit for this column"
-                problems.append(Problem(f"{name} has no unit", where, column, expected, hint))
+                what = said("{name} has no unit", name=name)
+                problems.append(Problem(what, where, column, expected, hint))
         return problems
 
     def _wanted(self, need: Need) -> tuple[list[str], list[str]]:
@@ -272,10 +277,10 @@ def open_log(request: LogRequest) -> LogFile:
         with request.path.open("rb") as stream:
             head = stream.read(_HEAD_BYTES)
     except OSError as error:
-        what = f"the file cannot be read ({error.strerror or error})"
+        what = said("the file cannot be read ({strerror})", strerror=error.strerror or error)
         raise SurveyError(Problem(what, where, shown_path(request.path))) from None
     except ValueError as error:
-        raise SurveyError(Problem(f"this is no path ({error})", where)) from None
+        raise SurveyError(Problem(said("this is no path ({error})", error=error), where)) from None
     whole = head if len(head) < _HEAD_BYTES else head[: head.rfind(b"\n") + 1]
     lines = decode(whole, where=where).replace("\r\n", "\n").split("\n")[:LOOKED_AT]
     if not whole.strip():
@@ -338,7 +343,7 @@ def _suffix(canonical: str) -> str:
 def _no_column(column: str, names: Sequence[str], where: str) -> Problem:
     count = list(names).count(column)
     if count > 1:
-        what, hint = f"{count} columns have this name", "rename one of them"
+        what, hint = said("{number} columns have this name", number=count), "rename one of them"
     else:
         what, hint = "the file has no such column", nearest_names(column, names)
     return Problem(what, where, shown(column), "a column of the file", hint)
@@ -365,15 +370,21 @@ def _place(
         return Place(index, name, unit or DIMENSIONLESS, scale or 1.0, stated, scale is not None)
     factor = 1.0 if unit is None else factor_to(canonical, unit)
     if factor is None:
-        expected = f"a unit of {canonical}, such as {NUMBER_COLUMNS[canonical]}"
+        expected = said(
+            "a unit of {canonical}, such as {number_columns}",
+            canonical=canonical,
+            number_columns=NUMBER_COLUMNS[canonical],
+        )
         problems.append(Problem("this unit does not fit the column", where, unit or "", expected))
         factor = 1.0
     if unit == COUNTS and scale is None and canonical in SENSOR_COLUMNS and canonical != "output":
-        hint = f"--scale {name}=VALUE, the {NUMBER_COLUMNS[canonical]} of one count"
-        expected = "the value of one count"
-        problems.append(
-            Problem(f"{canonical} is counts without a scale", where, "LSB", expected, hint)
+        hint = said(
+            "--scale {name}=VALUE, the {number_columns} of one count",
+            name=name,
+            number_columns=NUMBER_COLUMNS[canonical],
         )
+        what = said("{name} is counts without a scale", name=canonical)
+        problems.append(Problem(what, where, "LSB", "the value of one count", hint))
     held = unit if canonical == "output" and unit is not None else NUMBER_COLUMNS[canonical]
     return Place(index, name, held, factor * (scale or 1.0), stated, scale is not None)
 

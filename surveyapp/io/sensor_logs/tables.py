@@ -15,6 +15,7 @@ from surveyapp.io.files import shown
 from surveyapp.io.sensor_logs.reading import LogRequest
 from surveyapp.io.sensor_logs.units import UNITS
 from surveyapp.io.tables import Table, as_number
+from surveyapp.languages import said
 
 _MAX_HEADER: Final = 150
 
@@ -75,7 +76,12 @@ def _entry(table: Table) -> SensorLogEntry:
     for column, unit in units.items():
         if unit not in UNITS:
             hint = nearest_names(unit, UNITS)
-            table.problem(f"units: {shown(column)} has no known unit", unit, "a unit", hint)
+            table.problem(
+                said("units: {column} has no known unit", column=shown(column)),
+                unit,
+                "a unit",
+                hint,
+            )
     rows = table.number("header_rows", low=0, high=_MAX_HEADER)
     sha256 = table.text("sha256")
     entry = SensorLogEntry(
@@ -115,7 +121,9 @@ def _numbers(table: Table, key: str) -> dict[str, float]:
     for name, value in inner.data.items():
         number = as_number(value)
         if number is None or number == 0.0:
-            inner.problem(f"{shown(name)} is no usable scale", value, "a number other than 0")
+            inner.problem(
+                said("{name} is no usable scale", name=shown(name)), value, "a number other than 0"
+            )
         else:
             found[name] = number
     return found

@@ -13,6 +13,7 @@ from surveyapp.domain.shaft import ShaftRow, ShaftRowKind
 from surveyapp.errors import Problem, nearest_names
 from surveyapp.io.files import shown
 from surveyapp.io.measures import MEASURES, is_measure
+from surveyapp.languages import either, said
 from surveyapp_models.angles import ARCSEC, AngleError, AngleUnit, parse_angle
 
 COLUMNS: Final = (
@@ -67,10 +68,10 @@ class _Row:
         if is_measure(value):
             return value
         if math.isfinite(value):
-            self.problem(f"{key} is beyond all measures", text, MEASURES)
+            self.problem(said("{key} is beyond all measures", key=key), text, MEASURES)
             return None
         hint = "decimals are written with a point" if "," in text else ""
-        self.problem(f"{key} is no number", text, "a number", hint)
+        self.problem(said("{key} is no number", key=key), text, "a number", hint)
         return None
 
     def value(self, kind: ShaftRowKind, default: AngleUnit) -> float | None:
@@ -80,20 +81,24 @@ class _Row:
             return None
         if kind in (K.ANGLE, K.AZIMUTH):
             if unit and unit not in _UNITS:
-                self.problem(f"{kind} in a wrong unit", unit, "dms, gon or deg")
+                self.problem(said("{kind} in a wrong unit", kind=kind), unit, "dms, gon or deg")
                 return None
             try:
                 return parse_angle(text, _UNITS[unit] if unit else default)
             except AngleError as error:
-                self.problem(f"{kind} is no angle", text, error.expected, error.hint)
+                self.problem(
+                    said("{kind} is no angle", kind=kind), text, error.expected, error.hint
+                )
                 return None
         units = _LENGTH_UNITS[kind]
         if unit not in units:
-            self.problem(f"{kind} in a wrong unit", unit, " or ".join(u for u in units if u))
+            self.problem(
+                said("{kind} in a wrong unit", kind=kind), unit, either(u for u in units if u)
+            )
             return None
         number = self.number("value")
         if number is not None and number <= 0.0 and kind is not K.SWING:
-            self.problem(f"{kind} is not positive", text, "above 0 m")
+            self.problem(said("{kind} is not positive", kind=kind), text, "above 0 m")
             return None
         return None if number is None else number * units[unit]
 
@@ -106,7 +111,7 @@ class _Row:
         units = _SIGMA_UNITS[kind]
         unit = unit or next(iter(units))
         if unit not in units:
-            self.problem("the sigma has a wrong unit", unit, " or ".join(units))
+            self.problem("the sigma has a wrong unit", unit, either(units))
             return None
         number = self.number("sigma")
         if number is not None and number <= 0.0:
@@ -127,7 +132,7 @@ def _points(row: _Row, kind: ShaftRowKind) -> None:
     cells = row.cells
     for key in needed:
         if not cells[key]:
-            row.problem(f"{key} is missing", "", "the name of a point")
+            row.problem(said("{key} is missing", key=key), "", "the name of a point")
     names = [cells[key] for key in needed if cells[key]]
     if len(set(names)) < len(names):
         row.problem("a sight to itself", ", ".join(names), "different points")
@@ -144,7 +149,7 @@ def _read(row: _Row, default: AngleUnit, line: int) -> ShaftRow | None:
     kind = K(cells["kind"])
     place = cells["place"] or ("underground" if kind is K.AZIMUTH else "")
     if place not in PLACES and not (place == "" and kind in (K.SWING, K.DEPTH)):
-        row.problem("the place is not known", place, " or ".join(PLACES))
+        row.problem("the place is not known", place, either(PLACES))
     _points(row, kind)
     value, sigma = row.value(kind, default), row.sigma(kind)
     if len(row.problems) > before or value is None:
@@ -186,12 +191,12 @@ def parse_shaft_book(
             stripped = [cell.strip() for cell in cells]
             if not any(stripped) or stripped[0].startswith("#"):
                 continue
-            place = f"{where}, line {reader.line_num}"
+            place = said("{where}, line {line_num}", where=where, line_num=reader.line_num)
             if header is None:
                 header = [name.lower() for name in stripped]
                 missing = [name for name in REQUIRED if name not in header]
                 if missing:
-                    what = f"there is no column {', '.join(missing)}"
+                    what = said("there is no column {names}", names=", ".join(missing))
                     problems.append(Problem(what, place, shown(",".join(cells)), ",".join(COLUMNS)))
                     return rows, problems
                 continue
@@ -206,7 +211,12 @@ def parse_shaft_book(
             if row is not None:
                 rows.append(row)
     except csv.Error as error:
-        problems.append(Problem(f"no CSV ({error})", f"{where}, line {reader.line_num}"))
+        problems.append(
+            Problem(
+                said("no CSV ({error})", error=error),
+                said("{where}, line {line_num}", where=where, line_num=reader.line_num),
+            )
+        )
     if header is None:
         problems.append(Problem("the book is empty", where, "", ",".join(COLUMNS)))
     return rows, problems

@@ -12,6 +12,7 @@ from surveyapp.io.files import decode
 from surveyapp.io.project_files import ProjectFiles, inside
 from surveyapp.io.shafts.book import parse_shaft_book
 from surveyapp.io.tables import Findings, Table
+from surveyapp.languages import either, said
 from surveyapp_models.angles import ARCSEC, AngleUnit
 
 MM: Final = 1e-3
@@ -134,9 +135,9 @@ def _row_problems(shaft: Shaft, book: str) -> list[Problem]:
     """What the rows of a book lack for their shaft."""
     problems = []
     for row in shaft.rows:
-        where = f"{book}, line {row.line}"
+        where = said("{book}, line {line}", book=book, line=row.line)
         if row.kind is ShaftRowKind.SWING and row.at not in shaft.wires:
-            found, expected = row.at, " or ".join(shaft.wires)
+            found, expected = row.at, either(shaft.wires)
             problems.append(Problem("a swing of something that is no wire", where, found, expected))
         silent = row.sigma is None and (
             (row.kind is ShaftRowKind.ANGLE and shaft.sigma_angle is None)

@@ -18,6 +18,7 @@ from surveyapp.io.files import decode
 from surveyapp.io.project_files import PROJECT_FILE, ProjectFiles, inside
 from surveyapp.io.tables import Findings, Table
 from surveyapp.io.traverse.rows import parse_traverse
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, AngleUnit
 
 MM = 1e-3
@@ -80,7 +81,11 @@ def _read_traverse(
     traverse = replace(traverse, rows=tuple(rows))
     files.findings.problems += problems
     if not rows and not problems:
-        text = f"{traverse.book}: the book of {table.where} has no observation yet"
+        text = said(
+            "{book}: the book of {where} has no observation yet",
+            book=traverse.book,
+            where=table.where,
+        )
         files.findings.warnings.append(ResultWarning("empty_book", text, traverse.subject))
     return traverse
 
@@ -110,7 +115,7 @@ def _sigma_dof(table: Table) -> tuple[tuple[str, float], ...]:
 
 
 def _header(table: Table, number: int) -> Traverse:
-    name = table.text("name", required=True) or f"number {number}"
+    name = table.text("name", required=True) or said("number {number}", number=number)
     table.where = f"{PROJECT_FILE}, [[traverse]] {name}"
     book = table.text("book", required=True) or ""
     angle = table.number("sigma_angle_arcsec", positive=True)
@@ -131,6 +136,7 @@ def _header(table: Table, number: int) -> Traverse:
         _heights(table),
         sigma_zenith=None if zenith is None else zenith * ARCSEC,
         sigma_dof=_sigma_dof(table),
+        centring_assumed=table.boolean("centring_assumed"),
     )
     for part in (distance, centring):
         if part is not None:
@@ -163,7 +169,7 @@ def _unknown_points(
             if name and name not in known and name not in told:
                 told[name] = Problem(
                     "a point that is no station",
-                    f"{traverse.book}, line {row.line}",
+                    said("{book}, line {line}", book=traverse.book, line=row.line),
                     name,
                     "a name of a [[station]]",
                     nearest_names(name, known),

@@ -15,6 +15,7 @@ from surveyapp.domain.traverse_book import TraverseRow
 from surveyapp.errors import Problem, nearest_names
 from surveyapp.io.files import MAX_COLUMNS, shown, too_many_columns, visible
 from surveyapp.io.measures import MEASURES, is_measure
+from surveyapp.languages import either, said
 from surveyapp_models.angles import ARCSEC, AngleError, AngleUnit, parse_angle
 
 COLUMNS: Final = (
@@ -53,7 +54,13 @@ class _Row:
 
     def problem(self, what: str, found: str, expected: str, hint: str = "") -> None:
         self.problems.append(
-            Problem(what, f"{self.where}, line {self.line}", shown(found), expected, hint)
+            Problem(
+                what,
+                said("{where}, line {line}", where=self.where, line=self.line),
+                shown(found),
+                expected,
+                hint,
+            )
         )
 
     def number(self, key: str) -> float | None:
@@ -67,10 +74,10 @@ class _Row:
         if is_measure(value):
             return value
         if math.isfinite(value):
-            self.problem(f"{key} is beyond all measures", text, MEASURES)
+            self.problem(said("{key} is beyond all measures", key=key), text, MEASURES)
             return None
         hint = "decimals are written with a point" if "," in text else ""
-        self.problem(f"{key} is no number", text, "a number", hint)
+        self.problem(said("{key} is no number", key=key), text, "a number", hint)
         return None
 
     def value(self, kind: ObservationKind, default: AngleUnit) -> float | None:
@@ -82,17 +89,17 @@ class _Row:
             return None
         if kind not in ANGULAR:
             if unit not in ("", "m"):
-                self.problem(f"{kind} in a wrong unit", unit, "m")
+                self.problem(said("{kind} in a wrong unit", kind=kind), unit, "m")
                 return None
             return self.number("value")
         if unit and unit not in _ANGLE_UNITS:
             hint = nearest_names(unit, _ANGLE_UNITS)
-            self.problem(f"{kind} in a wrong unit", unit, "dms, gon or deg", hint)
+            self.problem(said("{kind} in a wrong unit", kind=kind), unit, "dms, gon or deg", hint)
             return None
         try:
             return parse_angle(text, _ANGLE_UNITS[unit] if unit else default)
         except AngleError as error:
-            self.problem(f"{kind} is no angle", text, error.expected, error.hint)
+            self.problem(said("{kind} is no angle", kind=kind), text, error.expected, error.hint)
             return None
 
     def sigma(self, kind: ObservationKind, value: float | None) -> float | None:
@@ -102,7 +109,7 @@ class _Row:
         allowed = ("arcsec", "mgon") if kind in ANGULAR else ("mm", "mm+ppm")
         unit = unit or allowed[0]
         if unit not in allowed:
-            self.problem("the sigma has a wrong unit", unit, " or ".join(allowed))
+            self.problem("the sigma has a wrong unit", unit, either(allowed))
             return None
         if unit == "mm+ppm":
             return self._mm_ppm(text, value)
@@ -168,7 +175,7 @@ def _read(row: _Row, default: AngleUnit) -> TraverseRow | None:
 
 
 def _header(cells: list[str], line: str, where: str, problems: list[Problem]) -> bool:
-    place = f"{where}, line 1"
+    place = said("{where}, line 1", where=where)
     if ";" in line and "," not in line:
         problems.append(
             Problem("the columns are separated by semicolons", place, shown(line), "commas")
@@ -178,7 +185,12 @@ def _header(cells: list[str], line: str, where: str, problems: list[Problem]) ->
     if missing:
         expected = ",".join(COLUMNS)
         problems.append(
-            Problem(f"there is no column {', '.join(missing)}", place, shown(line), expected)
+            Problem(
+                said("there is no column {names}", names=", ".join(missing)),
+                place,
+                shown(line),
+                expected,
+            )
         )
     return not missing
 
@@ -218,7 +230,7 @@ def parse_traverse(
                     return rows, problems
                 continue
             if len(stripped) > len(header):
-                place = f"{where}, line {reader.line_num}"
+                place = said("{where}, line {line_num}", where=where, line_num=reader.line_num)
                 hint = "decimals are written with a point"
                 problems.append(
                     Problem("more values than columns", place, shown(",".join(cells)), "", hint)
@@ -230,7 +242,12 @@ def parse_traverse(
             if row is not None:
                 rows.append(row)
     except csv.Error as error:
-        problems.append(Problem(f"no CSV ({error})", f"{where}, line {reader.line_num}"))
+        problems.append(
+            Problem(
+                said("no CSV ({error})", error=error),
+                said("{where}, line {line_num}", where=where, line_num=reader.line_num),
+            )
+        )
     if header is None:
         problems.append(Problem("the book is empty", where, "", ",".join(COLUMNS)))
     return rows, problems

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Columns, Effect, GridParameter
 
@@ -31,7 +32,7 @@ def told(fault: BaseException) -> str:
 
 def guarded(effect: Effect, file: str) -> Effect:
     """The same effect, its functions guarded; it cannot be adopted and needs no reference."""
-    where = f"{file}, effect {effect.id}"
+    where = said("{file}, effect {id}", file=file, id=effect.id)
     size = len(effect.coefficients)
     law = effect.law
     return replace(
@@ -89,7 +90,7 @@ def real_array(value: Any, where: str, expected: str) -> Floats:
     try:
         array = np.asarray(value)
         if array.dtype.kind not in "fiub":
-            raise _wrong(where, f"values of type {array.dtype}", expected)
+            raise _wrong(where, said("values of type {dtype}", dtype=array.dtype), expected)
         array = array.astype(np.float64)
     except (ValueError, TypeError):
         raise _wrong(where, type(value).__name__, expected) from None
@@ -115,10 +116,14 @@ def _basis(function: Callable[..., Any], effect: Effect, where: str) -> Callable
             value = function(frozen, **grid)
         n = _rows(columns, effect)
         rows = "number of observations" if n is None else str(n)
-        expected = f"a finite float array of shape ({rows}, {p}): a column for each coefficient"
+        expected = said(
+            "a finite float array of shape ({rows}, {p}): a column for each coefficient",
+            rows=rows,
+            p=p,
+        )
         array = real_array(value, where, expected)
         if array.ndim != 2 or array.shape[1] != p or (n is not None and array.shape[0] != n):
-            raise _wrong(where, f"an array of shape {array.shape}", expected)
+            raise _wrong(where, said("an array of shape {shape}", shape=array.shape), expected)
         return array
 
     return basis
@@ -132,21 +137,25 @@ def _law(function: Callable[..., Any], where: str) -> Callable[..., Floats]:
                 **{name: _frozen(item) for name, item in grid.items()},
             )
         shape = np.broadcast_shapes(*(np.shape(item) for item in (*arguments, *grid.values())))
-        expected = f"a float array of shape {shape}: every argument broadcasts"
+        expected = said("a float array of shape {shape}: every argument broadcasts", shape=shape)
         array = np.asarray(value)
         if array.dtype.kind not in "fiub" or array.shape != shape:
-            raise _wrong(where, f"{array.dtype} of shape {array.shape}", expected)
+            raise _wrong(
+                where,
+                said("{dtype} of shape {shape}", dtype=array.dtype, shape=array.shape),
+                expected,
+            )
         return array.astype(np.float64)  # at the edge of a search it may overflow
 
     return law
 
 
 def _datum(function: Callable[..., Any], size: int, where: str) -> Callable[..., Any]:
-    place = f"{where}, at_datum"
+    place = said("{where}, at_datum", where=where)
 
     def at_datum(columns: Columns, references: Mapping[str, float], /, **grid: float) -> Any:
         frozen = MappingProxyType({name: _frozen(values) for name, values in columns.items()})
-        expected = f"pairs of a text and {size} numbers"
+        expected = said("pairs of a text and {size} numbers", size=size)
         with _calling(place):
             states = tuple(function(frozen, MappingProxyType(dict(references)), **grid))
             pairs = [(str(text), tuple(float(v) for v in row)) for text, row in states]
@@ -158,7 +167,7 @@ def _datum(function: Callable[..., Any], size: int, where: str) -> Callable[...,
 
 
 def _parameter(item: GridParameter, where: str) -> GridParameter:
-    place = f"{where}, grid {item.name}"
+    place = said("{where}, grid {name}", where=where, name=item.name)
     function = item.values
 
     def values(columns: Columns) -> Floats:
@@ -167,7 +176,7 @@ def _parameter(item: GridParameter, where: str) -> GridParameter:
             value = function(frozen)
         array = real_array(value, place, "a finite float array of one dimension")
         if array.ndim != 1:
-            shape = f"an array of shape {array.shape}"
+            shape = said("an array of shape {shape}", shape=array.shape)
             raise _wrong(place, shape, "a finite float array of one dimension")
         return array
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from surveyapp.errors import Problem
+from surveyapp.languages import said
 from surveyapp_models.effects.effect import (
     SUBJECTS,
     Coefficient,
@@ -34,7 +35,7 @@ def form_problems(effect: Effect, file: str) -> list[Problem]:
     file : str
         For messages.
     """
-    where = f"{file}, effect {effect.id}"
+    where = said("{file}, effect {id}", file=file, id=effect.id)
     found: list[Problem] = []
 
     def wrong(what: str, value: object, expected: str) -> None:
@@ -44,21 +45,33 @@ def form_problems(effect: Effect, file: str) -> list[Problem]:
         wrong("id is no text", effect.id, "a text")
     for name in _TEXTS:
         if not _text(getattr(effect, name)):
-            wrong(f"{name} is no text", getattr(effect, name), "a text for the surveyor")
+            wrong(
+                said("{name} is no text", name=name),
+                getattr(effect, name),
+                "a text for the surveyor",
+            )
     for name, choices in _CHOICES.items():
         value = getattr(effect, name)
         if not any(value is choice or value == choice for choice in choices):
-            wrong(f"{name} is not known", value, ", ".join(str(item) for item in choices))
+            wrong(
+                said("{name} is not known", name=name),
+                value,
+                ", ".join(str(item) for item in choices),
+            )
     for name, kind in (("needs", Column), ("coefficients", Coefficient), ("grid", GridParameter)):
         items = getattr(effect, name)
         if not isinstance(items, tuple) or not all(isinstance(item, kind) for item in items):
-            wrong(f"{name} is no tuple of {kind.__name__}", items, f"({kind.__name__}(...), ...)")
+            wrong(
+                said("{name} is no tuple of {name2}", name=name, name2=kind.__name__),
+                items,
+                f"({kind.__name__}(...), ...)",
+            )
     if not isinstance(effect.confusable_with, tuple):
         wrong("confusable_with is no tuple", effect.confusable_with, '("id", ...)')
     for name in ("basis", "law", "at_datum", "midpoint", "reference"):
         value = getattr(effect, name)
         if not callable(value) and (value is not None or name == "basis"):
-            wrong(f"{name} is no function", value, "a function")
+            wrong(said("{name} is no function", name=name), value, "a function")
     if not found:
         _parts(effect, wrong)
     return found
@@ -94,7 +107,7 @@ def _parts(effect: Effect, wrong: Callable[[str, object, str], None]) -> None:
     ):
         names = [item.name for item in items]
         if len(set(names)) < len(names):
-            wrong(f"a name stands twice in {name}", names, "names that differ")
+            wrong(said("a name stands twice in {name}", name=name), names, "names that differ")
 
 
 def _coefficient(item: Coefficient, wrong: Callable[[str, object, str], None]) -> None:
@@ -102,10 +115,17 @@ def _coefficient(item: Coefficient, wrong: Callable[[str, object, str], None]) -
     if not all(_text(text) for text in (item.name, item.unit, item.meaning)):
         wrong("a coefficient lacks its name, unit or meaning", item, "texts")
     if not _number(item.scale) or not item.scale > 0.0:
-        wrong(f"the scale of {name} is no size of a unit", item.scale, "a finite number above 0")
+        wrong(
+            said("the scale of {name} is no size of a unit", name=name),
+            item.scale,
+            "a finite number above 0",
+        )
     if not (_number(item.low) and _number(item.high)):
-        what = f"the plausible range of {name} is not finite"
+        what = said("the plausible range of {name} is not finite", name=name)
         wrong(what, (item.low, item.high), "two finite numbers")
     elif not (item.low < item.high and item.low <= 0.0 <= item.high):
-        what = f"the plausible range of {name} is none that holds 0, where the effect is absent"
+        what = said(
+            "the plausible range of {name} is none that holds 0, where the effect is absent",
+            name=name,
+        )
         wrong(what, (item.low, item.high), "low < high, low <= 0 <= high")

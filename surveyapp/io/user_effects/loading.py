@@ -20,6 +20,7 @@ from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.user_effects.calls import FAULTS, guarded, told
 from surveyapp.io.user_effects.form import form_problems
 from surveyapp.io.user_effects.probe import COLUMNS, probe_problems
+from surveyapp.languages import said
 from surveyapp_models.effects import CATALOGUE
 from surveyapp_models.effects.effect import Effect
 
@@ -146,9 +147,9 @@ def _column_problems(effect: Effect, path: Path) -> list[Problem]:
     return [
         Problem(
             "an effect needs a column that no project has",
-            f"{path}, effect {effect.id}",
+            said("{path}, effect {id}", path=path, id=effect.id),
             need.name,
-            f"a column of {effect.subject}",
+            said("a column of {subject}", subject=effect.subject),
             nearest_names(need.name, known),
         )
         for need in effect.needs

@@ -9,6 +9,7 @@ import numpy as np
 from surveyapp.core.orientation.campaign_columns import COLUMNS as CAMPAIGN_COLUMNS
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.user_effects.calls import guarded
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Effect
 
@@ -123,7 +124,7 @@ def probe_problems(effect: Effect, file: str) -> list[Problem]:
     columns = {
         need.name: known.get(need.name, generator.uniform(0.0, 1.0, SIZE)) for need in effect.needs
     }
-    where = f"{file}, effect {effect.id}"
+    where = said("{file}, effect {id}", file=file, id=effect.id)
     try:
         _probe(guarded(effect, file), columns, where)
     except SurveyError as error:
@@ -135,13 +136,20 @@ def _probe(effect: Effect, columns: dict[str, Floats], where: str) -> None:
     points = effect.grid_points(columns)
     if not points:
         raise _wrong(
-            "its grid is empty", where, f"no value to scan on a record of {SIZE}", "values"
+            "its grid is empty",
+            where,
+            said("no value to scan on a record of {size}", size=SIZE),
+            "values",
         )
     step = max(1, len(points) // MOST_POINTS)
     for point in points[::step]:
         first, second = effect.basis(columns, **point), effect.basis(columns, **point)
         at = ", ".join(f"{name} {value:g}" for name, value in point.items())
-        place = f"{where}, basis at {at}" if at else f"{where}, basis"
+        place = (
+            said("{where}, basis at {at}", where=where, at=at)
+            if at
+            else said("{where}, basis", where=where)
+        )
         if not np.array_equal(first, second):
             what = "the basis gives another result when it is called again"
             raise _wrong(what, place, "two results that differ", "a pure function")

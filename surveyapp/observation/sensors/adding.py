@@ -10,6 +10,7 @@ from typing import Any, Final
 from surveyapp import api
 from surveyapp.domain.log_preview import LogPreview
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp.observation.exchange import Entry
 from surveyapp.observation.sensors.options import told_options
 
@@ -38,7 +39,10 @@ def log_entries(folder: str) -> list[Entry]:
                     files.append(Entry(item.name, item.path, "log", size))
     except OSError as error:
         raise SurveyError(
-            Problem(f"the folder cannot be read ({error.strerror or error})", folder)
+            Problem(
+                said("the folder cannot be read ({strerror})", strerror=error.strerror or error),
+                folder,
+            )
         ) from None
     return [*folders, *files][:_MOST]
 

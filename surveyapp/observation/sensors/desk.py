@@ -11,6 +11,7 @@ from surveyapp import api
 from surveyapp.domain.sensor_card import SensorCard
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import joined
 from surveyapp.observation.sensors.options import told_options
 from surveyapp.observation.sensors.tasks import Examined
 
@@ -58,10 +59,10 @@ def _cards(folder: Path, today: date) -> tuple[CardShown, ...]:
             try:
                 card = read_sensor_card(path, where=where)
             except SurveyError as error:
-                found.append(CardShown(where, None, holds=False, problem=str(error)))
+                found.append(CardShown(where, None, holds=False, problem=error.text))
                 continue
             refused = card.refusals(on=today, temperature_c=None, where=where)
-            told = "; ".join(str(problem) for problem in refused)
+            told = joined("; ", (problem.text for problem in refused))
             found.append(CardShown(where, card, holds=not refused, problem=told))
     return tuple(found)
 

@@ -13,6 +13,7 @@ from typing import Final
 
 from surveyapp import api
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import said
 
 _NUMBER, _TEXT, _FLAG = "number", "text", "flag"
 _CALIBRATE: Final = {
@@ -113,7 +114,9 @@ def told_options(task: str, text: str) -> ToldOptions:
     try:
         words = shlex.split(text)
     except ValueError as error:
-        raise SurveyError(Problem(f"a quote is open ({error})", "options", text)) from None
+        raise SurveyError(
+            Problem(said("a quote is open ({error})", error=error), "options", text)
+        ) from None
     known = OPTIONS[task]
     own: dict[str, object] = {}
     parts: dict[str, dict[str, str]] = {"map": {}, "unit": {}, "scale": {}}
@@ -156,7 +159,9 @@ def _number(name: str, text: str, problems: list[Problem]) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        problems.append(Problem("this is no number", f"options, {name}", text, "a number"))
+        problems.append(
+            Problem("this is no number", said("options, {name}", name=name), text, "a number")
+        )
     return value
 
 
@@ -164,9 +169,12 @@ def _unknown(word: str, name: str, task: str) -> Problem:
     known = [*OPTIONS[task], "map.", "unit.", "scale.", "rate_hz", "header_rows"]
     shown = ", ".join(key.replace("_", "-") for key in OPTIONS[task]) or "none of its own"
     return Problem(
-        f"there is no such option of {task}",
+        said("there is no such option of {task}", task=task),
         "options",
         word,
-        f"key=value: {shown}; map.CANON=COLUMN, unit.COLUMN=UNIT, scale.COLUMN=VALUE",
+        said(
+            "key=value: {shown}; map.CANON=COLUMN, unit.COLUMN=UNIT, scale.COLUMN=VALUE",
+            shown=shown,
+        ),
         nearest_names(name, known),
     )

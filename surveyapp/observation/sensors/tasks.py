@@ -11,6 +11,7 @@ from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.chart import Picture
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp.observation.sensors.options import ToldOptions, told_options
 from surveyapp.report.blocks import Block
 
@@ -159,7 +160,7 @@ def _only_column(folder: str, entry: SensorLogEntry, told: ToldOptions) -> str:
     found = [name for name in SENSOR_COLUMNS if file.has(name)]
     if len(found) == 1:
         return found[0]
-    expected = f"column={found[0]}" if found else "column=NAME"
+    expected = said("column={found}", found=found[0]) if found else "column=NAME"
     raise SurveyError(Problem("which column?", "options", ", ".join(found), expected))
 
 

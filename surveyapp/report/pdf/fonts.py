@@ -15,6 +15,7 @@ from reportlab.pdfbase.cidfonts import UnicodeCIDFont
 from reportlab.pdfbase.ttfonts import TTFError, TTFont
 
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp.report.faces import base_face, faces_of, further_faces, wide_face
 from surveyapp.report.pdf.bidi import can_order, drawn_order, is_right_to_left
 from surveyapp.report.typeface import Face, is_wide, language_of, runs
@@ -177,7 +178,7 @@ def register_faces(named: Path | None) -> Faces:
                 Problem(
                     "there is no face that can be embedded",
                     str(named),
-                    f"{len(own)} files",
+                    said("{size} files", size=len(own)),
                     "a TrueType face (.ttf or .ttc) with glyf outlines, or a folder of them",
                 )
             )

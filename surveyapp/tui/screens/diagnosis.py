@@ -17,7 +17,7 @@ from textual.widgets import DataTable
 
 from surveyapp import api
 from surveyapp.errors import SurveyError
-from surveyapp.languages import translated
+from surveyapp.languages import shown, translated
 from surveyapp.report.blocks import Block, Paragraph
 from surveyapp.tui import texts
 from surveyapp.tui.screens.confirm import ConfirmScreen
@@ -76,7 +76,7 @@ class DiagnosisScreen(Screen[None]):
         try:
             self.subjects = tuple((s.keyword, s.id) for s in api.subjects(self.folder))
         except SurveyError as error:
-            self.notify(str(error), severity="error", markup=False)
+            self.notify(shown(error.text), severity="error", markup=False)
         self._list()
         if self.subjects:
             self.query_one(DataTable).focus()

@@ -52,7 +52,9 @@ class FilesScreen(Screen[None], Generic[Understood]):
         Binding("escape", "leave", texts.KEY_BACK),
     ]
     DEFAULT_CSS = """
-    FilesScreen #files { width: 30%; min-width: 24; height: 1fr; }
+    FilesScreen #files {
+        width: 34%; min-width: 24; height: 1fr; text-wrap: nowrap; text-overflow: ellipsis;
+    }
     FilesScreen #preview { width: 1fr; height: 1fr; padding: 0 1; }
     FilesScreen #exchange { height: 1fr; }
     """

@@ -39,7 +39,7 @@ class HelpScreen(ModalScreen[None]):
         self.call_after_refresh(self._fill)
 
     def _fill(self) -> None:
-        room = self.query_one("#words", Static).content_size.width
+        room = self.query_one("#dialog").scrollable_content_region.width
         if room:
             self.query_one("#words", Static).update(refilled(self.words, room))
 

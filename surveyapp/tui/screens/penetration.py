@@ -19,6 +19,7 @@ from surveyapp.api import Trial
 from surveyapp.domain.penetration import ProcedureStep
 from surveyapp.domain.penetration_result import Prediction
 from surveyapp.errors import SurveyError
+from surveyapp.languages import shown
 from surveyapp.tui import texts
 from surveyapp.tui.drafts import Draft
 from surveyapp.tui.page_keys import page_bindings
@@ -143,5 +144,5 @@ class PenetrationScreen(PagedScreen[Trial]):
             )
             self.post_message(self.Done(api.trial(self.folder)))
         except SurveyError as error:
-            words = "; ".join(str(problem) for problem in error.problems)
+            words = "; ".join(shown(problem.text) for problem in error.problems)
             self.app.call_from_thread(self.notify, words, severity="error", markup=False)

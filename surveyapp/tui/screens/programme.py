@@ -21,6 +21,7 @@ from textual.widgets.option_list import Option
 from surveyapp import api
 from surveyapp.domain.programme import ProgrammeState, ProgrammeStep
 from surveyapp.errors import SurveyError
+from surveyapp.languages import shown
 from surveyapp.observation.sensors.programmes import ProgrammeDesk
 from surveyapp.observation.sensors.tasks import Examined
 from surveyapp.tui import texts
@@ -152,7 +153,7 @@ class ProgrammeScreen(Screen[None]):
 
     def say(self, error: SurveyError) -> None:
         """What is wrong, in words; what was typed stays."""
-        self.query_one("#said", Static).update("\n".join(str(p) for p in error.problems))
+        self.query_one("#said", Static).update(shown(error.text))
 
     def action_undo(self) -> None:
         """Strike the latest entry."""

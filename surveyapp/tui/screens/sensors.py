@@ -14,6 +14,7 @@ from textual.widget import Widget
 from surveyapp import api
 from surveyapp.core.sensors.programmes.catalogue import PROGRAMMES
 from surveyapp.errors import SurveyError
+from surveyapp.languages import shown
 from surveyapp.observation.sensors.desk import SensorDesk, sensor_desk
 from surveyapp.observation.sensors.programmes import (
     ProgrammeDesk,
@@ -66,7 +67,7 @@ class SensorsScreen(PagedScreen[tuple[SensorDesk, tuple[RunShown, ...]]]):
         """Logs, cards and runs, as the folder holds them."""
         runs, problems = runs_of(self.folder)
         for problem in problems:
-            told = partial(self.notify, str(problem), severity="error", markup=False)
+            told = partial(self.notify, shown(problem.text), severity="error", markup=False)
             self.app.call_from_thread(told)
         return sensor_desk(self.folder, self.moment().date()), runs
 
@@ -112,7 +113,7 @@ class SensorsScreen(PagedScreen[tuple[SensorDesk, tuple[RunShown, ...]]]):
                 api.begin_programme(self.folder, programme.id, identity, now=self.moment())
             desk = ProgrammeDesk(self.folder, identity, now=self.moment)
         except SurveyError as error:
-            self.notify(str(error), severity="error", markup=False)
+            self.notify(shown(error.text), severity="error", markup=False)
             return
         self.app.push_screen(ProgrammeScreen(desk))
 

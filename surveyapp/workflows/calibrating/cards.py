@@ -13,6 +13,7 @@ from surveyapp.domain.sensor_card import SensorCard
 from surveyapp.domain.sensor_entry import SensorKind
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_cards import write_sensor_card
+from surveyapp.languages import said
 from surveyapp.workflows.calibrating.request import CalibrationRequest
 
 HOLDS_DAYS: Final = {"compass": 365, "tilt": 365, "rate": 122, "fog-station": 122, "edm": 365}
@@ -37,7 +38,7 @@ def card_of(
             Problem(
                 "no card can be written: the calibration determines nothing",
                 f"--card, {calibration.source}",
-                f"geometry {calibration.geometry.verdict}",
+                said("geometry {verdict}", verdict=calibration.geometry.verdict),
                 "a calibration whose parameters are determined",
             )
         )

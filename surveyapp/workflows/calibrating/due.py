@@ -8,6 +8,7 @@ from typing import Final
 
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.project import ResultWarning
+from surveyapp.languages import said
 from surveyapp.workflows.calibrating.request import CalibrationRequest
 
 MONTHS: Final = 4
@@ -30,9 +31,10 @@ def with_due_date(calibration: Calibration, request: CalibrationRequest) -> Cali
     day = request.entry.calibrated_on if request.entry is not None else None
     if day is None or request.today is None or request.today <= due_on(day):
         return calibration
-    text = (
-        f"the record is of {day.isoformat()}: recalibration was due on {due_on(day).isoformat()} "
-        "(four months, source 003)"
+    text = said(
+        "the record is of {value}: recalibration was due on {value2} (four months, source 003)",
+        value=day.isoformat(),
+        value2=due_on(day).isoformat(),
     )
     warning = ResultWarning("recalibration_due", text)
     return replace(calibration, warnings=(*calibration.warnings, warning))

@@ -13,6 +13,7 @@ from surveyapp.domain.calibration import Calibration
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import read_inside, read_text
 from surveyapp.io.sensor_logs.reading import LogFile, Need, open_log
+from surveyapp.languages import said
 from surveyapp.workflows.calibrating.request import CalibrationRequest
 
 NEED: Final = Need(
@@ -50,18 +51,18 @@ def calibrate(request: CalibrationRequest) -> Calibration:
     unit = request.number("unit_length_m")
     problems = []
     if unit is not None and not 0.1 <= unit <= LONGEST_UNIT_M:
-        expected = f"0.1 to {LONGEST_UNIT_M:g} m"
+        expected = said("0.1 to {longest_unit_m:g} m", longest_unit_m=LONGEST_UNIT_M)
         problems.append(Problem("this is no unit length", "--unit-length-m", f"{unit:g}", expected))
     heights = None
     file = _named(request.file)
     missing = [name for name in ("from_pillar", "to_pillar") if not file.has(name)]
     problems += [
         Problem(
-            f"the column {name} is missing",
+            said("the column {name} is missing", name=name),
             file.request.where,
             ", ".join(file.layout.names),
             name,
-            f"--map {name}=COLUMN names it",
+            said("--map {name}=COLUMN names it", name=name),
         )
         for name in missing
     ]
@@ -116,7 +117,7 @@ def _heights(request: CalibrationRequest) -> dict[str, float] | None:
     problems = []
     for number, row in enumerate(rows, start=2):
         key, value = (row[pillar] or "").strip(), _number(row[height])
-        place = f"{where}, line {number}"
+        place = said("{where}, line {number}", where=where, number=number)
         if value is None:
             problems.append(Problem("this is no height", place, str(row[height]), "metres"))
         elif found_heights.get(key, value) != value:

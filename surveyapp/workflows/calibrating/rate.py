@@ -33,6 +33,7 @@ from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.sensor_logs.reading import LogRequest, Need, read_log
+from surveyapp.languages import either
 from surveyapp.workflows.adopted_effects import not_taken_out
 from surveyapp.workflows.calibrating.due import with_due_date
 from surveyapp.workflows.calibrating.request import CalibrationRequest
@@ -52,7 +53,7 @@ def calibrate(request: CalibrationRequest) -> Calibration:
                 "which programme?" if programme is None else "there is no such programme",
                 "--programme",
                 "" if programme is None else str(programme),
-                " or ".join(PROGRAMMES),
+                either(PROGRAMMES),
                 "" if programme is None else nearest_names(str(programme), PROGRAMMES),
             )
         )

@@ -11,6 +11,7 @@ from typing import Final, cast
 
 from surveyapp.domain.north import NorthResult
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import either
 from surveyapp.workflows.adopted_effects import not_taken_out
 from surveyapp.workflows.north.request import NorthRequest, declination_problems
 
@@ -33,7 +34,7 @@ def find_north(request: NorthRequest) -> NorthResult:
         found = request.method or ""
         what = "there is no such method" if found else "which method?"
         hint = nearest_names(found, METHODS) if found else ""
-        raise SurveyError(Problem(what, "--method", found, " or ".join(METHODS), hint))
+        raise SurveyError(Problem(what, "--method", found, either(METHODS), hint))
     problems = declination_problems(request)
     module = importlib.import_module(f"{__name__}.{METHODS[request.method]}")
     try:

@@ -13,6 +13,7 @@ from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem
 from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
+from surveyapp.languages import said
 
 _LATITUDE_HINT = "the level part of the earth rate, from which north is found, depends on it"
 
@@ -74,7 +75,13 @@ class NorthRequest:
             if len(problems) == count:
                 text = name.removesuffix("_deg").replace("_", " ")
                 problems.append(
-                    Problem(f"the {text} is not stated", _flag(name), "", "degrees", hint)
+                    Problem(
+                        said("the {text} is not stated", text=text),
+                        _flag(name),
+                        "",
+                        "degrees",
+                        hint,
+                    )
                 )
             return 0.0
         return value
@@ -110,7 +117,7 @@ def declination_problems(request: NorthRequest) -> list[Problem]:
     if request.method == "rotation" and request.option("initial_reference") is None:
         found = "a heading without a reference"
     elif request.method == "rotation":
-        found = f"a heading of reference {request.option('initial_reference')}"
+        found = said("a heading of reference {value}", value=request.option("initial_reference"))
     else:
         found = "a heading from the earth's rotation: ASTRONOMIC"
     return [

@@ -16,6 +16,7 @@ from surveyapp.domain.north import NorthResult, Reference
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_cards import read_sensor_card
 from surveyapp.io.sensor_logs.reading import Need
+from surveyapp.languages import either
 from surveyapp.workflows.north.request import NorthRequest
 
 REFERENCES: Final = ("MAGNETIC", "ASTRONOMIC", "GRID")
@@ -35,7 +36,7 @@ def find(request: NorthRequest) -> NorthResult:
                 else "there is no such reference",
                 "--initial-reference",
                 "" if reference is None else str(reference),
-                " or ".join(REFERENCES),
+                either(REFERENCES),
                 "a heading without its reference can be wrong by the declination",
             )
         )

@@ -19,6 +19,7 @@ from surveyapp.domain.programme import (
     StepStatus,
 )
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.languages import said
 
 BY_ID: Final = {programme.id: programme for programme in PROGRAMMES}
 DONE: Final = "done"
@@ -58,7 +59,9 @@ def read_value(step: ProgrammeStep, text: str) -> tuple[float, ...]:
         expected = " ".join(step.asks)
         count = f"{len(step.asks)} numbers" if len(step.asks) > 1 else "a number"
         hint = "decimals are written with a point, several numbers with a blank between"
-        raise SurveyError(Problem(f"this is not {count}", step.title, text, expected, hint))
+        raise SurveyError(
+            Problem(said("this is not {number}", number=count), step.title, text, expected, hint)
+        )
     return tuple(values)
 
 

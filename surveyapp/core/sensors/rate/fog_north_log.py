@@ -121,7 +121,7 @@ def _positions(log: SensorLog) -> list[Position]:
         face = log.texts["face"][k].strip().upper()
         if face not in ("L", "R"):
             hint = "L = direct, R = plunged"
-            where = f"{log.path}, row {k + 1}"
+            where = said("{path}, row {row}", path=log.path, row=k + 1)
             problems.append(Problem("this is no face", where, face, "L or R", hint))
             continue
         vertical = float(readings[k])
@@ -152,17 +152,20 @@ def _warnings(
             if p.vertical is not None
         ]
         if off and max(off) > OFF_LEVEL:
-            text = (
-                f'a vertical reading lies {max(off) / ARCSEC:.0f}" off the constant and '
-                "--reading-from-elevation is not stated: increases was taken"
+            text = said(
+                'a vertical reading lies {value:.0f}" off the constant and '
+                "--reading-from-elevation is not stated: increases was taken",
+                value=max(off) / ARCSEC,
             )
             warnings.append(ResultWarning("rule_not_stated", text))
     if solved.undetermined:
-        text = f"not determined by these positions: {', '.join(solved.undetermined)}"
+        text = said(
+            "not determined by these positions: {names}", names=", ".join(solved.undetermined)
+        )
         if "collimation" in solved.undetermined:
-            text += "; positions east AND west tell bias and collimation apart"
+            text += said("; positions east AND west tell bias and collimation apart")
         if "north" in solved.undetermined:
-            text += "; two positions (plunging only) need --constant-deg"
+            text += said("; two positions (plunging only) need --constant-deg")
         warnings.append(ResultWarning("undetermined", text))
     if abs(options.latitude) > POLAR:
         text = "beyond 75 degrees of latitude the level earth rate is too small for mine surveying"

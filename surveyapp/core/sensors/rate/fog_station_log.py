@@ -109,7 +109,9 @@ def turned_sets(
     if not groups:
         problems = [*problems, *usable([], where=log.path)[1]]
     for (pass_id, set_id), stretches in sorted(groups.items()):
-        where = f"{log.path}, pass {pass_id}, set {set_id}"
+        where = said(
+            "{path}, pass {pass_id}, set {set_id}", path=log.path, pass_id=pass_id, set_id=set_id
+        )
         turned, wrong = usable(stretches, where=where)
         problems = [*problems, *wrong, *_saturation(turned, log.columns[GYRO], where)]
         if turned:
@@ -158,7 +160,9 @@ def _saturation(turned: list[Turned], values: np.ndarray, where: str) -> list[Pr
         part = values[item.stretch.start : item.stretch.stop]
         ends = float(np.mean((part == values.max()) | (part == values.min())))
         if saturated(part, values, expected=0.0) or (ends > 0.9 and np.ptp(values) > 0.0):
-            found = f"{ends:.0%} of a stretch at {part.max():.6g} rad/s"
+            found = said(
+                "{ends:.0%} of a stretch at {value:.6g} rad/s", ends=ends, value=part.max()
+            )
             return [
                 Problem(
                     "the gyro is saturated",
@@ -306,9 +310,11 @@ def _warnings(sets: list[BothWays], found: Constant, relative: float | None) -> 
         text = "no --table-rate-relative-sigma: the table's rate counts as exact in every sigma"
         warnings.append(ResultWarning("no_table_rate_sigma", text))
     if max(abs(s.elevation) for s in sets if s.pass_id == sets[0].pass_id) > STEEP:
-        text = (
-            f"the elevation of {math.degrees(found.elevation):.2f} degrees is above 10: the "
-            "error of the table's rate enters by its tangent; level the gyro better or add a pass"
+        text = said(
+            "the elevation of {value:.2f} degrees is above 10: the error of the "
+            "table's rate enters by its tangent; level the gyro better or add a "
+            "pass",
+            value=math.degrees(found.elevation),
         )
         warnings.append(ResultWarning("elevation_above_10", text))
     if found.scale is None:
@@ -329,11 +335,16 @@ def _exceeding(scatter: Scatter) -> str:
     needed = scatter.relative_rate_error_needed
     sd = (scatter.sd or 0.0) / ARCSEC
     model = (scatter.model_sd or 0.0) / ARCSEC
-    text = f'the repeats scatter by {sd:.2f}" where the model allows {model:.2f}": an effect is '
-    text += "missing in the model"
+    text = said(
+        'the repeats scatter by {sd:.2f}" where the model allows {model:.2f}": an effect is '
+        "missing in the model",
+        sd=sd,
+        model=model,
+    )
     if needed is not None:
-        text += (
-            f"; a relative error of the table's rate of {needed:.2g} would do it, and so would "
-            "wobble of its axis, levelling anew or creep of the telescope: which one is not known"
+        text += said(
+            "; a relative error of the table's rate of {needed:.2g} would do it, and so would "
+            "wobble of its axis, levelling anew or creep of the telescope: which one is not known",
+            needed=needed,
         )
     return text

@@ -89,7 +89,7 @@ def stops_of(log: SensorLog) -> tuple[list[Stop], list[int], list[ResultWarning]
         rows.append(first)
     warnings = []
     if dropped:
-        text = f"{dropped} index positions were not used: the unit was moving"
+        text = said("{dropped} index positions were not used: the unit was moving", dropped=dropped)
         warnings.append(ResultWarning("motion_in_stop", text))
     if not stops:
         raise SurveyError(
@@ -341,18 +341,21 @@ def _warnings(found: Indexed) -> list[ResultWarning]:
     warnings = []
     if found.verdict == "ambiguous":
         headings = " and ".join(f"{math.degrees(r.heading):.2f}" for r in found.roots[:2])
-        text = (
-            f"two headings fit, {headings} degrees, at odds below a million: a bias known "
-            "beforehand (--bias-prior-deg-h) or another attitude separates them"
+        text = said(
+            "two headings fit, {headings} degrees, at odds below a million: a bias "
+            "known beforehand (--bias-prior-deg-h) or another attitude separates "
+            "them",
+            headings=headings,
         )
         warnings.append(ResultWarning("ambiguous", text))
     if found.verdict == "undetermined":
         text = "the index positions do not determine the heading"
         warnings.append(ResultWarning("undetermined", text))
     if found.residual_scale > 1.0:
-        text = (
-            f"the stops scatter {found.residual_scale:.1f} times as much as their samples allow "
-            "(index angles, wandering biases); the sigmas are widened by that"
+        text = said(
+            "the stops scatter {residual_scale:.1f} times as much as their samples "
+            "allow (index angles, wandering biases); the sigmas are widened by that",
+            residual_scale=found.residual_scale,
         )
         warnings.append(ResultWarning("stops_scatter", text))
     return warnings

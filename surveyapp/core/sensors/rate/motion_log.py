@@ -29,6 +29,7 @@ from surveyapp.domain.motion import Motion, MotionSegment, Path, Snapped
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import counted, said
 from surveyapp_models.arrays import Floats
 
 NEEDED = (*GYROS, *ACCELEROMETERS)
@@ -77,7 +78,7 @@ def judge_motion(log: SensorLog, options: MotionOptions) -> Motion:
     SurveyError
     """
     if log.size < LEAST_ROWS:
-        found = f"{log.size} rows"
+        found = said("{size} rows", size=log.size)
         raise SurveyError(Problem("the record is too short", log.path, found, "100 rows or more"))
     interval = 1.0 / (log.rate_hz or 100.0)
     states = states_of(log, false_alarm=options.false_alarm, factor=options.still_gate_factor)
@@ -115,10 +116,14 @@ def _unseen(time: Floats, still: Mask, interval: float) -> ResultWarning | None:
     if rows.size == 0:
         return None
     first = int(rows[0])
-    text = (
-        f"the record has a gap from {time[first]:.6g} to {time[first + 1]:.6g} s while moving"
-        + (f", and {rows.size - 1} more" if rows.size > 1 else "")
-        + ": what was turned there is not known, and the path after it is not to be used"
+    text = counted(
+        "the record has a gap from {begin:.6g} to {end:.6g} s while moving: what was turned there "
+        "is not known, and the path after it is not to be used",
+        "the record has {count} gaps while moving, the first from {begin:.6g} to {end:.6g} s: what "
+        "was turned there is not known, and the path after it is not to be used",
+        count=rows.size,
+        begin=time[first],
+        end=time[first + 1],
     )
     return ResultWarning("path_over_gap", text)
 
@@ -168,8 +173,9 @@ def _path(
     begun = int(np.argmax(record.still))
     warnings = []
     if begun > 0:
-        text = (
-            f"the first {begun * record.interval:.1f} s before the first stop are not in the path"
+        text = said(
+            "the first {value:.1f} s before the first stop are not in the path",
+            value=begun * record.interval,
         )
         warnings.append(ResultWarning("before_first_stop", text))
     found = inertial_path(
@@ -305,9 +311,11 @@ def _odometer_path(found: Reckoned, driven: Driven, closure: float) -> Path:
 def _told(segments: Sequence[MotionSegment], zero: Mapping[str, Any] | None) -> list[ResultWarning]:
     warnings = []
     if zero is not None and zero["verdict"] == "inconsistent":
-        text = (
-            f"{zero['share_exceeding']:.0%} of the velocity innovations lie beyond the 99 % bound: "
-            "motion was taken for rest; the gate is too wide, whatever the closure says"
+        text = said(
+            "{zero:.0%} of the velocity innovations lie beyond the 99 % bound: "
+            "motion was taken for rest; the gate is too wide, whatever the closure "
+            "says",
+            zero=zero["share_exceeding"],
         )
         warnings.append(ResultWarning("gate_too_wide", text))
     if all(s.state != "stationary" for s in segments):

@@ -63,6 +63,7 @@ from surveyapp.domain.calibration import (
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2, SensorLog
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 NEEDED = (*GYROS, *ACCELEROMETERS)
@@ -111,6 +112,20 @@ def held_stops(log: SensorLog) -> list[HeldStop]:
     return found
 
 
+def _too_few(log: SensorLog, stops: int) -> Problem:
+    return Problem(
+        "too few stops at rest for any model",
+        log.path,
+        said("{size} stops as quiet as the record can be", size=stops),
+        said(
+            "{least_stops} or more, of {least_stop_s:g} s and more, in different attitudes",
+            least_stops=LEAST_STOPS,
+            least_stop_s=LEAST_STOP_S,
+        ),
+        "lay the unit down at each stop: a hand that holds it moves it",
+    )
+
+
 def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> Calibration:
     """Accelerometers and gyros from hand-held stops.
 
@@ -121,15 +136,7 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
     """
     stops = held_stops(log)
     if len(stops) < LEAST_STOPS:
-        raise SurveyError(
-            Problem(
-                "too few stops at rest for any model",
-                log.path,
-                f"{len(stops)} stops as quiet as the record can be",
-                f"{LEAST_STOPS} or more, of {LEAST_STOP_S:g} s and more, in different attitudes",
-                "lay the unit down at each stop: a hand that holds it moves it",
-            )
-        )
+        raise SurveyError(_too_few(log, len(stops)))
     forces = np.array([s.force for s in stops])
     models = _force_models(forces, options.gravity)
     held = {m.level: left_out(forces, level=m.level, gravity=options.gravity) for m in models}
@@ -267,7 +274,9 @@ def _stop_dict(log: SensorLog, stop: HeldStop, model: ForceModel) -> dict[str, A
 def _left_out(count: int) -> list[ResultWarning]:
     if not count:
         return []
-    text = f"{count} of the turns held a gap or a saturated gyro and took no part"
+    text = said(
+        "{number} of the turns held a gap or a saturated gyro and took no part", number=count
+    )
     return [ResultWarning("turns_left_out", text)]
 
 
@@ -279,9 +288,11 @@ def _warnings(
 ) -> list[ResultWarning]:
     warnings = []
     if model.dof <= FEW_DOF or (gyro is not None and gyro.dof <= FEW_DOF):
-        text = (
-            f"few degrees of freedom: accelerometer {model.dof}, gyro "
-            f"{'none' if gyro is None else gyro.dof}; the residuals say little of the fit"
+        text = said(
+            "few degrees of freedom: accelerometer {dof}, gyro {gyro}; the "
+            "residuals say little of the fit",
+            dof=model.dof,
+            gyro=said("none") if gyro is None else gyro.dof,
         )
         warnings.append(ResultWarning("few_degrees_of_freedom", text))
     if options.latitude is None:
@@ -292,10 +303,13 @@ def _warnings(
         warnings.append(ResultWarning("latitude_unknown", text))
     if log.clipped:
         names = ", ".join(f"{name} in {rows} rows" for name, rows in log.clipped.items())
-        warnings.append(ResultWarning("saturated", f"at the end of their range: {names}"))
-    text = (
-        f"scale factors of the accelerometers refer to {options.gravity:.5f} m/s2; "
-        "--gravity-m-s2 states the local one"
+        warnings.append(
+            ResultWarning("saturated", said("at the end of their range: {names}", names=names))
+        )
+    text = said(
+        "scale factors of the accelerometers refer to {gravity:.5f} m/s2; "
+        "--gravity-m-s2 states the local one",
+        gravity=options.gravity,
     )
     warnings.append(ResultWarning("gravity", text))
     return warnings

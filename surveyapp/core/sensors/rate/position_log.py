@@ -25,6 +25,7 @@ from surveyapp.core.sensors.rate.turning import Steady, TableMotion
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem
+from surveyapp.languages import either, said
 from surveyapp_models.arrays import Floats
 from surveyapp_models.rate.turntable import POSITIONS
 
@@ -60,7 +61,7 @@ def place_problems(log: SensorLog) -> list[Problem]:
     words = sorted(set(log.texts["position"]) - set(POSITIONS) - {""})
     if not words:
         return []
-    expected = " or ".join(POSITIONS)
+    expected = either(POSITIONS)
     return [Problem("this is no position", log.path, ", ".join(words[:5]), expected)]
 
 
@@ -86,7 +87,9 @@ def placed_stretches(
             by_place.setdefault((groups[stretch.start], word), []).append(stretch)
     placed, problems = [], []
     for (group, word), stretches in by_place.items():
-        where = f"{log.path}, position {word}" + (f", round {group}" if group > 1 else "")
+        where = said("{path}, position {word}", path=log.path, word=word)
+        if group > 1:
+            where = said("{where}, round {group}", where=where, group=group)
         turned, wrong = usable(stretches, where=where)
         problems += wrong
         if turned:
@@ -103,13 +106,19 @@ def _saturation(log: SensorLog, placed: Placed, where: str) -> list[Problem]:
     for item in placed.turned:
         part = column[item.stretch.start : item.stretch.stop]
         if saturated(part, column, expected=abs(item.rate)):
-            found = f"{GYROS[axis]} stays at {math.degrees(abs(float(part[0]))):.6g} deg/s"
+            found = said(
+                "{gyros} stays at {value:.6g} deg/s",
+                gyros=GYROS[axis],
+                value=math.degrees(abs(float(part[0]))),
+            )
             return [
                 Problem(
                     "the gyro is saturated",
                     where,
                     found,
-                    f"the table's rate of {math.degrees(abs(item.rate)):.6g} deg/s",
+                    said(
+                        "the table's rate of {value:.6g} deg/s", value=math.degrees(abs(item.rate))
+                    ),
                     "turn the table more slowly",
                 )
             ]
@@ -158,7 +167,9 @@ def sense_of(
             Problem(
                 "the sense of rotation contradicts the position",
                 where,
-                f"the gyro of {names} turns against the table, the others with it",
+                said(
+                    "the gyro of {names} turns against the table, the others with it", names=names
+                ),
                 "x+ = body x up; an axis that points up reads minus the clockwise rate",
                 "is a position named wrongly, or was the table turned the other way?",
             )
@@ -228,8 +239,8 @@ def label_problems(resting: Sequence[tuple[int, Resting]], *, where: str) -> lis
             problems.append(
                 Problem(
                     "gravity contradicts the position",
-                    f"{where}, position {one.position}",
-                    f"the accelerometers say {felt}",
+                    said("{where}, position {position}", where=where, position=one.position),
+                    said("the accelerometers say {felt}", felt=felt),
                     one.position,
                     "are axes swapped, is a position named wrongly, or is the unit not specific "
                     "force (+g on the axis that points up)?",

@@ -21,6 +21,7 @@ from surveyapp.domain.north import NorthDirection, NorthResult, Reference
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import either, said
 from surveyapp_models.angles import ARCSEC, wrap_two_pi
 from surveyapp_models.arrays import Floats
 from surveyapp_models.rate import quaternions
@@ -125,10 +126,10 @@ def _phase_problems(phases: np.ndarray, where: str) -> list[Problem]:
     problems = []
     strange = sorted(set(phases.tolist()) - set(PHASES))
     if strange:
-        expected = " or ".join(PHASES)
+        expected = either(PHASES)
         problems.append(Problem("there is no such phase", where, ", ".join(strange), expected))
     problems += [
-        Problem("a phase is missing", where, "", name, "rows with phase = " + name)
+        Problem("a phase is missing", where, "", name, said("rows with phase = {name}", name=name))
         for name in ("level", "run")
         if np.count_nonzero(phases == name) < 2
     ]
@@ -287,13 +288,14 @@ def _result(
     )
     warnings = []
     if not warm.ended:
-        text = (
-            f"the last ten minutes of the warm-up still drift by {warm.drift_deg_h_h:.3g} deg/h "
-            "per hour: it has not ended"
+        text = said(
+            "the last ten minutes of the warm-up still drift by "
+            "{drift_deg_h_h:.3g} deg/h per hour: it has not ended",
+            drift_deg_h_h=warm.drift_deg_h_h,
         )
         warnings.append(ResultWarning("warm_up", text))
     if warm.seconds < 0.99 * WARM_UP_S:
-        text = f"{warm.seconds / 60.0:.1f} min of warm-up; the source asks for 30"
+        text = said("{value:.1f} min of warm-up; the source asks for 30", value=warm.seconds / 60.0)
         warnings.append(ResultWarning("short_warm_up", text))
     text = (
         "bias and vertical earth rate are those of the rest before the run; the level earth rate "

@@ -180,7 +180,9 @@ def motion_begin_s(log: SensorLog, placed: Sequence[Placed]) -> float:
 def _warnings(log: SensorLog, warm_up_s: float, options: SixPositionOptions) -> list[ResultWarning]:
     warnings = []
     if warm_up_s < WARM_UP_S:
-        text = f"{warm_up_s / 60.0:.1f} min before the first turn; the source asks for 30"
+        text = said(
+            "{value:.1f} min before the first turn; the source asks for 30", value=warm_up_s / 60.0
+        )
         warnings.append(ResultWarning("short_warm_up", text))
     if options.flip_sigma == 0.0:
         text = (

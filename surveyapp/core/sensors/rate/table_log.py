@@ -23,6 +23,7 @@ from surveyapp.core.statistics.distributions import chi_square_tail
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 SATURATED_SHARE = 0.02
@@ -163,7 +164,7 @@ def usable(stretches: Sequence[Steady], *, where: str) -> tuple[list[Turned], li
         Problem(
             "less than one whole turn",
             where,
-            f"{turns} turns",
+            said("{turns} turns", turns=turns),
             "at least one whole turn each way, or a way back over the same arc",
             "the level part of the earth rate cancels over whole turns only",
         )

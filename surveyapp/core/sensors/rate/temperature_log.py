@@ -53,6 +53,7 @@ from surveyapp.domain.calibration import (
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 CHAMBER = "reference_temperature_c"
@@ -112,7 +113,7 @@ def _outside(levels: Floats, wanted: Sequence[float], where: str) -> list[Proble
             "the temperature lies outside the nodes",
             f"{where}, --predict-at",
             f"{t:g} C",
-            f"{low:g} to {high:g} C",
+            said("{low:g} to {high:g} C", low=low, high=high),
             "nothing is extrapolated: calibrate over the range in which the unit is used",
         )
         for t in wanted
@@ -127,7 +128,7 @@ def _room_problems(room: AccelerometerTriad) -> list[Problem]:
         Problem(
             "the room-temperature log does not determine the accelerometers",
             "--room",
-            f"rank {room.rank} of 12",
+            said("rank {rank} of 12", rank=room.rank),
             "six positions, each axis up and down",
         )
     ]
@@ -236,8 +237,11 @@ def _warnings(
     grey = next((c for c in comparison if c.model == "grey"), None)
     if grey is not None:
         text = (
-            f"the grey model is {'' if grey.admissible else 'not '}admissible; that says nothing "
-            "of its usefulness: only the error at left-out nodes does"
+            "the grey model is admissible; that says nothing of its usefulness: only the error at "
+            "left-out nodes does"
+            if grey.admissible
+            else "the grey model is not admissible; that says nothing of its usefulness: only the "
+            "error at left-out nodes does"
         )
         warnings.append(ResultWarning("grey_model", text))
     if options.room is None:
@@ -248,9 +252,10 @@ def _warnings(
         )
         warnings.append(ResultWarning("accelerometer_rank", text))
     if log.has(*ACCELEROMETERS):
-        text = (
-            f"accelerometer scale factors refer to {options.gravity:.5f} m/s2; "
-            "--gravity-m-s2 states the local one"
+        text = said(
+            "accelerometer scale factors refer to {gravity:.5f} m/s2; "
+            "--gravity-m-s2 states the local one",
+            gravity=options.gravity,
         )
         warnings.append(ResultWarning("gravity", text))
     return warnings

@@ -24,6 +24,7 @@ from surveyapp.io.importers.fieldfiles.units import (
     TEMPERATURES,
     celsius,
 )
+from surveyapp.languages import said
 from surveyapp_models.angles import AngleError, AngleUnit, parse_angle
 
 _LEAST_ROWS: Final = 5
@@ -96,10 +97,14 @@ class Columns:
         if not text:
             return None
         if _NUMBER.fullmatch(text) is None or ("." if self.comma else ",") in text:
-            raise CellError(f"{quantity} is no number: {text[:40]}")
+            raise CellError(
+                said("{quantity} is no number: {text}", quantity=quantity, text=text[:40])
+            )
         value = float(text.replace(",", ".").replace("−", "-"))
         if not math.isfinite(value):
-            raise CellError(f"{quantity} is no number: {text[:40]}")
+            raise CellError(
+                said("{quantity} is no number: {text}", quantity=quantity, text=text[:40])
+            )
         return value
 
     def angle(self, cells: Sequence[str], quantity: str) -> float | None:
@@ -118,7 +123,14 @@ class Columns:
                 return parse_angle(f"{sixty[1]}0{sixty[2]}", AngleUnit.DMS) + ANGLES["deg"] / 60.0
             return parse_angle(plain, AngleUnit.DMS)
         except AngleError as error:
-            raise CellError(f"{quantity} is no angle: {text[:40]}, {error.expected}") from None
+            raise CellError(
+                said(
+                    "{quantity} is no angle: {text}, {expected}",
+                    quantity=quantity,
+                    text=text[:40],
+                    expected=error.expected,
+                )
+            ) from None
 
     def carries(self, cells: Sequence[str], quantity: str) -> bool:
         """Whether an angle has 60 seconds."""
@@ -173,11 +185,13 @@ def check_map(
         allowed = _allowed(quantities, name)
         unit = units.get(name)
         if unit is None and name in quantities.angles | quantities.lengths:
-            expected = f"--unit {name}= {' | '.join(allowed)}"
+            expected = said("--unit {name}= {names}", name=name, names=" | ".join(allowed))
             problems.append(Problem("a unit is not told", "--unit", name, expected))
         elif unit is not None and unit not in allowed:
             expected = " | ".join(allowed) or "no unit"
-            problems.append(Problem(f"{name} in an impossible unit", "--unit", unit, expected))
+            problems.append(
+                Problem(said("{name} in an impossible unit", name=name), "--unit", unit, expected)
+            )
     return problems
 
 
@@ -222,7 +236,7 @@ def find_columns(
             cells = _split(line, separator)
             if not wanted.issubset(cells):
                 continue
-            _refuse_twice(cells, wanted, f"{where}, line {number}")
+            _refuse_twice(cells, wanted, said("{where}, line {number}", where=where, number=number))
             places = {name: cells.index(column) for name, column in columns.items()}
             sample = [_split(row, separator) for row in lines[number : number + _SAMPLE]]
             comma = separator != "," and _comma(sample, places, quantities)
@@ -275,9 +289,11 @@ def cells_of(line: str, columns: Columns) -> list[str]:
     try:
         cells = next(csv.reader([line], delimiter=columns.separator, strict=True), [])
     except csv.Error as error:
-        raise CellError(f"the line is no row of a table ({error})") from None
+        raise CellError(said("the line is no row of a table ({error})", error=error)) from None
     if len(cells) != columns.width:
-        raise CellError(f"{len(cells)} cells instead of {columns.width}")
+        raise CellError(
+            said("{size} cells instead of {width}", size=len(cells), width=columns.width)
+        )
     return cells
 
 
@@ -362,7 +378,14 @@ def check_style(cells: Sequence[str], style: Style, columns: Columns) -> None:
         if columns.is_number(place, text):
             found = decimals_of(text, comma=columns.comma)
             if found != decimals:
-                raise CellError(f"{text[:40]} has {found} decimals, its column {decimals}")
+                raise CellError(
+                    said(
+                        "{text} has {found} decimals, its column {decimals}",
+                        text=text[:40],
+                        found=found,
+                        decimals=decimals,
+                    )
+                )
     for place in style.filled:
         if not cells[place].strip():
             raise CellError("a height is missing that nearly every other row has")

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 
 HINT: Final = "--skip-damaged leaves such lines out and lists them"
 MOST_NAMED: Final = 1000
@@ -45,7 +46,7 @@ class Damage:
             From ``FLOOD`` lines on.
         """
         if count >= FLOOD:
-            found, expected = f"{count} lines so far", "a file of this format"
+            found, expected = said("{number} lines so far", number=count), "a file of this format"
             what = "more lines would be left out than can be listed"
             hint = "Is it a file of this format?"
             raise SurveyError([*self.named[:10], Problem(what, name, found, expected, hint)])
@@ -54,8 +55,16 @@ class Damage:
         """Every damaged line, with what to do about it."""
         told = [Problem(p.what, p.where, p.found, p.expected, HINT) for p in self.named]
         if self.further:
-            what = f"{len(self.further)} further lines are damaged"
-            told.append(Problem(what, f"{name}, lines {ranges(self.further)}", "", "", HINT))
+            what = said("{size} further lines are damaged", size=len(self.further))
+            told.append(
+                Problem(
+                    what,
+                    said("{name}, lines {lines}", name=name, lines=ranges(self.further)),
+                    "",
+                    "",
+                    HINT,
+                )
+            )
         return told
 
 

@@ -21,6 +21,7 @@ from surveyapp.io.importers.fieldfiles.damage import Damage
 from surveyapp.io.importers.fieldfiles.lines import Cut, FieldText
 from surveyapp.io.importers.fieldfiles.parts import Parts
 from surveyapp.io.importers.fieldfiles.units import FootChoice
+from surveyapp.languages import counted, said
 
 DAMAGED: Final = "damaged"
 DEPENDENT: Final = "depends_on_damaged"
@@ -94,7 +95,10 @@ class Gathering:
         """Take a pointing whose vertical reading agrees with its face."""
         v = pointing.v
         if v is not None and pointing.face and (v > math.pi) != (pointing.face == "R"):
-            what = f"the vertical reading is none of face {'II' if pointing.face == 'R' else 'I'}"
+            what = said(
+                "the vertical reading is none of face {value}",
+                value="II" if pointing.face == "R" else "I",
+            )
             self.damaged(pointing.line, what, f"{math.degrees(v):.5f} degrees from the zenith")
             return
         if self.options.wants(pointing.line) and self.parts.takes(pointing.line, pointing.setup):
@@ -104,7 +108,13 @@ class Gathering:
         """Note a damaged line."""
         if self.options.wants(line):
             self.damage.add(
-                line, Problem(what, f"{self.name}, line {line}", shown(found), expected)
+                line,
+                Problem(
+                    what,
+                    said("{name}, line {line}", name=self.name, line=line),
+                    shown(found),
+                    expected,
+                ),
             )
             self.skip(line, DAMAGED, what)
 
@@ -142,12 +152,20 @@ class Gathering:
             return
         old = self.points.setdefault(point.name, point)
         if len(self.points) > _MOST_POINTS:
-            found, expected = f"more than {_MOST_POINTS}", "the points of a survey"
+            found, expected = (
+                said("more than {most_points}", most_points=_MOST_POINTS),
+                "the points of a survey",
+            )
             raise SurveyError(Problem("the file holds too many points", self.name, found, expected))
         pairs = ((old.e, point.e), (old.n, point.n), (old.h, point.h))
         if any(a is not None and b is not None and abs(a - b) > _SAME_M for a, b in pairs):
-            text = f"line {point.line} has other coordinates of {point.name} than line {old.line}"
-            self.warn("coordinates_differ", f"{text}: the first count")
+            text = said(
+                "line {line} has other coordinates of {name} than line {first}: the first count",
+                line=point.line,
+                name=point.name,
+                first=old.line,
+            )
+            self.warn("coordinates_differ", text)
 
     def finish(
         self,
@@ -179,7 +197,7 @@ class Gathering:
         if not self.pointings:
             raise SurveyError(
                 Problem(
-                    f"there is no reading in the file ({form[0]})",
+                    said("there is no reading in the file ({form})", form=form[0]),
                     self.name,
                     "no pointing that can be used",
                     "pointings with a target and a circle reading",
@@ -207,16 +225,26 @@ class Gathering:
             self.warn("open_end", "the last line has no line end: is the file whole?")
         if self.carried:
             lines = ", ".join(str(line) for line in self.carried)
-            self.warn("sixty_carried", f"60 seconds carried over: lines {lines}")
+            self.warn("sixty_carried", said("60 seconds carried over: lines {lines}", lines=lines))
         if self.ignored:
             parts = [f"{kind} ({count})" for kind, count in self.ignored.most_common(_SHOWN)]
             more = len(self.ignored) - _SHOWN
-            rest = f" and {more} further kinds" if more > 0 else ""
-            self.warn("ignored_records", f"not used: {', '.join(parts)}{rest}")
+            rest = counted(
+                " and {count} further kind", " and {count} further kinds", count=max(more, 1)
+            )
+            self.warn(
+                "ignored_records",
+                said(
+                    "not used: {names}{rest}", names=", ".join(parts), rest=rest if more > 0 else ""
+                ),
+            )
         prisms = sorted({p.prism_m for p in self.pointings if p.prism_m is not None})
         if len(prisms) > 1:
             shown_mm = ", ".join(f"{value * 1000.0:g}" for value in prisms[:_SHOWN])
-            self.warn("prism_changes", f"the prism constant changes: {shown_mm} mm")
+            self.warn(
+                "prism_changes",
+                said("the prism constant changes: {shown_mm} mm", shown_mm=shown_mm),
+            )
         ppms = {p.ppm for p in self.pointings if p.sd is not None}
         if ppms == {0.0}:
             text = "ppm is 0 in the whole file: was the atmosphere entered in the instrument?"

@@ -40,6 +40,7 @@ from surveyapp.io.importers.fieldfiles.gsi_words import (
     words,
 )
 from surveyapp.io.importers.fieldfiles.lines import FieldText, look_through
+from surveyapp.languages import said
 
 _READINGS: Final = ("21", "22", "31", "32")
 _STATION: Final = frozenset({"84", "85", "86", "88"})
@@ -85,9 +86,12 @@ def read_gsi(path: Path, options: ReadOptions) -> FieldFile:
     check_heights(state)
     if state.gaps:
         places = ", ".join(str(line) for line in state.gaps[:_SHOWN])
-        told = (
-            f"the running block numbers leap {len(state.gaps)} times (line {places}): were blocks "
-            "deleted? If one named a station, what follows stands on the wrong one"
+        told = said(
+            "the running block numbers leap {size} times (line {places}): were "
+            "blocks deleted? If one named a station, what follows stands on the "
+            "wrong one",
+            size=len(state.gaps),
+            places=places,
         )
         state.gathered.warn("block_numbers", told)
     _tell_unlike(state)
@@ -107,7 +111,9 @@ def _tell_unlike(state: State) -> None:
         places = "; ".join(
             f"line {line} without {', '.join(words)}" for line, words in found[:_SHOWN]
         )
-        told = f"blocks lack words that all others have ({places}): were they damaged?"
+        told = said(
+            "blocks lack words that all others have ({places}): were they damaged?", places=places
+        )
         state.gathered.warn("unlike_blocks", told)
 
 
@@ -120,9 +126,11 @@ def _passed(text: FieldText, state: State) -> State:
             continue
         for block in blocks(line):
             kind = layout(block)
-            if kind in layouts or len(layouts) < MOST_LAYOUTS:
-                layouts[kind] = layouts.get(kind, 0) + 1
-                state.first_of.setdefault(kind, number)
+            if kind in layouts:
+                layouts[kind] += 1
+            elif len(layouts) < MOST_LAYOUTS:
+                layouts[kind] = 1
+                state.first_of[kind] = number
             state.last = kind
             _block(state, number, block, cut=kind in state.cut)
     return state
@@ -133,11 +141,18 @@ def _block(state: State, line: int, block: str, *, cut: bool) -> None:
     try:
         found = words(block)
         if found[0].word_index not in ("11", "41"):
-            raise WordError(f"the block does not begin with a word 11 or 41: {found[0].word_index}")
+            raise WordError(
+                said(
+                    "the block does not begin with a word 11 or 41: {word_index}",
+                    word_index=found[0].word_index,
+                )
+            )
         if cut:
-            raise WordError(f"the line is cut short behind {len(found)} words")
+            raise WordError(said("the line is cut short behind {size} words", size=len(found)))
     except WordError as error:
-        gathered.damaged(line, str(error), block, "words of 8 or 16 characters, parted by blanks")
+        gathered.damaged(
+            line, error.args[0], block, "words of 8 or 16 characters, parted by blanks"
+        )
         doubt(state, line, block)
         return
     if block.rstrip() == state.previous:
@@ -149,7 +164,7 @@ def _block(state: State, line: int, block: str, *, cut: bool) -> None:
     try:
         _meaning(state, line, found)
     except WordError as error:
-        gathered.damaged(line, str(error), block)
+        gathered.damaged(line, error.args[0], block)
         if not any(word.word_index in _READINGS for word in found):
             lose(state, line)
 
@@ -205,14 +220,14 @@ def _station(state: State, line: int, found: dict[str, Word]) -> None:
 def _code(state: State, line: int, found: dict[str, Word]) -> None:
     code = found["41"].name
     if _torn_code(found["41"].data.strip(), state.gathered.options.station_code):
-        raise WordError(f"word 41 is no code: {found['41'].data.strip()}")
+        raise WordError(said("word 41 is no code: {value}", value=found["41"].data.strip()))
     if code != state.gathered.options.station_code:
         if code in state.codes or len(state.codes) < MOST_LAYOUTS:
             state.codes[code] += 1
         state.gathered.ignore(f"code {code}")
         return
     if "42" not in found or found["42"].empty:
-        raise WordError(f"code {code} names no station in word 42")
+        raise WordError(said("code {code} names no station in word 42", code=code))
     hi = None
     if "43" in found and not found["43"].empty:
         hi = _code_height(found["43"])
@@ -243,7 +258,7 @@ def _code_height(word: Word) -> float:
         try:
             value = float(text)
         except ValueError:
-            raise WordError(f"word 43 holds no height: {text}") from None
+            raise WordError(said("word 43 holds no height: {text}", text=text)) from None
         return -value if word.sign == "-" else value
     return word.integer() * 1e-3
 
@@ -253,14 +268,21 @@ def _reading(word: Word | None) -> float | None:
         return None
     value = word.angle()
     if not 0.0 <= value <= _TWO_PI + 1e-12:
-        raise WordError(f"word {word.word_index} is beyond the circle: {word.sign}{word.data}")
+        raise WordError(
+            said(
+                "word {word_index} is beyond the circle: {sign}{data}",
+                word_index=word.word_index,
+                sign=word.sign,
+                data=word.data,
+            )
+        )
     return 0.0 if value >= _TWO_PI else value
 
 
 def _distance(state: State, word: Word | None) -> float | None:
     value = _length(state, word)
     if value is not None and value < 0.0:
-        raise WordError(f"a distance is negative: {value:g} m")
+        raise WordError(said("a distance is negative: {value:g} m", value=value))
     return value or None
 
 
@@ -315,7 +337,7 @@ def _pointing(state: State, line: int, found: dict[str, Word]) -> None:
     if to == state.station:
         if state.gaps and state.gaps[-1] > state.occupied:  # a block is missing: that of a station
             lose(state, state.gaps[-1])
-        raise WordError(f"point {to} is sighted from itself")
+        raise WordError(said("point {to} is sighted from itself", to=to))
     face: Face = "" if v is None else "R" if v > math.pi else "L"
     pointing = Pointing(
         line=line,

@@ -15,6 +15,7 @@ from typing import Final
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.importers.fieldfiles.gathering import Gathering
 from surveyapp.io.importers.fieldfiles.gsi_words import Layout, Word
+from surveyapp.languages import said
 
 MOST_LAYOUTS: Final = 1000
 """An instrument writes a handful of kinds of blocks; of garbage no more are kept."""
@@ -100,7 +101,7 @@ def check_stations(state: State) -> None:
                 "the file has no code block of this code",
                 "--station-code",
                 code,
-                f"one of the codes of the file: {codes or 'there is none'}",
+                said("one of the codes of the file: {codes}", codes=codes or "there is none"),
             )
         )
     if not state.conventions and state.homeless:
@@ -108,7 +109,9 @@ def check_stations(state: State) -> None:
             Problem(
                 "no station is named in the file",
                 gathered.name,
-                f"code blocks: {codes}" if codes else "neither station nor code blocks",
+                said("code blocks: {codes}", codes=codes)
+                if codes
+                else "neither station nor code blocks",
                 "blocks 11 with 84 85 86 or 88, or code blocks 41 with --station-code N",
                 "Which code of your office opens a station?" if codes else "",
             )

@@ -13,6 +13,7 @@ from functools import lru_cache
 from typing import Final, NamedTuple
 
 from surveyapp.io.importers.fieldfiles.units import DEGREE, GON, MIL
+from surveyapp.languages import said
 
 RARE: Final = 9
 """A layout that stands in less than a tenth of the blocks is rare."""
@@ -68,7 +69,13 @@ class Word(NamedTuple):
         if not name and text and self.data[-1] != " ":
             return "0"
         if not name[:1].isalnum() and _TORN_NAME.match(self.data) is not None:
-            raise WordError(f"word {self.word_index} holds a torn name: {self.data.rstrip()}")
+            raise WordError(
+                said(
+                    "word {word_index} holds a torn name: {value}",
+                    word_index=self.word_index,
+                    value=self.data.rstrip(),
+                )
+            )
         return name
 
     @property
@@ -79,7 +86,13 @@ class Word(NamedTuple):
     def integer(self) -> int:
         """The digits with their sign."""
         if not (self.data.isascii() and self.data.isdigit()):
-            raise WordError(f"word {self.word_index} holds no number: {self.data.strip()}")
+            raise WordError(
+                said(
+                    "word {word_index} holds no number: {value}",
+                    word_index=self.word_index,
+                    value=self.data.strip(),
+                )
+            )
         value = int(self.data)
         return -value if self.sign == "-" else value
 
@@ -90,10 +103,22 @@ class Word(NamedTuple):
             seconds10, rest = digits % 1000, digits // 1000
             minutes, degrees = rest % 100, rest // 100
             if minutes > 59 or seconds10 > 600 or digits < 0:
-                raise WordError(f"word {self.word_index} is no DDDMMSSs: {self.data}")
+                raise WordError(
+                    said(
+                        "word {word_index} is no DDDMMSSs: {data}",
+                        word_index=self.word_index,
+                        data=self.data,
+                    )
+                )
             return (degrees + minutes / 60.0 + seconds10 / 36000.0) * DEGREE
         if unit not in _CIRCLE:
-            raise WordError(f"word {self.word_index} has no unit of angles: {unit}")
+            raise WordError(
+                said(
+                    "word {word_index} has no unit of angles: {unit}",
+                    word_index=self.word_index,
+                    unit=unit,
+                )
+            )
         factor, place = _CIRCLE[unit]
         return digits * place * factor
 
@@ -104,14 +129,24 @@ class Word(NamedTuple):
             return round(self.integer() * _PLACES[unit], 6), False
         if unit in _FEET:
             return self.integer() * _FEET[unit] * foot, True
-        raise WordError(f"word {self.word_index} has no unit of lengths: {unit}")
+        raise WordError(
+            said(
+                "word {word_index} has no unit of lengths: {unit}",
+                word_index=self.word_index,
+                unit=unit,
+            )
+        )
 
     def pair(self) -> tuple[int, int]:
         """Two signed numbers in one word (51: ppm and prism), split at the second sign."""
         found = _two_numbers(self.data.strip())
         if found is None:
             raise WordError(
-                f"word {self.word_index} holds no two signed numbers: {self.data.strip()}"
+                said(
+                    "word {word_index} holds no two signed numbers: {value}",
+                    word_index=self.word_index,
+                    value=self.data.strip(),
+                )
             )
         return found[0] * (-1 if self.sign == "-" else 1), found[1]
 
@@ -186,15 +221,27 @@ def _words_one_by_one(block: str, text: str, width: int) -> list[Word]:
     while place < len(text):
         piece = text[place : place + HEAD + width]
         if len(piece) < HEAD + width and not _blank_tail(piece, block, place, width):
-            raise WordError(f"the line is cut short behind {len(found)} words: {piece}")
+            raise WordError(
+                said(
+                    "the line is cut short behind {size} words: {piece}",
+                    size=len(found),
+                    piece=piece,
+                )
+            )
         piece = piece.ljust(HEAD + width)
         if _HEAD.fullmatch(piece[:HEAD]) is None:
-            raise WordError(f"this is no word: {piece.strip()}")
+            raise WordError(said("this is no word: {value}", value=piece.strip()))
         index, info = _index(piece[:6])
         found.append(Word(index, info, piece[6], piece[HEAD:]))
         place += HEAD + width
         if place < len(text) and text[place] != " ":
-            raise WordError(f"word {index} is too long: {text[place - HEAD - width :][:30]}")
+            raise WordError(
+                said(
+                    "word {index} is too long: {value}",
+                    index=index,
+                    value=text[place - HEAD - width :][:30],
+                )
+            )
         while place < len(text) and text[place] == " ":
             place += 1
     if not found:

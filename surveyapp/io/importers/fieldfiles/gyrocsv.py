@@ -29,6 +29,7 @@ from surveyapp.io.importers.fieldfiles.gathering import (
     gathering,
 )
 from surveyapp.io.importers.fieldfiles.lines import look_through
+from surveyapp.languages import said
 
 QUANTITIES: Final = Quantities(
     names=("station", "target", "azimuth", "time", "sigma", "temperature", "note"),
@@ -102,7 +103,7 @@ def read_gyro_csv(path: Path, options: ReadOptions) -> GyroFile:
             if options.wants(number) and gathered.parts.takes(number, ""):
                 readings.append(reading)
         except CellError as error:
-            gathered.damaged(number, str(error), line)
+            gathered.damaged(number, error.args[0], line)
     _refuse(gathered, readings)
     gathered.warn("table_layout", columns.told)
     return GyroFile(
@@ -128,22 +129,32 @@ def _time(text: str) -> str:
     try:
         datetime.fromisoformat(text)
     except ValueError:
-        raise CellError(f"the time is no ISO 8601: {text[:40]}") from None
+        raise CellError(said("the time is no ISO 8601: {text}", text=text[:40])) from None
     return text
 
 
 def _reading(columns: Columns, number: int, cells: list[str]) -> GyroReading:
     station, target = columns.text(cells, "station"), columns.text(cells, "target")
     if not station or not target or station == target:
-        raise CellError(f"a line needs a station and another point: {station!r} to {target!r}")
+        raise CellError(
+            said(
+                "a line needs a station and another point: {station!r} to {target!r}",
+                station=station,
+                target=target,
+            )
+        )
     azimuth = columns.angle(cells, "azimuth")
     if azimuth is None:
         raise CellError("the azimuth is missing")
     if not 0.0 <= azimuth <= 2.0 * math.pi + 1e-9:
-        raise CellError(f"the azimuth is beyond the circle: {columns.text(cells, 'azimuth')}")
+        raise CellError(
+            said("the azimuth is beyond the circle: {value}", value=columns.text(cells, "azimuth"))
+        )
     sigma = columns.angle(cells, "sigma") if "sigma" in columns.places else None
     if sigma is not None and sigma <= 0.0:
-        raise CellError(f"the sigma is not positive: {columns.text(cells, 'sigma')}")
+        raise CellError(
+            said("the sigma is not positive: {value}", value=columns.text(cells, "sigma"))
+        )
     return GyroReading(
         line=number,
         station=station,

@@ -21,6 +21,7 @@ from surveyapp.io.importers.fieldfiles.gathering import (
     gathering,
 )
 from surveyapp.io.importers.fieldfiles.jobxml_records import Record, read_records
+from surveyapp.languages import said
 
 _FACES: Final[dict[str, Face]] = {"Face1": "L", "Face2": "R", "FaceNull": "", "": ""}
 _KNOWN_COORDINATES: Final = ("Coordinates", "KeyedIn", "Import", "Copied")
@@ -85,7 +86,7 @@ def read_jobxml(path: Path, options: ReadOptions) -> FieldFile:
         state.gathered.ignore(kind, count)
     if records.torn is not None:
         line, why = records.torn
-        state.gathered.damaged(line, f"the XML is torn: {why}", f"line {line}")
+        state.gathered.damaged(line, said("the XML is torn: {why}", why=why), f"line {line}")
     _tell_corrections(state)
     every_ppm = state.raw > 0 and not state.without_ppm
     every_prism = state.raw > 0 and not state.without_prism
@@ -103,7 +104,7 @@ def _record(state: _State, record: Record) -> None:
     try:
         action(state, record)
     except RecordError as error:
-        state.gathered.damaged(record.line, str(error), record.kind)
+        state.gathered.damaged(record.line, error.args[0], record.kind)
         state.broken[record.attributes.get("ID", "")] = f"line {record.line}: {error}"
 
 
@@ -112,10 +113,16 @@ def _tell_corrections(state: _State) -> None:
         text = "distances are stored raw: prism constant and ppm of the file were added"
         state.gathered.warn("raw_distances", text)
     if state.without_ppm:
-        text = f"{state.without_ppm} distances have no ppm in the file: no atmosphere was applied"
+        text = said(
+            "{without_ppm} distances have no ppm in the file: no atmosphere was applied",
+            without_ppm=state.without_ppm,
+        )
         state.gathered.warn("ppm_missing", text)
     if state.without_prism:
-        text = f"{state.without_prism} distances have no prism constant in the file: none was added"
+        text = said(
+            "{without_prism} distances have no prism constant in the file: none was added",
+            without_prism=state.without_prism,
+        )
         state.gathered.warn("prism_missing", text)
 
 
@@ -128,14 +135,14 @@ def _number(record: Record, path: str) -> float | None:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise RecordError(f"{path} is no number: {text[:40]}")
+        raise RecordError(said("{path} is no number: {text}", path=path, text=text[:40]))
     return value
 
 
 def _deleted(record: Record) -> bool:
     text = record.text("Deleted").lower()
     if text not in ("", "true", "false"):
-        raise RecordError(f"Deleted is neither true nor false: {text[:40]}")
+        raise RecordError(said("Deleted is neither true nor false: {text}", text=text[:40]))
     return text == "true"
 
 
@@ -199,9 +206,11 @@ def _owner(state: _State, record: Record) -> tuple[_Station, _Target] | None:
             return None
     station = state.stations.get(station_id)
     if station is None:
-        raise RecordError(f"there is no station record {station_id or 'before it'}")
+        raise RecordError(
+            said("there is no station record {station_id}", station_id=station_id or "before it")
+        )
     if target_id and target_id not in state.targets:
-        raise RecordError(f"there is no target record {target_id}")
+        raise RecordError(said("there is no target record {target_id}", target_id=target_id))
     return station, state.targets.get(target_id, _Target(None, None))
 
 
@@ -210,14 +219,16 @@ def _circle(record: Record, path: str) -> float | None:
     if value is None:
         return None
     if not 0.0 <= value <= 360.0:
-        raise RecordError(f"{path} is beyond the circle: {value:g} degrees")
+        raise RecordError(
+            said("{path} is beyond the circle: {value:g} degrees", path=path, value=value)
+        )
     return math.radians(value % 360.0)
 
 
 def _pointing(state: _State, record: Record, name: str) -> None:
     face = record.text("Circle/Face")
     if face not in _FACES:
-        raise RecordError(f"the face is not known: {face[:20]}")
+        raise RecordError(said("the face is not known: {face}", face=face[:20]))
     hz, v = _circle(record, "Circle/HorizontalCircle"), _circle(record, "Circle/VerticalCircle")
     sd = _number(record, "Circle/EDMDistance")
     if not name:
@@ -225,13 +236,13 @@ def _pointing(state: _State, record: Record, name: str) -> None:
     if hz is None and v is None:
         raise RecordError("a pointing has neither a circle nor a vertical reading")
     if sd is not None and sd < 0.0:
-        raise RecordError(f"a distance is negative: {sd:g}")
+        raise RecordError(said("a distance is negative: {sd:g}", sd=sd))
     owner = _owner(state, record)
     if owner is None:
         return
     station, target = owner
     if name == station.name:
-        raise RecordError(f"point {name} is sighted from itself")
+        raise RecordError(said("point {name} is sighted from itself", name=name))
     air = state.atmospheres.get(station.atmosphere, _Atmosphere())
     if sd:
         state.raw += 1

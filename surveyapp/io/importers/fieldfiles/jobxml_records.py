@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, BinaryIO, Final
 
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.importers.fieldfiles.lines import open_field_file
+from surveyapp.languages import said
 
 if TYPE_CHECKING:
     from xml.sax.handler import ContentHandler
@@ -65,8 +66,8 @@ class Records:
             raise SurveyError(
                 Problem(
                     "the elements are nested too deeply",
-                    f"{where}, line {line}",
-                    f"more than {_DEEPEST} levels",
+                    said("{where}, line {line}", where=where, line=line),
+                    said("more than {deepest} levels", deepest=_DEEPEST),
                     "a JobXML field book",
                 )
             )

@@ -18,6 +18,7 @@ from typing import BinaryIO, Final
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import shown_path
 from surveyapp.io.guarded import MAX_LOG_BYTES, open_regular
+from surveyapp.languages import said
 
 LONGEST_LINE: Final = 1 << 20
 """Characters; only a GSI file may have all its blocks on one line, and is cut between them."""
@@ -93,8 +94,13 @@ class FieldText:
 
 
 def _too_long(name: str, line: int) -> Problem:
-    expected = f"lines of at most {LONGEST_LINE} characters"
-    return Problem("the line is too long for a field file", f"{name}, line {line}", "", expected)
+    expected = said("lines of at most {longest_line} characters", longest_line=LONGEST_LINE)
+    return Problem(
+        "the line is too long for a field file",
+        said("{name}, line {line}", name=name, line=line),
+        "",
+        expected,
+    )
 
 
 def open_field_file(path: Path, name: str) -> BinaryIO:
@@ -118,12 +124,12 @@ def open_field_file(path: Path, name: str) -> BinaryIO:
         raise SurveyError(Problem(what, name, shown_path(path), expected)) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        what = f"the file cannot be read ({reason})"
+        what = said("the file cannot be read ({reason})", reason=reason)
         raise SurveyError(Problem(what, name, shown_path(path), "a text file")) from None
     size = os.fstat(stream.fileno()).st_size
     if size > MAX_LOG_BYTES:
         stream.close()
-        expected = f"at most {MAX_LOG_BYTES // 2**20} MB"
+        expected = said("at most {size} MB", size=MAX_LOG_BYTES // 2**20)
         found = f"{size / 1e6:.0f} MB"
         raise SurveyError(Problem("the file is too large for a field file", name, found, expected))
     return stream
@@ -173,7 +179,7 @@ def _continues(decoder: codecs.IncrementalDecoder, chunk: bytes, *, final: bool 
 def _binary(name: str, line: int) -> Problem:
     return Problem(
         "this is a binary file",
-        f"{name}, line {line}",
+        said("{name}, line {line}", name=name, line=line),
         "a NUL byte",
         "text in UTF-8",
         "a spreadsheet must be saved as CSV in UTF-8",

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said, some
 
 MOST_READINGS: Final = 300_000
 """Readings of one import: what they become stays below the largest book in most files."""
@@ -64,19 +65,19 @@ class Parts:
         return Problem(
             "the file holds more readings than one traverse",
             name,
-            f"{self.readings} readings",
-            f"at most {MOST_READINGS}",
+            said("{readings} readings", readings=self.readings),
+            said("at most {most_readings}", most_readings=MOST_READINGS),
             parts_hint(self.found()),
         )
 
 
 def parts_hint(parts: tuple[tuple[int, int], ...]) -> str:
     """How to take a large file over in parts."""
-    listed = ", ".join(f"{first}-{last}" for first, last in parts[:_SHOWN])
-    more = f" and {len(parts) - _SHOWN} more" if len(parts) > _SHOWN else ""
-    return (
-        f"--lines A-B takes a part, each as a --traverse of its own; parts between set-ups: "
-        f"{listed}{more}"
+    listed = some([f"{first}-{last}" for first, last in parts], _SHOWN)
+    return said(
+        "--lines A-B takes a part, each as a --traverse of its own; parts between set-ups: "
+        "{listed}",
+        listed=listed,
     )
 
 

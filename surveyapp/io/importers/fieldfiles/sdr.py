@@ -34,6 +34,7 @@ from surveyapp.io.importers.fieldfiles.sdr_state import (
     swallowed,
 )
 from surveyapp.io.importers.fieldfiles.units import DEGREE, GON, MIL
+from surveyapp.languages import said
 
 _ANGLES: Final = {"1": DEGREE, "2": GON, "4": MIL}
 _LENGTHS: Final = {"1": 1.0, "2": None}
@@ -85,22 +86,14 @@ def read_sdr(path: Path, options: ReadOptions) -> FieldFile:
         "SDR files do not say whether distances hold the atmospheric correction: enter "
         "atmosphere_applied in [[traverse]]",
     )
-    if applied is False:
-        state.gathered.warn(
-            "raw_distances", "distances are stored raw: the prism constant was added"
-        )
-    return state.gathered.finish(
-        form=("sdr", shape.version),
-        applied=(None, None if applied is None else True),
-        corrected=applied is False,
-    )
+    return state.gathered.finish(form=("sdr", shape.version), applied=(None, applied))
 
 
 def _from_horizon(state: State) -> Problem:
     lines = ", ".join(str(line) for line in state.negative[:_SHOWN])
     return Problem(
         "vertical readings are negative, and zenith angles never are",
-        f"{state.gathered.name}, lines {lines}",
+        said("{name}, lines {lines}", name=state.gathered.name, lines=lines),
         "no record 01 that says so",
         "a 2 in column 51 of record 01 for angles from the horizon",
         "Is the record 01 damaged?",
@@ -132,7 +125,7 @@ def _record(state: State, number: int, line: str) -> None:
             state.shape.alone(kind, line)
         action(state, number, line)
     except RecordError as error:
-        state.gathered.damaged(number, str(error), line)
+        state.gathered.damaged(number, error.args[0], line)
         taken = swallowed(state, line, kind) if kind in (*KINDS, "07") else frozenset()
         lose(state, number, may_have_been(line) | {kind} | taken)
 
@@ -153,8 +146,8 @@ def _header(state: State, number: int, line: str) -> None:
         if digit not in known:
             raise SurveyError(
                 Problem(
-                    f"the header names no unit of {what}",
-                    f"{state.gathered.name}, line {number}",
+                    said("the header names no unit of {what}", what=what),
+                    said("{name}, line {number}", name=state.gathered.name, number=number),
                     digit.strip() or "nothing",
                     ", ".join(known),
                 )
@@ -163,7 +156,7 @@ def _header(state: State, number: int, line: str) -> None:
         raise SurveyError(
             Problem(
                 "the header names no order of coordinates",
-                f"{state.gathered.name}, line {number}",
+                said("{name}, line {number}", name=state.gathered.name, number=number),
                 digits[4].strip() or "nothing",
                 "1 (north, east) or 2 (east, north) in column 45",
             )
@@ -223,7 +216,8 @@ def _note(state: State, number: int, line: str) -> None:
         try:
             state.prism = float(tail) * 1e-3 if sign else None
         except ValueError:
-            raise RecordError(f"the prism constant is no number: {tail.strip()}") from None
+            text = said("the prism constant is no number: {value}", value=tail.strip())
+            raise RecordError(text) from None
     elif origin == "TS":
         state.time = text
     else:
@@ -235,7 +229,7 @@ def _circle(state: State, value: float | None, what: str) -> float | None:
         return None
     reading = value * state.angle
     if not -1e-9 <= reading <= _TWO_PI + 1e-9:
-        raise RecordError(f"{what} is beyond the circle: {value:g}")
+        raise RecordError(said("{what} is beyond the circle: {value:g}", what=what, value=value))
     return 0.0 if reading >= _TWO_PI else max(reading, 0.0)
 
 
@@ -253,12 +247,13 @@ def _observation(state: State, number: int, line: str) -> None:
     origin = line[2:4]
     if origin not in ("F1", "F2", "MC"):
         if origin[0] == "F" or origin[1] in "12" or not origin.strip():
-            raise RecordError(f"the record 09 has no face: {origin!r}")
+            raise RecordError(said("the record 09 has no face: {origin!r}", origin=origin))
         state.gathered.ignore(f"record 09{origin.strip()}")
         return
     at, to = state.shape.names(line, 2)
     if not at or not to or at == to:
-        raise RecordError(f"a sight needs a station and another point: {at!r} to {to!r}")
+        text = said("a sight needs a station and another point: {at!r} to {to!r}", at=at, to=to)
+        raise RecordError(text)
     sd, v, hz = (
         state.shape.number(line, "09", i, what)
         for i, what in enumerate(("the distance", "the vertical reading", "the circle reading"))
@@ -266,7 +261,7 @@ def _observation(state: State, number: int, line: str) -> None:
     if hz is None:
         raise RecordError("the sight has no circle reading")
     if sd is not None and sd < 0.0:
-        raise RecordError(f"a distance is negative: {sd:g}")
+        raise RecordError(said("a distance is negative: {sd:g}", sd=sd))
     horizontal, zenith = _circle(state, hz, "the circle reading"), _zenith(state, number, v)
     state.begun = True
     lost = (state.lost if state.station is None else "") or state.ht_lost or state.circle_lost
@@ -275,8 +270,9 @@ def _observation(state: State, number: int, line: str) -> None:
         return
     if at != state.station and not _stands(state, number, at):
         return
+    raw = state.applied is False and state.prism is not None
     if sd:
-        state.said.add(state.applied)
+        state.said.add(state.applied or (False if raw else None))
     pointing = Pointing(
         line=number,
         at=at,
@@ -292,6 +288,7 @@ def _observation(state: State, number: int, line: str) -> None:
         prism_m=state.prism,
         time=state.time,
         code=line[state.shape.full("09") :].strip(),
+        raw=raw,
     )
     _keep(state, pointing, mean=origin == "MC")
 
@@ -304,7 +301,8 @@ def _stands(state: State, number: int, at: str) -> bool:
         return False
     if state.station is not None:
         if state.shape.stations[at] == 1:
-            raise RecordError(f"station {at} has no record: {state.station} is occupied")
+            text = said("station {at} has no record: {now} is occupied", at=at, now=state.station)
+            raise RecordError(text)
         state.differs.append(f"line {number} names {at}, the record before it {state.station}")
         del state.differs[_SHOWN:]
     state.setup += 1
@@ -341,8 +339,9 @@ def _tell_places(state: State) -> None:
     if state.differs:
         state.gathered.warn("station_differs", "; ".join(state.differs))
     if state.mean_only:
-        text = (
-            f"only the mean of a sight is stored, its faces are gone: {', '.join(state.mean_only)}"
+        text = said(
+            "only the mean of a sight is stored, its faces are gone: {names}",
+            names=", ".join(state.mean_only),
         )
         state.gathered.warn("mean_only", text)
         state.gathered.pointings.sort(key=lambda p: p.line)

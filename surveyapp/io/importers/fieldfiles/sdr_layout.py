@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 
 KINDS: Final = ("02", "03", "08", "09")
 """Records whose columns are known: names, values, whether a text follows."""
@@ -94,7 +95,7 @@ class Shape:
         found = [line[4 + i * self.name : 4 + (i + 1) * self.name].strip() for i in range(count)]
         for name in found:
             if "  " in name:
-                raise RecordError(f"a name has a gap: {name}")
+                raise RecordError(said("a name has a gap: {name}", name=name))
         return found
 
     def number(self, line: str, kind: str, place: int, what: str) -> float | None:
@@ -115,15 +116,27 @@ class Shape:
         except ValueError:
             value = math.nan
         if not math.isfinite(value) or not text[-1].isdigit():
-            raise RecordError(f"{what} is no number: {text}")
+            raise RecordError(said("{what} is no number: {text}", what=what, text=text))
         if text.lstrip("+-").startswith(".") and not self.dotted:
-            raise RecordError(f"{what} has lost the digit before its point: {text}")
+            raise RecordError(
+                said("{what} has lost the digit before its point: {text}", what=what, text=text)
+            )
         if cell[0] == " " and not self.right:
-            raise RecordError(f"{what} does not begin in its column: {text}")
+            raise RecordError(
+                said("{what} does not begin in its column: {text}", what=what, text=text)
+            )
         places, usual = _decimals(text), self.decimals.get((kind, place))
         fills = len(text) >= self.value
         if usual is not None and (places > usual if fills else places != usual):
-            raise RecordError(f"{what} has {places} decimals instead of {usual}: {text}")
+            raise RecordError(
+                said(
+                    "{what} has {places} decimals instead of {usual}: {text}",
+                    what=what,
+                    places=places,
+                    usual=usual,
+                    text=text,
+                )
+            )
         return value
 
     def alone(self, kind: str, line: str) -> None:
@@ -148,20 +161,22 @@ class Shape:
         """
         origin = line[2:4]
         if not (origin == "  " or (origin.isalnum() and origin[0].isalpha())):
-            raise RecordError(f"the record {kind} has no origin: {line[:8]}")
+            raise RecordError(
+                said("the record {kind} has no origin: {line}", kind=kind, line=line[:8])
+            )
         self.alone(kind, line)
         usual, full = self.lengths.get(kind), self.full(kind)
         filled = [i for i, cell in enumerate(self.fields(kind, line)) if cell.strip()]
         if (usual is not None and len(line) < usual) or max(filled, default=-1) < self.last.get(
             kind, 0
         ):
-            raise RecordError(f"the record {kind} is cut short")
+            raise RecordError(said("the record {kind} is cut short", kind=kind))
         longest = full + (TEXT if _FIELDS[kind][2] else 0)
         shifted = (
             usual is not None and len(line) > usual and (usual > full or not line[full:].strip())
         )
         if len(line.rstrip()) > longest or shifted:
-            raise RecordError(f"the record {kind} is too long")
+            raise RecordError(said("the record {kind} is too long", kind=kind))
 
 
 def shape_of(lines: Iterable[str], where: str) -> Shape:

@@ -11,6 +11,7 @@ from surveyapp.domain.fieldfile import Pointing
 from surveyapp.io.importers.fieldfiles.gathering import Gathering
 from surveyapp.io.importers.fieldfiles.sdr_layout import TEXT, Shape
 from surveyapp.io.importers.fieldfiles.units import DEGREE
+from surveyapp.languages import said
 
 
 @dataclass(slots=True)
@@ -72,15 +73,26 @@ def swallowed(state: State, line: str, kind: str) -> frozenset[str]:
 
 
 def constant_applied(state: State) -> bool | None:
-    """Whether the prism constant is in the distances; None where the file does not say."""
-    if len(state.said) == 1 and None not in state.said:
-        return state.said.pop()
+    """Whether the prism constant is in the distances after the reduction; None: nobody says.
+
+    The file says it by notes: where it is in some of the distances only, it is added to the others.
+    """
+    if False in state.said:
+        which = "distances" if state.said == {False} else "some of the distances"
+        state.gathered.warn(
+            "raw_distances", f"{which} are stored raw: the prism constant was added"
+        )
+    if state.said and None not in state.said:
+        return True
     if len(state.said) > 1:
-        code, why = "constant_mixed", "the prism constant is in some of the distances"
+        code, why = (
+            "constant_mixed",
+            "no note tells of some distances whether the prism constant is in",
+        )
     else:
         code, why = (
             "constant_unknown",
-            "no note says whether the prism constant is in the distances",
+            "no note tells whether the prism constant is in the distances",
         )
-    state.gathered.warn(code, f"{why}: enter it in [[traverse]]")
+    state.gathered.warn(code, said("{why}: enter it in [[traverse]]", why=why))
     return None

@@ -28,6 +28,7 @@ from surveyapp.io.importers.fieldfiles.gathering import (
 )
 from surveyapp.io.importers.fieldfiles.lines import look_through
 from surveyapp.io.importers.fieldfiles.units import US_FOOT
+from surveyapp.languages import said
 
 QUANTITIES: Final = Quantities(
     names=(
@@ -79,10 +80,11 @@ def read_csv(path: Path, options: ReadOptions) -> FieldFile:
     gathered.warn("table_layout", columns.told)
     if table.encoding == "latin-1":
         gathered.warn("code_page", "the table is no UTF-8: names were read as Latin-1")
-    text = "a table does not say whether distances hold prism constant and ppm: enter "
-    gathered.warn(
-        "corrections_unknown", text + "atmosphere_applied and constant_applied in [[traverse]]"
+    text = (
+        "a table does not say whether distances hold prism constant and ppm: enter "
+        "atmosphere_applied and constant_applied in [[traverse]]"
     )
+    gathered.warn("corrections_unknown", text)
     variant = f"table, {columns.told}"
     return gathered.finish(form=("csv", variant), applied=(None, None))
 
@@ -102,7 +104,7 @@ class _Rows:
             check_style(cells, self.style, self.columns)
             self.gathered.add(self._pointing(number, cells))
         except CellError as error:
-            self.gathered.damaged(number, str(error), line)
+            self.gathered.damaged(number, error.args[0], line)
 
     def _setup(self, at: str, stated: str) -> str:
         """Stated sets belong together wherever they stand; else a run of rows is a set-up."""
@@ -118,7 +120,9 @@ class _Rows:
         columns = self.columns
         at, to = columns.text(cells, "at"), columns.text(cells, "to")
         if not at or not to or at == to:
-            raise CellError(f"a sight needs a station and another point: {at!r} to {to!r}")
+            raise CellError(
+                said("a sight needs a station and another point: {at!r} to {to!r}", at=at, to=to)
+            )
         hz, v = self._circle(cells, "hz"), self._circle(cells, "v")
         if columns.carries(cells, "hz") or columns.carries(cells, "v"):
             self.gathered.carry(number)
@@ -127,7 +131,9 @@ class _Rows:
             raise CellError("there is no reading in this row")
         face_text = columns.text(cells, "face").lower()
         if face_text not in _FACES:
-            raise CellError(f"the face is none of I, II, L, R, 1, 2: {face_text[:20]}")
+            raise CellError(
+                said("the face is none of I, II, L, R, 1, 2: {face_text}", face_text=face_text[:20])
+            )
         face: Face = _FACES[face_text]
         if not face and v is not None:
             face = "R" if v > math.pi else "L"
@@ -162,8 +168,12 @@ class _Rows:
             return None
         if not 0.0 <= value <= _TWO_PI + 1e-9:
             raise CellError(
-                f"{quantity} is beyond the circle: {self.columns.text(cells, quantity)} "
-                f"{self.columns.units[quantity]}"
+                said(
+                    "{quantity} is beyond the circle: {value} {value2}",
+                    quantity=quantity,
+                    value=self.columns.text(cells, quantity),
+                    value2=self.columns.units[quantity],
+                )
             )
         return 0.0 if value >= _TWO_PI else value
 
@@ -172,5 +182,11 @@ class _Rows:
             return None
         value = self.columns.length(cells, quantity)
         if value is not None and value < 0.0:
-            raise CellError(f"{quantity} is negative: {self.columns.text(cells, quantity)}")
+            raise CellError(
+                said(
+                    "{quantity} is negative: {value}",
+                    quantity=quantity,
+                    value=self.columns.text(cells, quantity),
+                )
+            )
         return value or None
