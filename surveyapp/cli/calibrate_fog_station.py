@@ -29,7 +29,7 @@ def run(options: argparse.Namespace) -> int:
     """Calibrate and print, or plan."""
     if options.plan:
         return _plan(options)
-    own = ("reading_from_elevation", "table_rate_relative_sigma")
+    own = ("reading_from_elevation", "table_rate_relative_sigma", "against")
     return run_kind(options, {name: getattr(options, name) for name in own})
 
 

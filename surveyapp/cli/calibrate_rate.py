@@ -14,6 +14,7 @@ OWN = (
     "predict_at",
     "room",
     "gravity_m_s2",
+    "against",
 )
 
 
@@ -37,6 +38,9 @@ def add_arguments(group: argparse._ArgumentGroup) -> None:
     )
     group.add_argument(
         "--room", metavar="FILE", help="six positions at room temperature, for misalignments"
+    )
+    group.add_argument(
+        "--against", metavar="CARD,...", help="older cards of the sensor: drift since then"
     )
     group.add_argument(
         "--gravity-m-s2", type=float, metavar="G", help="local gravity (default 9.80665)"

@@ -215,6 +215,8 @@ class Calibration:
         Further numbers that a card needs beside the parameters.
     notes : mapping of str to str
         What a reader of the card must know.
+    tables : mapping of str to mapping
+        Tables of the card that only this subject has.
     """
 
     kind: str
@@ -234,6 +236,7 @@ class Calibration:
     temperature_c: tuple[float, float] | None = None
     constants: Mapping[str, float] = field(default_factory=dict)
     notes: Mapping[str, str] = field(default_factory=dict)
+    tables: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """No parameter without a value is without a reason."""

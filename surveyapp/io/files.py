@@ -18,6 +18,7 @@ from surveyapp.io.guarded import checked_inside
 from surveyapp.languages import said
 
 MAX_BYTES: Final = 32 * 1024 * 1024
+MAX_LINES: Final = 100_000
 """Largest text file that is read; a field book of a whole year stays far below it."""
 
 MAX_COLUMNS: Final = 200
@@ -129,6 +130,20 @@ def _too_large(where: str, size: int) -> Problem:
         where,
         f"{size / 1e6:.0f} MB",
         said("at most {size} MB", size=MAX_BYTES // (1024 * 1024)),
+        "is it a sensor log? Those are named in [[sensor_log]]",
+    )
+
+
+def too_many_lines(text: str, where: str) -> Problem | None:
+    """A text of more lines than any book has: each would be a problem of its own."""
+    count = text.count("\n")
+    if count <= MAX_LINES:
+        return None
+    return Problem(
+        "the text has too many lines for a book",
+        where,
+        str(count),
+        said("at most {lines} lines", lines=MAX_LINES),
         "is it a sensor log? Those are named in [[sensor_log]]",
     )
 

@@ -1,7 +1,8 @@
 """Files of a folder that a stranger made: nothing outside of it is read or written through it.
 
 A path of a project resolves inside its folder, whatever links, ``..`` or drive letters it is made
-of. What is opened is a regular file of bounded size: no device, no pipe, and for writing no link.
+of. What is opened is a regular file of bounded size: no device, no pipe, and for writing no link
+and no file that has a second name elsewhere.
 Flags that a system does not have are left away; nothing here needs POSIX.
 """
 
@@ -144,6 +145,9 @@ def outside_problem(name: str, *, where: str) -> Problem:
 def open_regular(path: Path, flags: int, *, follow: bool = False) -> int:
     """Open a regular file and return its descriptor.
 
+    A file that has a second name elsewhere (a hard link) gets bytes of its own before it is written
+    to: what is written appears in the project alone.
+
     Parameters
     ----------
     path : Path
@@ -161,10 +165,23 @@ def open_regular(path: Path, flags: int, *, follow: bool = False) -> int:
     if not follow:
         flags |= getattr(os, "O_NOFOLLOW", 0)
     handle = os.open(path, flags | _COMMON, 0o644)
-    if not stat.S_ISREG(os.fstat(handle).st_mode):
+    state = os.fstat(handle)
+    if not stat.S_ISREG(state.st_mode):
         os.close(handle)
         raise OSError(errno.EINVAL, "no regular file")
+    if state.st_nlink > 1 and not follow and flags & (os.O_WRONLY | os.O_RDWR):
+        os.close(handle)
+        _part(path)
+        return os.open(path, flags | _COMMON, 0o644)
     return handle
+
+
+def _part(path: Path) -> None:
+    """Give a file that has several names bytes of its own under this one."""
+    from surveyapp.io.tomltext import atomic_write
+
+    with os.fdopen(open_regular(path, os.O_RDONLY), "rb") as stream:
+        atomic_write(path, iter(lambda: stream.read(1 << 20), b""))
 
 
 def _refuse_irregular(path: Path, *, follow: bool) -> None:

@@ -6,12 +6,14 @@ of the command, nor the record of a project: project.toml, ledger, books, logs, 
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Final
 
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import shown_path
+from surveyapp.io.guarded import outside_problem, place_inside
 from surveyapp.io.project_files import PROJECT_FILE
 from surveyapp.io.tomltext import atomic_write
 
@@ -30,6 +32,7 @@ def check_output(path: Path, inputs: Iterable[Path] = (), *, named: bool = True)
     """
     what = None
     try:
+        _refuse_outside(path)
         if not path.exists():
             return
         if any(item.exists() and item.samefile(path) for item in inputs):
@@ -54,6 +57,17 @@ def write_output(
     """
     check_output(path, inputs, named=named)
     atomic_write(path, data)
+
+
+def _refuse_outside(path: Path) -> None:
+    """A result in a project folder is written there, whatever links its folders are."""
+    whole = Path(os.path.abspath(path))  # noqa: PTH100 - links must not be followed yet
+    for folder in whole.parents:
+        if (folder / PROJECT_FILE).is_file():
+            name = whole.relative_to(folder).as_posix()
+            if place_inside(folder, name) is None:
+                raise SurveyError(outside_problem(name, where=shown_path(folder)))
+            return
 
 
 def _is_record(path: Path, *, named: bool) -> bool:

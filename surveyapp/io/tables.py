@@ -23,6 +23,10 @@ from surveyapp_models.angles import TWO_PI, AngleError, AngleUnit, parse_angle
 
 _LONGEST_NAME: Final = 200
 _SMALLEST: Final = 1e-9
+_MOST_TABLES: Final = 150_000
+_MOST_VALUES: Final = 600_000
+"""Beyond them memory and time of reading are no longer those of a few letters."""
+_KEY: Final = re.compile(r"^[^=\n\"'#]*(?==)", re.MULTILINE)
 _DEEPEST: Final = 24
 _DEEP_KEY: Final = re.compile(r"(?<![A-Za-z0-9_-])(?:[A-Za-z0-9_-]+[ \t]*\.[ \t]*){24}")
 
@@ -52,8 +56,7 @@ def parse_toml(text: str, *, where: str) -> dict[str, object]:
     SurveyError
     """
     try:
-        deep = _DEEP_KEY.search(text)
-        if deep is not None:
+        if _DEEP_KEY.search(text) is not None or _is_too_much(text):
             raise RecursionError
         data = tomllib.loads(text)
         _check_depth(data)
@@ -72,6 +75,13 @@ def parse_toml(text: str, *, where: str) -> dict[str, object]:
         raise SurveyError(
             Problem("this is no usable TOML: a number or a nesting is beyond all bounds", where)
         ) from None
+
+
+def _is_too_much(text: str) -> bool:
+    """Whether a text may make more tables or values than a project of 10,000 sessions needs."""
+    keys: list[str] = _KEY.findall(text)
+    tables = text.count("[") + text.count("{") + sum(key.count(".") for key in keys)
+    return tables > _MOST_TABLES or text.count(",") + text.count("=") > _MOST_VALUES
 
 
 def _check_depth(data: object) -> None:

@@ -140,3 +140,21 @@ def test_a_book_states_the_lengths(tmp_path: Path) -> None:
 def test_a_book_with_an_impossible_length_is_refused(tmp_path: Path, length: str) -> None:
     with pytest.raises(SurveyError, match="length"):
         api.adjust(book(tmp_path, length))
+
+
+def test_a_section_levelled_there_and_back_closes_on_itself(tmp_path: Path) -> None:
+    """1.002 m forth and 1.006 m back over 400 m each: -4 mm, 4.47 mm per root of 0.8 km."""
+    rows = (
+        '<dh from="A" to="B" val="1.002" dist="0.4"/>',
+        '<dh from="B" to="A" val="-1.006" dist="0.4"/>',
+        '<dh from="B" to="C" val="2.001" dist="0.5"/>',
+    )
+    closures = network_closures(read_gkf(gkf(tmp_path, rows=rows)))
+    assert [item.stations for item in closures] == [("A", "B", "A")]
+    found = closures[0].to_dict()
+    assert found["height_m"] == pytest.approx(-0.004)
+    assert found["length_m"] == pytest.approx(800.0)
+    assert found["height_mm_per_sqrt_km"] == pytest.approx(-4.0 / math.sqrt(0.8))
+    sigma = 2e-3 * math.sqrt(0.8)  # 2 mm per root of a kilometre, two runs
+    assert found["height_allowed_m"] == pytest.approx(3.0 * sigma)
+    assert found["pass"] is True

@@ -19,14 +19,14 @@ from bench.rate_rank import counts
 
 @pytest.mark.statistical
 def test_intervals_of_hand_held_stops_hold_the_truth() -> None:
-    """Twelve records of 21 parameters: 1.96 sigma, few degrees of freedom counted in.
+    """Eight records of 21 parameters: 1.96 sigma, few degrees of freedom counted in.
 
-    The parameters of a record are correlated: a pooled share of .88 lies three of its standard
-    deviations below .95. Without the accelerometers' uncertainty it was .91, single ones .84.
+    The parameters of a record are correlated: a pooled share of .86 lies three of its standard
+    deviations below .95.
     """
-    found = coverage_of(multi_position, 12, seed=3)
+    found = coverage_of(multi_position, 8, seed=3)
     assert len(found) == 21
-    assert float(np.mean([share for share, _ in found.values()])) >= 0.88
+    assert float(np.mean([share for share, _ in found.values()])) >= 0.86
 
 
 @pytest.mark.statistical
@@ -57,15 +57,15 @@ def test_intervals_of_table_programmes_hold_the_truth() -> None:
     assert len(found) == 18
     assert min(share for share, _ in found.values()) >= 0.75
     assert 0.90 <= float(np.mean([share for share, _ in found.values()])) <= 0.995
-    nodes = coverage_of(temperature, 12, seed=3)
+    nodes = coverage_of(temperature, 8, seed=3)
     pooled = [share for name, (share, _) in nodes.items() if name.endswith("node")]
     assert len(pooled) == 24
-    assert float(np.mean(pooled)) >= 0.88
+    assert float(np.mean(pooled)) >= 0.86
     between = [share for name, (share, _) in nodes.items() if name.endswith("between")]
-    assert float(np.mean(between)) >= 0.88
-    alone = coverage_of(temperature_alone, 12, seed=3)
+    assert float(np.mean(between)) >= 0.86
+    alone = coverage_of(temperature_alone, 6, seed=3)
     assert {name.split(",")[0][-1] for name in alone} == {"x", "y", "z"}
-    assert float(np.mean([share for share, _ in alone.values()])) >= 0.75
+    assert float(np.mean([share for share, _ in alone.values()])) >= 0.70
 
 
 @pytest.mark.statistical

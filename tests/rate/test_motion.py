@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -11,12 +12,13 @@ import pytest
 
 from bench.rate_motion import exceeding, split
 from surveyapp.core.sensors.rate.motion_log import MotionOptions, judge_motion
+from surveyapp.core.sensors.rate.motion_pieces import states_of
 from surveyapp.core.sensors.rate.odometer_path import Driven, reckon, snap
 from surveyapp.core.sensors.rate.zero_velocity import TOLERATED
 from surveyapp.core.simulate.rate.log import SimulatedLog
 from surveyapp.core.simulate.rate.recipes import simulate_rate
 from surveyapp.core.simulate.rate.vehicle import VehicleRun, usual_drive, vehicle_log
-from surveyapp.domain.motion import Motion
+from surveyapp.domain.motion import Motion, MotionSegment
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp_models.arrays import Floats
 from surveyapp_models.rate.triad import Triad
@@ -60,6 +62,27 @@ def test_the_five_states_of_a_drive(seed: int) -> None:
     assert agreement(log, found, "accelerating") > 0.9
     assert agreement(log, found, "braking") > 0.9
     assert agreement(log, found, "steady") > 0.7
+
+
+def test_pieces_say_what_the_whole_record_says() -> None:
+    """Cut every 82 s, wherever the vehicle is: the same rests, and nearly the same states."""
+    run = VehicleRun(usual_drive(8), gyro=Triad(noise=0.001), accelerometer=Triad(noise=0.02))
+    log = as_read(vehicle_log(run, np.random.default_rng(2)))
+    whole = states_of(log, false_alarm=0.01)
+    parts = states_of(log, false_alarm=0.01, rows=8300)
+    assert (whole.pieces, parts.pieces) == (1, 4)
+    assert np.mean(whole.still == parts.still) >= 0.99
+    time = log.columns["time_s"]
+
+    def named(segments: tuple[MotionSegment, ...]) -> np.ndarray:
+        given = np.array([""] * time.size, dtype=object)
+        for segment in segments:
+            given[(time >= segment.start_s) & (time < segment.end_s)] = segment.state
+        return given
+
+    assert np.mean(named(whole.segments) == named(parts.segments)) >= 0.95
+    ends = [(one.end_s, other.start_s) for one, other in pairwise(parts.segments)]
+    assert all(end == start for end, start in ends)
 
 
 def test_white_noise_is_no_motion() -> None:

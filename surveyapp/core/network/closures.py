@@ -14,11 +14,15 @@ from dataclasses import dataclass
 
 from surveyapp.core.network.sights import Sighted, sighted
 from surveyapp.domain.adjustment import SIGMAS, Closure
+from surveyapp.domain.observations import Observation, ObservationKind
 from surveyapp.domain.traverse import Network, NetworkPoint, Status
 from surveyapp_models.angles import wrap_pi
 
 MOST_ROUTES = 500
 """So many closures are formed, the shortest routes first; a dense network has no use for more."""
+
+MOST_SECTIONS = 500
+"""So many levelled sections are looked at for a run back."""
 
 _GROUND = ""
 
@@ -214,6 +218,34 @@ def _height(route: Route, seen: Sighted, points: dict[str, NetworkPoint]) -> Clo
     )
 
 
+def _there_and_back(observations: Sequence[Observation]) -> list[Closure]:
+    """Sections levelled in both directions: forth plus back, over the length of both runs."""
+    runs: dict[tuple[str, str], list[Observation]] = {}
+    for obs in observations:
+        if obs.kind is ObservationKind.HEIGHT_DIFFERENCE:
+            runs.setdefault((obs.at, obs.to), []).append(obs)
+    found: list[Closure] = []
+    for (a, b), forth in list(runs.items())[:MOST_SECTIONS]:
+        back = runs.get((b, a))
+        if back is None or any(item.stations == (b, a, b) for item in found):
+            continue
+        both = (forth, back)
+        total = sum(sum(o.value - o.ht + o.hi for o in run) / len(run) for run in both)
+        sigma = math.hypot(*(math.hypot(*(o.sigma for o in run)) / len(run) for run in both))
+        lengths = [o.length_m for o in (forth[0], back[0]) if o.length_m is not None]
+        found.append(
+            Closure(
+                "height",
+                (a, b, a),
+                length_m=sum(lengths) if len(lengths) == len(both) else None,
+                height_m=total,
+                height_sigma_m=sigma,
+                passed=abs(total) <= SIGMAS * sigma,
+            )
+        )
+    return found
+
+
 def network_closures(network: Network) -> tuple[Closure, ...]:
     """All closures that the observations of a network allow.
 
@@ -224,7 +256,8 @@ def network_closures(network: Network) -> tuple[Closure, ...]:
     Returns
     -------
     tuple of Closure
-        Loops and connecting routes (angular, linear), then height routes. A loop's misclosures
+        Loops and connecting routes (angular, linear), then height routes and sections levelled in
+        both directions. A loop's misclosures
         need every angle; a connecting route's angular one needs a fixed back sight at both ends.
     """
     seen = sighted(network.observations)
@@ -238,4 +271,6 @@ def network_closures(network: Network) -> tuple[Closure, ...]:
     found += [
         _height(route, seen, points) for route in routes(seen.neighbours(heights=True), level)
     ]
-    return tuple(item for item in found if item is not None)
+    return tuple(item for item in found if item is not None) + tuple(
+        _there_and_back(network.observations)
+    )

@@ -108,7 +108,7 @@ def _strange_angles(log: SensorLog) -> list[Problem]:
                 "the angles of set {code} are not those of +-{span} degrees", code=code, span=span
             )
             found, hint = f"up to {size:g}", "are they in degrees? --unit COLUMN=rad"
-            problems.append(Problem(what, log.path, found, f"up to {span}", hint))
+            problems.append(Problem(what, log.path, found, said("up to {span}", span=span), hint))
     return problems
 
 

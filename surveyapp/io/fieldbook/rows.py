@@ -16,7 +16,14 @@ from typing import Final
 
 from surveyapp.domain.readings import QUANTITY, Dimension, Face, Reading, ReadingKind, Side
 from surveyapp.errors import Problem, nearest_names
-from surveyapp.io.files import MAX_COLUMNS, has_control, shown, too_many_columns, visible
+from surveyapp.io.files import (
+    MAX_COLUMNS,
+    has_control,
+    shown,
+    too_many_columns,
+    too_many_lines,
+    visible,
+)
 from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, TWO_PI, AngleError, AngleUnit, parse_angle
 
@@ -82,6 +89,10 @@ class RawBook:
 def parse_rows(text: str, *, angle_unit: AngleUnit, where: str) -> RawBook:
     """Parse the complete lines of a book; the text must end with a newline or be empty."""
     book = RawBook()
+    too_many = too_many_lines(text, where)
+    if too_many is not None:
+        book.problems.append((None, too_many))
+        return book
     lines = text.split("\n")
     header: tuple[str, ...] | None = None
     for number, line in enumerate(lines, start=1):

@@ -25,7 +25,7 @@ from surveyapp.io.tomltext import atomic_write, sync_folder
 
 JOURNAL_FILE: Final = ".surveyapp.journal"
 PROJECT_FILE: Final = "project.toml"
-_LEFTOVER: Final = re.compile(r"\.(project\.toml|\.surveyapp\.journal)\.\w+\.tmp")
+_LEFTOVER: Final = re.compile(r"\.(project\.toml|ledger\.jsonl|\.surveyapp\.journal)\.\w+\.tmp")
 _BOOK_LEFTOVER: Final = re.compile(r"\..+\.csv\.\w+\.tmp")
 
 

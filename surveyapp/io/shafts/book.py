@@ -11,7 +11,7 @@ from typing import Final, Literal, cast
 
 from surveyapp.domain.shaft import ShaftRow, ShaftRowKind
 from surveyapp.errors import Problem, nearest_names
-from surveyapp.io.files import shown
+from surveyapp.io.files import shown, too_many_lines
 from surveyapp.io.measures import MEASURES, is_measure
 from surveyapp.languages import either, said
 from surveyapp_models.angles import ARCSEC, AngleError, AngleUnit, parse_angle
@@ -182,6 +182,9 @@ def parse_shaft_book(
     where : str
         What messages call the book.
     """
+    too_many = too_many_lines(text, where)
+    if too_many is not None:
+        return [], [too_many]
     problems: list[Problem] = []
     rows: list[ShaftRow] = []
     header: list[str] | None = None

@@ -13,7 +13,7 @@ from typing import Final
 from surveyapp.domain.observations import ANGULAR, KINDS, ObservationKind
 from surveyapp.domain.traverse_book import TraverseRow
 from surveyapp.errors import Problem, nearest_names
-from surveyapp.io.files import MAX_COLUMNS, shown, too_many_columns, visible
+from surveyapp.io.files import MAX_COLUMNS, shown, too_many_columns, too_many_lines, visible
 from surveyapp.io.measures import MEASURES, is_measure
 from surveyapp.languages import either, said
 from surveyapp_models.angles import ARCSEC, AngleError, AngleUnit, parse_angle
@@ -212,6 +212,9 @@ def parse_traverse(
     -------
     rows, problems
     """
+    too_many = too_many_lines(text, where)
+    if too_many is not None:
+        return [], [too_many]
     problems: list[Problem] = []
     rows: list[TraverseRow] = []
     header: list[str] | None = None

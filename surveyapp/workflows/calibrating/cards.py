@@ -62,7 +62,7 @@ def card_of(
         covariance=covariance,
         constants=calibration.constants,
         notes={**calibration.notes, **_procedure(request)},
-        extra=_owner(request),
+        extra={**_owner(request), **calibration.tables},
     )
 
 

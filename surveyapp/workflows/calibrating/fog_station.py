@@ -9,6 +9,7 @@ from surveyapp.core.sensors.rate.fog_station_log import NEEDED, OPTIONAL, calibr
 from surveyapp.domain.calibration import Calibration
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.reading import Need
+from surveyapp.workflows.calibrating.drift import with_drift
 from surveyapp.workflows.calibrating.due import with_due_date
 from surveyapp.workflows.calibrating.request import CalibrationRequest
 
@@ -47,4 +48,4 @@ def calibrate(request: CalibrationRequest) -> Calibration:
     found = calibrate_fog_station(
         log, rule=cast("Rule", rule), relative_rate_sigma=relative, problems=problems
     )
-    return with_due_date(found, request)
+    return with_drift(with_due_date(found, request), request)

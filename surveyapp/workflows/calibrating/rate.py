@@ -35,6 +35,7 @@ from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.sensor_logs.reading import LogRequest, Need, read_log
 from surveyapp.languages import either
 from surveyapp.workflows.adopted_effects import not_taken_out
+from surveyapp.workflows.calibrating.drift import with_drift
 from surveyapp.workflows.calibrating.due import with_due_date
 from surveyapp.workflows.calibrating.request import CalibrationRequest
 from surveyapp_models.angles import ARCSEC
@@ -57,7 +58,7 @@ def calibrate(request: CalibrationRequest) -> Calibration:
                 "" if programme is None else nearest_names(str(programme), PROGRAMMES),
             )
         )
-    found = with_due_date(PROGRAMMES[programme](request), request)
+    found = with_drift(with_due_date(PROGRAMMES[programme](request), request), request)
     return replace(found, warnings=(*found.warnings, *not_taken_out(request.entry)))
 
 

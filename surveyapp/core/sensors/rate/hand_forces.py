@@ -239,15 +239,24 @@ def _first_guess(forces: Floats, level: str, gravity: float) -> Floats:
     return np.concatenate([centre, tail])
 
 
-def left_out(forces: Floats, *, level: str, gravity: float) -> float | None:
-    """Root mean square of the size of gravity at stops that had no part in the fit [m/s2]."""
-    count = forces.shape[0]
+def left_out(forces: Floats, model: ForceModel, *, gravity: float) -> float | None:
+    """Root mean square of the size of gravity at stops that had no part in the fit [m/s2].
+
+    Parameters
+    ----------
+    forces : ndarray, shape (n, 3)
+        [m/s2]
+    model : ForceModel
+        From all stops: where each fit without one begins.
+    gravity : float
+        [m/s2]
+    """
+    count, level = forces.shape[0], model.level
     if count <= PARAMETERS[level] + 1:
         return None
     rest = []
-    start = fit_forces(forces, level=level, gravity=gravity).vector
     for k in range(count):
         keep = np.arange(count) != k
-        model = fit_forces(forces[keep], level=level, gravity=gravity, start=start)
-        rest.append(float(np.linalg.norm(model.corrected(forces[k]))) - gravity)
+        others = fit_forces(forces[keep], level=level, gravity=gravity, start=model.vector)
+        rest.append(float(np.linalg.norm(others.corrected(forces[k]))) - gravity)
     return math.sqrt(float(np.mean(np.square(rest))))

@@ -66,10 +66,15 @@ class Turn:
     interval_s: float
     leaves: int = 0
 
+    def attitude(self, inverse: Floats) -> Floats:
+        """Rotation by gyros whose true rate is ``inverse`` output, shape (4,)."""
+        return np.asarray(
+            quaternions.integrate(self.rates @ inverse.T, interval_s=self.interval_s)[-1]
+        )
+
     def carried(self, inverse: Floats) -> Floats:
-        """Direction of up after the turn, by gyros whose true rate is ``inverse`` output."""
-        q = quaternions.integrate(self.rates @ inverse.T, interval_s=self.interval_s)[-1]
-        return quaternions.rotate_back(q, self.before)
+        """Direction of up after the turn, by the same gyros."""
+        return quaternions.rotate_back(self.attitude(inverse), self.before)
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +153,7 @@ def turn_rows(
     middle = quaternions.to_matrix(0.5 * (attitude[1:] + attitude[:-1]))
     last = quaternions.to_matrix(attitude[-1])
     up = middle.transpose(0, 2, 1) @ turn.before
-    across = _level(turn.after)
+    across = level_axes(turn.after)
     # rows of R(T, t): across the felt direction, in the body at t
     lead = np.einsum("aj,kjl->kal", across @ last.T, middle)
     weights = np.cross(lead, up[:, None, :]) / rates.shape[0]
@@ -161,7 +166,7 @@ def turn_rows(
     )
 
 
-def _level(up: Floats) -> Floats:
+def level_axes(up: Floats) -> Floats:
     """Two unit vectors at right angles to ``up`` and to each other, shape (2, 3)."""
     first = np.cross(up, np.eye(3)[int(np.argmin(np.abs(up)))])
     first /= np.linalg.norm(first)

@@ -10,10 +10,17 @@ from itertools import pairwise
 import numpy as np
 
 from surveyapp.core.sensors.rate.hand_forces import ForceModel
-from surveyapp.core.sensors.rate.hand_held import HeldStop, RateModel, Turn, turn_rows
+from surveyapp.core.sensors.rate.hand_held import (
+    HeldStop,
+    RateModel,
+    Turn,
+    level_axes,
+    turn_rows,
+)
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp_models.arrays import Floats
 from surveyapp_models.constants import EARTH_RATE
+from surveyapp_models.rate import quaternions
 
 ACCELEROMETERS = ("acc_x_m_s2", "acc_y_m_s2", "acc_z_m_s2")
 GYROS = ("gyr_x_rad_s", "gyr_y_rad_s", "gyr_z_rad_s")
@@ -104,7 +111,7 @@ def with_g_sensitivity(
 
 
 def with_frame(
-    gyro: RateModel, turns: Sequence[Turn], shifted: Sequence[Sequence[Turn]], covariance: Floats
+    gyro: RateModel, turns: Sequence[Turn], shifted: Sequence[Floats], covariance: Floats
 ) -> RateModel:
     """The gyros' model with the uncertainty of the accelerometers, whose triad is their frame.
 
@@ -113,21 +120,21 @@ def with_frame(
     gyro : RateModel
         From the turns.
     turns : sequence of Turn
-    shifted : sequence of sequence of Turn, length p
-        The same turns with one parameter of the accelerometers off by its standard deviation.
+    shifted : sequence of ndarray, shape (n, 3)
+        Up at each stop with one parameter of the accelerometers off by its standard deviation.
     covariance : ndarray, shape (p, p)
         Of these parameters in units of their standard deviations.
     """
-    rows = [turn_rows(turn, gyro.matrix) for turn in turns]
-    times = np.repeat([t.rates.shape[0] * t.interval_s for t in turns], 2)
-    jacobian = times[:, None] * np.concatenate([r.rate.reshape(2, 9) for r in rows])
-    base = np.concatenate([r.error for r in rows])
-    moved = np.column_stack(
-        [
-            times * (np.concatenate([turn_rows(t, gyro.matrix).error for t in one]) - base)
-            for one in shifted
+    jacobian, moved = [], []
+    for turn in turns:
+        k, rows = turn.leaves, turn_rows(turn, gyro.matrix)
+        jacobian.append(turn.rates.shape[0] * turn.interval_s * rows.rate.reshape(2, 9))
+        across, last = level_axes(turn.after), quaternions.to_matrix(turn.attitude(gyro.matrix))
+        changes = [
+            across @ (last.T @ (up[k] - turn.before) - up[k + 1] + turn.after) for up in shifted
         ]
-    )
+        moved.append(np.column_stack(changes))
     # change = - J+ error, d(output) = -output change
-    slope = np.kron(gyro.output, np.eye(3)) @ np.linalg.lstsq(jacobian, moved, rcond=1e-10)[0]
+    answer = np.linalg.lstsq(np.concatenate(jacobian), np.concatenate(moved), rcond=1e-10)[0]
+    slope = np.kron(gyro.output, np.eye(3)) @ answer
     return replace(gyro, covariance=gyro.covariance + slope @ covariance @ slope.T)

@@ -67,8 +67,7 @@ def solve_indexing(stops: Sequence[Stop], setting: Setting) -> Indexed:
     scale = _scatter(turns, rate, rate_sigma, setting.axis)
     rate_sigma = _with_index_error(rate, rate_sigma * scale, setting)
     problem = _System(turns, rate, rate_sigma, force, force_sigma, setting)
-    found = [problem.refined(start) for start in problem.beginnings()]
-    roots = _distinct([r for r in found if r is not None])
+    roots = [problem.with_covariance(r) for r in _distinct(problem.refined())]
     if roots and roots[0].heading_sigma() > CURVED:
         roots[0] = replace(roots[0], profile_sigma=problem.profile(roots[0]))
     plane, sigma = problem.across()
@@ -137,70 +136,87 @@ class _System:
             return self.setting.gravity
         return float(np.mean(np.linalg.norm(self.force, axis=1)))
 
-    def refined(self, start: Floats) -> Root | None:
-        """Gauss-Newton from one attitude; None where it does not converge."""
-        attitude, linear = start, np.zeros(5)
-        damping = 1e-3
+    def refined(self) -> list[Root]:
+        """Levenberg and Marquardt from every beginning, all side by side."""
+        attitude = np.array(self.beginnings())
+        count = attitude.shape[0]
+        linear, damping = np.zeros((count, 5)), np.full(count, 1e-3)
         design, rest = self._equations(attitude, linear)
-        chi = float(rest @ rest)
+        chi = np.einsum("bm,bm->b", rest, rest)
+        busy = np.ones(count, dtype=bool)
         for _ in range(_STEPS):
-            size = np.maximum(np.linalg.norm(design, axis=0), 1e-12)
-            rows = np.vstack([design / size, math.sqrt(damping) * np.eye(_UNKNOWNS)])
-            target = np.concatenate([rest, np.zeros(_UNKNOWNS)])
-            step = np.linalg.lstsq(rows, target, rcond=None)[0] / size
-            turn = float(np.linalg.norm(step[ATTITUDE]))
-            if turn > 0.5:
-                step = step * (0.5 / turn)
-            moved = _turned(attitude, step[ATTITUDE])
-            there = linear + step[3:]
+            step = _damped(design[busy], rest[busy], damping[busy])
+            turn = np.linalg.norm(step[:, ATTITUDE], axis=1)
+            step = step * np.minimum(1.0, 0.5 / np.maximum(turn, 1e-300))[:, None]
+            moved = _turned(attitude[busy], step[:, ATTITUDE])
+            there = linear[busy] + step[:, 3:]
             next_design, next_rest = self._equations(moved, there)
-            next_chi = float(next_rest @ next_rest)
-            if next_chi <= chi:
-                small = chi - next_chi < 1e-9 * (1.0 + chi) and turn < 1e-7
-                attitude, linear, design, rest = moved, there, next_design, next_rest
-                chi, damping = next_chi, max(damping * 0.1, 1e-12)
-                if small:
-                    break
-            else:
-                damping = min(damping * 10.0, 1e6)
-        return Root(attitude, linear[:3], chi, _covariance(design))
+            next_chi = np.einsum("bm,bm->b", next_rest, next_rest)
+            better = next_chi <= chi[busy]
+            rows = np.flatnonzero(busy)
+            small = better & (chi[busy] - next_chi < 1e-9 * (1.0 + chi[busy])) & (turn < 1e-7)
+            good = rows[better]
+            attitude[good], linear[good] = moved[better], there[better]
+            design[good], rest[good], chi[good] = (
+                next_design[better],
+                next_rest[better],
+                next_chi[better],
+            )
+            damping[good] = np.maximum(damping[good] * 0.1, 1e-12)
+            bad = rows[~better]
+            damping[bad] = np.minimum(damping[bad] * 10.0, 1e6)
+            busy[rows[small]] = False
+            if not busy.any():
+                break
+        unknown = np.full((6, 6), np.nan)
+        return [Root(attitude[k], linear[k, :3], float(chi[k]), unknown) for k in range(count)]
+
+    def with_covariance(self, root: Root) -> Root:
+        """The root with what its equations say of its certainty: no derivative has a bias."""
+        design, _ = self._equations(root.attitude[None], np.zeros((1, 5)))
+        return replace(root, covariance=_covariance(design[0]))
 
     def _equations(self, attitude: Floats, linear: Floats) -> tuple[Floats, Floats]:
-        """Whitened design, shape (m, 8), and residuals at an attitude and biases."""
+        """Whitened designs (b, m, 8) and residuals (b, m) at attitudes (b, 3, 3) and biases."""
         axis = self.setting.axis
         earth = earth_rate(self.setting.latitude)
         up = np.array([0.0, 0.0, self.gravity()])
-        bias = linear[:3]
+        many, count = attitude.shape[0], self.turns.shape[0]
+        bias = linear[:, :3]
         others = [k for k in range(3) if k != axis]
-        force_bias = np.zeros(3)
-        force_bias[others] = linear[3:]
-        count = self.turns.shape[0]
-        body_rate, body_force = attitude.T @ earth, attitude.T @ up
-        to_sensor = self.turns @ attitude.T
-        design = np.zeros((2, count, 3, _UNKNOWNS))
-        design[0, :, :, ATTITUDE] = to_sensor @ _skew(earth)
-        design[0, :, :, BIAS] = np.eye(3)
-        design[1, :, :, ATTITUDE] = to_sensor @ _skew(up)
+        force_bias = np.zeros((many, 3))
+        force_bias[:, others] = linear[:, 3:]
+        # [b, k]: navigation frame to the sensor at stop k
+        to_sensor = self.turns[None] @ attitude.transpose(0, 2, 1)[:, None]
+        design = np.zeros((many, 2, count, 3, _UNKNOWNS))
+        design[:, 0, :, :, ATTITUDE] = to_sensor @ _skew(earth)
+        design[:, 0, :, :, BIAS] = np.eye(3)
+        design[:, 1, :, :, ATTITUDE] = to_sensor @ _skew(up)
         for column, k in enumerate(others):
-            design[1, :, k, 6 + column] = 1.0
+            design[:, 1, :, k, 6 + column] = 1.0
         rest = np.stack(
             [
-                self.rate - self.turns @ body_rate - bias,
-                self.force - self.turns @ body_force - force_bias,
-            ]
+                self.rate - to_sensor @ earth - bias[:, None],
+                self.force - to_sensor @ up - force_bias[:, None],
+            ],
+            axis=1,
         )
         sigma = np.stack([self.rate_sigma, self.force_sigma])
-        rows = (design / sigma[..., None]).reshape(-1, _UNKNOWNS)
-        values = (rest / sigma).ravel()
-        held = np.zeros((2, _UNKNOWNS))
-        held[:, FORCE_BIAS] = np.eye(2) / FORCE_BIAS_PRIOR
-        rows, values = np.vstack([rows, held]), np.append(values, -linear[3:] / FORCE_BIAS_PRIOR)
+        rows = (design / sigma[..., None]).reshape(many, -1, _UNKNOWNS)
+        values = (rest / sigma).reshape(many, -1)
+        held = np.zeros((many, 2, _UNKNOWNS))
+        held[:, :, FORCE_BIAS] = np.eye(2) / FORCE_BIAS_PRIOR
+        rows = np.concatenate([rows, held], axis=1)
+        values = np.concatenate([values, -linear[:, 3:] / FORCE_BIAS_PRIOR], axis=1)
         prior, spread = self.setting.bias_prior, self.setting.bias_prior_sigma
         if prior is None or np.all(spread <= 0.0):
             return rows, values
-        extra = np.zeros((3, _UNKNOWNS))
-        extra[:, BIAS] = np.diag(1.0 / spread)
-        return np.vstack([rows, extra]), np.concatenate([values, (prior - bias) / spread])
+        extra = np.zeros((many, 3, _UNKNOWNS))
+        extra[:, :, BIAS] = np.diag(1.0 / spread)
+        return (
+            np.concatenate([rows, extra], axis=1),
+            np.concatenate([values, (prior - bias) / spread], axis=1),
+        )
 
     def profile(self, root: Root) -> float:
         """Half the 95 % interval of the heading over 1.96, everything else free [rad].
@@ -223,7 +239,8 @@ class _System:
         free = [0, 1, *range(3, _UNKNOWNS)]
         chi = math.inf
         for _ in range(4):
-            design, rest = self._equations(attitude, linear)
+            designs, rests = self._equations(attitude[None], linear[None])
+            design, rest = designs[0], rests[0]
             chi = min(chi, float(rest @ rest))
             size = np.maximum(np.linalg.norm(design[:, free], axis=0), 1e-12)
             part = np.linalg.lstsq(design[:, free] / size, rest, rcond=1e-10)[0] / size
@@ -249,6 +266,16 @@ class _System:
 def _skew(vector: Floats) -> Floats:
     x, y, z = vector.tolist()
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+def _damped(design: Floats, rest: Floats, damping: Floats) -> Floats:
+    """Steps of damped least squares for many problems, shape (b, p)."""
+    size = np.maximum(np.linalg.norm(design, axis=1), 1e-12)
+    scaled = design / size[:, None, :]
+    normal = scaled.transpose(0, 2, 1) @ scaled
+    normal += damping[:, None, None] * np.eye(design.shape[2])
+    right = np.einsum("bmp,bm->bp", scaled, rest)
+    return np.asarray(np.linalg.solve(normal, right[..., None])[..., 0] / size)
 
 
 def _turned(attitude: Floats, rotation: Floats) -> Floats:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -139,7 +139,7 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
         raise SurveyError(_too_few(log, len(stops)))
     forces = np.array([s.force for s in stops])
     models = _force_models(forces, options.gravity)
-    held = {m.level: left_out(forces, level=m.level, gravity=options.gravity) for m in models}
+    held = {m.level: left_out(forces, m, gravity=options.gravity) for m in models}
     chosen = _chosen(models, held)
     covariance = covariance_with_omitted(forces, chosen, gravity=options.gravity)
     turns = turns_between(log, stops, chosen, options.latitude)
@@ -194,8 +194,7 @@ def _fitted(stops: Sequence[HeldStop], model: ForceModel, turns: Sequence[Turn])
     shifted = []
     for other in shifted_forces(model, covariance):
         ups = other.corrected(forces)
-        ups = ups / np.linalg.norm(ups, axis=1)[:, None]
-        shifted.append([replace(t, before=ups[t.leaves], after=ups[t.leaves + 1]) for t in turns])
+        shifted.append(ups / np.linalg.norm(ups, axis=1)[:, None])
     spread = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
     return with_frame(gyro, turns, shifted, covariance / np.outer(spread, spread))
 
@@ -231,7 +230,7 @@ def force_model(forces: Floats, options: MultiPositionOptions) -> ForceModel:
     options : MultiPositionOptions
     """
     models = _force_models(forces, options.gravity)
-    held = {m.level: left_out(forces, level=m.level, gravity=options.gravity) for m in models}
+    held = {m.level: left_out(forces, m, gravity=options.gravity) for m in models}
     return _chosen(models, held)
 
 

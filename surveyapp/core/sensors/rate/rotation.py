@@ -76,9 +76,12 @@ class RotationOptions:
     latitude : float or None
         [rad]
     matrix, bias : ndarray
-        Output matrix M of the card (output = M rate + bias), shape (3, 3), and bias [rad/s].
+        Output matrix M of the card (output = M rate + bias), shape (3, 3), and bias [rad/s], (3,)
+        or one for each row of the log.
     card : str
         Its id, for the result.
+    temperature_model : str
+        Model of the card by which the bias follows the temperature; empty = it does not.
     """
 
     heading: float
@@ -89,6 +92,7 @@ class RotationOptions:
     matrix: Floats = field(default_factory=lambda: np.eye(3))
     bias: Floats = field(default_factory=lambda: np.zeros(3))
     card: str = ""
+    temperature_model: str = ""
 
 
 def find_heading(log: SensorLog, options: RotationOptions) -> NorthResult:
@@ -347,7 +351,7 @@ def _steps(
         105: {"seconds": warm.seconds, "trend_p": warm.p, "ended": warm.ended},
         106: {"rows": log.size, "rate_hz": log.rate_hz},
         107: dict(gained),
-        108: {"temperature_c": degrees},
+        108: {"temperature_c": degrees, "bias_model": options.temperature_model or None},
         109: {"card": options.card or None},
         110: {"heading_deg": math.degrees(options.heading), "reference": options.reference},
         111: {

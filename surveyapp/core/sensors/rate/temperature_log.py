@@ -16,6 +16,7 @@ from surveyapp.core.sensors.rate.accelerometers import (
     AccelerometerTriad,
     solve_accelerometers,
 )
+from surveyapp.core.sensors.rate.card_temperature import TABLE, TemperatureModel
 from surveyapp.core.sensors.rate.compensation import (
     Compensation,
     ModelName,
@@ -174,8 +175,27 @@ def _calibration(
         sha256=log.sha256,
         temperature_c=(low, high),
         constants={"reference_temperature_c": at},
+        tables=_card_table(log, nodes, model),
         extra=_extra(log, nodes, options, comparison, model=model),
     )
+
+
+def _card_table(log: SensorLog, nodes: Sequence[Node], model: ModelName) -> dict[str, Any]:
+    """The temperature model for the card, over the chamber's and the sensor's own temperature."""
+    series = [series_of(nodes, f"bias_{a}") for a in "xyz"]
+    known = [s.values for s in series if s is not None]
+    if len(known) < len(series):
+        return {}
+    chamber = np.array([n.temperature_c for n in nodes])
+    places = {CHAMBER: chamber}
+    own = log.columns.get("temperature_c")
+    if own is not None:
+        _, numbers = node_numbers(log.columns[CHAMBER])
+        rows = np.array(numbers)
+        means = np.array([float(np.nanmean(own[rows == k])) for k in range(chamber.size)])
+        if np.all(np.isfinite(means)) and np.unique(means).size == means.size:
+            places["temperature_c"] = means
+    return {TABLE: TemperatureModel(model, places, np.column_stack(known)).to_table()}
 
 
 def _extra(

@@ -80,7 +80,8 @@ def constant_applied(state: State) -> bool | None:
     if False in state.said:
         which = "distances" if state.said == {False} else "some of the distances"
         state.gathered.warn(
-            "raw_distances", f"{which} are stored raw: the prism constant was added"
+            "raw_distances",
+            said("{which} are stored raw: the prism constant was added", which=which),
         )
     if state.said and None not in state.said:
         return True
