@@ -156,6 +156,17 @@ def _collinear(cause: Cause) -> Cause:
     return acting
 
 
+def _beyond(cause: Cause) -> Cause:
+    """A cause in a campaign whose later visits are 8 to 20 K warmer than any determination."""
+
+    def acting(s: Scene, g: np.random.Generator) -> Floats:
+        theta = s.columns["temperature_c"]
+        theta[s.n :] = theta[: s.n].max() + g.uniform(8.0, 20.0, theta.size - s.n)
+        return cause(s, g)
+
+    return acting
+
+
 def _walk(s: Scene, g: np.random.Generator) -> Floats:
     order = np.argsort(s.u)
     gaps = np.diff(np.concatenate([[0.0], np.maximum(s.u[order], 0.0)]))
@@ -221,6 +232,11 @@ ABSENT: dict[str, Cause] = {
     "rock temperature": _rock,
     "two observers": _observers,
 }
+BEYOND: dict[str, Cause] = {
+    "warmer visits, clean": _beyond(_clean),
+    "warmer visits, temperature": _beyond(_temperature),
+}
+"""Later visits far outside of the temperatures of the determinations."""
 ARCHIVE: tuple[tuple[float, dict[str, Cause]], ...] = (
     (0.5, CLEAN),
     (0.25, CATALOGUE),

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from surveyapp.diagnosis import Case, Determination, TurningPoints
+from surveyapp.diagnosis import CampaignDetermination, Case, TurningPoints
 from surveyapp.diagnosis.subjects.campaign import campaign
 from surveyapp.diagnosis.subjects.reversal_run import reversal_run
 from surveyapp_models.angles import ARCSEC
@@ -142,7 +142,8 @@ def midpoint(truth: Truth, runs: int, g: np.random.Generator) -> Callable[[float
     period = g.uniform(0.3, 0.55, runs) * n
     phase = g.uniform(0.0, 2.0 * np.pi, runs)
     tau = g.uniform(2.0, 6.0, runs)
-    begin = g.uniform(2.0, n - 7.0, runs) if truth.pulse else np.zeros(runs)
+    latest = n - 7.0
+    begin = g.uniform(min(2.0, latest), max(2.0, latest), runs) if truth.pulse else np.zeros(runs)
     end = begin + g.uniform(3.0, 5.0, runs) if truth.pulse else begin
     walk = np.cumsum(truth.walk * g.standard_normal((runs, n + 3)), axis=1)
 
@@ -213,7 +214,7 @@ def campaign_problem(truth: CampaignTruth, seed: int) -> tuple[Case, float]:
     observed = np.round(value + 4.8 * noise if truth.ar1 else value + sigma * noise, 1)
     stated = np.full(n, 4.8) if truth.ar1 else sigma
     made = [
-        Determination.at(
+        CampaignDetermination.at(
             float(observed[i]) * ARCSEC,
             sigma=float(stated[i]) * ARCSEC,
             elapsed_days=float(days[i]),

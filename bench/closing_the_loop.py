@@ -4,18 +4,21 @@ Alarm: shares of runs of 20 points, 5 arc-seconds of noise, that ring at any of 
 the median point. Advice: twelve determinations are there and a cause is at work; the proposed
 observation that is expected to tell most is made, or one drawn at random, until the true cause
 holds 90 % of the weight (pairs of causes left out: most of them contain it), eight at most.
-SURVEYAPP_BENCH_RUNS is the number of campaigns a line (clean runs: 1000).
+SURVEYAPP_BENCH_RUNS is the number of campaigns a line (clean runs: 1000), SURVEYAPP_BENCH_STORE a
+folder in which finished lines are kept.
 """
 
 from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from bench._records import Truth, simulate
+from bench._stored import stored
 from surveyapp.core.observing.run_alert import find_trouble
 from surveyapp.core.prediction.average import predict
 from surveyapp.core.swing.gyrofit import fit_damped_swing
@@ -23,7 +26,7 @@ from surveyapp.diagnosis.action import POSITION, completed
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.later_visits import campaign_data
 from surveyapp.diagnosis.next_observation import advice
-from surveyapp.diagnosis.subjects.campaign import Determination, campaign
+from surveyapp.diagnosis.subjects.campaign import CampaignDetermination, campaign
 from surveyapp.domain.priors import DEFAULT_PRIORS
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
@@ -80,7 +83,7 @@ def _case(rows: list[dict[str, float]], truth: Truths) -> Case:
     theta = np.array([r["temperature_c"] for r in rows])
     y = np.asarray(truth(days, theta)) + np.array([r["error"] for r in rows])
     items = [
-        Determination.at(
+        CampaignDetermination.at(
             float(v) * ARCSEC,
             sigma=SIGMA * ARCSEC,
             elapsed_days=20000.0 + r["elapsed_days"],
@@ -143,15 +146,24 @@ def visits(name: str, i: int, *, advised: bool) -> int:
     return MOST + 1
 
 
+def _counts(name: str, advised: bool) -> list[int]:
+    return [visits(name, i, advised=advised) for i in range(RUNS)]
+
+
 def run() -> list[str]:
     """Both tables."""
     text = ["| run | runs | alarm | median point |", "|---|---|---|---|"]
-    text += [alarm_line(name, sizes) for name, sizes in ALARMS.items()]
+    text += [
+        str(stored(f"alarm {name}", (sizes, RUNS), partial(alarm_line, name, sizes)))
+        for name, sizes in ALARMS.items()
+    ]
+    text[2] += " (asked: .03 at most)"
     text += ["", "| cause | by advice (separated) | at random (separated) |", "|---|---|---|"]
     for name in CAUSES:
         cells = []
         for advised in (True, False):
-            counts = np.array([visits(name, i, advised=advised) for i in range(RUNS)])
+            how = "advised" if advised else "random"
+            counts = np.array(stored(f"{how} {name}", RUNS, partial(_counts, name, advised)))
             sure = counts <= MOST
             cells.append(f"{np.minimum(counts, MOST).mean():.2f} ({sure.mean():.2f})")
         text.append(f"| {name} | {' | '.join(cells)} |")

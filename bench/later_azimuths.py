@@ -21,9 +21,20 @@ from pathlib import Path
 
 import numpy as np
 
-from bench._campaigns import ABSENT, CATALOGUE, CLEAN, LATER, LINE_SIGMA, WANDERING, Drawn, draw
+from bench._campaigns import (
+    ABSENT,
+    BEYOND,
+    CATALOGUE,
+    CLEAN,
+    LATER,
+    LINE_SIGMA,
+    WANDERING,
+    Drawn,
+    draw,
+)
 from bench._programmes import GROUPS as PROGRAMMES
 from bench._programmes import draw_programme
+from surveyapp.core.prediction import unseen
 from surveyapp.core.prediction.average import averaged, members
 from surveyapp.core.prediction.members import Members
 from surveyapp.core.statistics.distributions import student_quantile
@@ -39,7 +50,13 @@ REFERENCE_BASE = 0.5
 """Clean share of the reference solution."""
 STORE = os.environ.get("SURVEYAPP_BENCH_STORE")
 OTHER, OTHER_SIZES = "other: ", (8, 12)
-GROUPS = {"clean": CLEAN, "catalogue": CATALOGUE, "walk-like": WANDERING, "absent": ABSENT}
+GROUPS = {
+    "clean": CLEAN,
+    "catalogue": CATALOGUE,
+    "walk-like": WANDERING,
+    "absent": ABSENT,
+    "beyond": BEYOND,
+}
 
 HEAD = """# Later azimuths
 
@@ -52,7 +69,8 @@ determination; {runs} campaigns a line. rms and interval (median half-width, 95 
 constant in arc-seconds; coverage of the constant, and of a later azimuth whose own standard
 deviation is 2.6. Mean: the mean of the campaign with its Student interval, which was used before.
 Ratio: interval of the azimuth over that with the mean (median). Reference: rms with the clean share
-{reference} of the reference solution in place of {base}.
+{reference} of the reference solution in place of {base}. Beyond: visits 8 to 20 K warmer than
+every determination.
 
 """
 
@@ -122,7 +140,8 @@ def stored(group: str, name: str, n: int, place: int) -> Floats:
     """One line, read again where it was finished before with the same priors and runs."""
     if STORE is None:
         return one_line(group, name, n, place)
-    key = repr((sorted(DEFAULT_SHARES.items()), DEFAULT_PRIORS.sizes, RUNS, STRENGTH))
+    beyond = (unseen.SIZE, unseen.NEARBY)
+    key = repr((sorted(DEFAULT_SHARES.items()), DEFAULT_PRIORS.sizes, RUNS, STRENGTH, beyond))
     digest = hashlib.sha256(key.encode()).hexdigest()[:12]
     file = Path(STORE) / f"{group}-{name}-{n}-{digest}.npy"
     if not file.exists():

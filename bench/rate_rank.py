@@ -20,9 +20,10 @@ from surveyapp.core.sensors.rate.multi_position_log import (
     MultiPositionOptions,
     calibrate_multi_position,
 )
-from surveyapp.core.sensors.rate.needed import NORMAL_95, tolerance_of
+from surveyapp.core.sensors.rate.needed import tolerance_of
 from surveyapp.core.simulate.rate.recipes import hand_run
 from surveyapp.core.simulate.rate.vehicle import hand_held_log
+from surveyapp.core.statistics.distributions import NORMAL_95
 from surveyapp.errors import SurveyError
 
 RUNS = int(os.environ.get("SURVEYAPP_BENCH_RUNS", "40"))

@@ -29,6 +29,11 @@ MEANING = {
     "range.temperature_max_c": "highest temperature",
 }
 
+LEFT_OUT = """Looked for and left out, because no source that could be read states a figure for
+them: AGT-5, ARK-2, BTJ-5, Fennel TK4 and TK5, MOM Gi-B21, Y/JTG-1. Whoever owns one writes a card
+of his own from its data sheet or test certificate ([how](../project-folder.md#instrument-cards));
+the program asks for what it needs at the step where it is missing."""
+
 
 def pages() -> dict[str, str]:
     """Text of each page by its path below docs/."""
@@ -44,7 +49,7 @@ def pages() -> dict[str, str]:
         f"{', '.join(f'`{k}`' for k, v in card.known().items() if v is not None) or 'nothing'} |"
         for card in cards
     ]
-    result["reference/instruments/index.md"] = "\n".join(head) + "\n"
+    result["reference/instruments/index.md"] = "\n".join([*head, "", LEFT_OUT]) + "\n"
     return result
 
 

@@ -108,14 +108,14 @@ EFFECT = Effect(
 import numpy as np
 from surveyapp.core.orientation.circumstances import Circumstances, facts_of
 from surveyapp.diagnosis import diagnose
-from surveyapp.diagnosis.subjects.campaign import Determination, campaign
+from surveyapp.diagnosis.subjects.campaign import CampaignDetermination, campaign
 found = api.compute(SAMPLE).orientation
 facts = facts_of(found.sessions, found.constants[0].instrument.id, found.positions)
 assert all(fact.number("toy_rows") > 0 for fact in facts.values())
 rng = np.random.default_rng(1)
 rows = rng.uniform(3.0, 9.0, 24)
 values = 5e-5 * rows + rng.normal(0.0, 1e-6, 24)
-case = campaign([Determination(float(v), 1e-6, Circumstances.of({"toy_rows": float(r)}))
+case = campaign([CampaignDetermination(float(v), 1e-6, Circumstances.of({"toy_rows": float(r)}))
                  for v, r in zip(values, rows)])
 result = diagnose(case, draws=200, advise=False)
 assert "toy_tide" in str(result.to_dict()["candidates"]), result.to_dict()

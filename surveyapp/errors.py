@@ -22,7 +22,8 @@ class Problem:
     what : str
         What is wrong, one sentence in the trade's words.
     where : str
-        File and line, session and reading, or option.
+        File and line, session and reading, or an argument of the API. Within a text an argument
+        stands between backticks; the command line shows the option that gave it.
     found : str
         What stands there.
     expected : str

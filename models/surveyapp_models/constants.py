@@ -12,9 +12,6 @@ Source: Groten (2004), Fundamental parameters and current best estimates, J. Geo
 the value of GRS 80 and WGS 84.
 """
 
-MEAN_EARTH_RADIUS_M: Final = 6371008.8
-"""Mean radius (2a + b)/3 of the WGS 84 ellipsoid [m]. Source: Moritz (1980), GRS 80."""
-
 
 @dataclass(frozen=True, slots=True)
 class Ellipsoid:

@@ -31,7 +31,7 @@ CHUNK: Final = 16
 _AHEAD: Final = 3
 """Tasks under way for every worker."""
 
-Progress = Callable[[int, int, int], None]
+RowsDone = Callable[[int, int, int], None]
 
 
 def batch_row(path: str) -> BatchRow:
@@ -139,7 +139,7 @@ def batch(
     *,
     executor: Executor | None = None,
     jobs: int | None = None,
-    progress: Progress | None = None,
+    progress: RowsDone | None = None,
 ) -> BatchResult:
     """Orient many projects and write one row of CSV a project.
 

@@ -10,6 +10,8 @@ from pathlib import Path
 from surveyapp.api.project import SOFTWARE, Folder, open_project
 from surveyapp.domain.fieldfile import ImportResult
 from surveyapp.domain.filing import ExportResult
+from surveyapp.domain.subject import Subject
+from surveyapp.domain.told import told_about
 from surveyapp.errors import Problem, SurveyError, nearest_names
 
 
@@ -89,10 +91,15 @@ def import_file(
         )
     else:
         planned = plan_gyro(project, form, Path(file), options, instrument=instrument)
+    if importer.azimuths is None:
+        subject = Subject.of("traverse", planned.result.traverse)
+    else:
+        subject = Subject.of("instrument", instrument or "")
+    result = told_about(planned.result, subject)
     if preview:
-        return planned.result
+        return result
     write_additions(Path(folder), planned.additions)
-    return replace(planned.result, written=True)
+    return replace(result, written=True)
 
 
 def _local_now() -> datetime:
@@ -143,4 +150,5 @@ def export_survey(
     data = written.text.encode("utf-8")
     write_output(Path(output), data)
     warnings = (*survey.warnings, *written.warnings)
-    return ExportResult(form, str(output), written.items, sha256(data), warnings)
+    result = ExportResult(form, str(output), written.items, sha256(data), warnings)
+    return told_about(result, Subject.project())

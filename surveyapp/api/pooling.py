@@ -57,7 +57,7 @@ def diagnose_instrument(
         raise SurveyError(
             Problem(
                 "there is no instrument of this name",
-                "--instrument",
+                "instrument",
                 instrument,
                 "the name of a known instrument",
                 nearest_names(instrument, known),
@@ -76,7 +76,7 @@ def diagnose_instrument(
         raise SurveyError(
             Problem(
                 "no campaign teaches any priors",
-                "--priors",
+                "priors",
                 instrument,
                 "projects with four determinations of its constant",
             )
@@ -101,7 +101,7 @@ def _projects(project: Project, archive: Sequence[Folder]) -> list[str]:
             problems.append(
                 Problem(
                     "an archive without projects",
-                    "--archive",
+                    "archive",
                     str(folder),
                     said(
                         "a project, or a folder with projects ({project_file})",

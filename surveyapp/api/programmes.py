@@ -13,8 +13,8 @@ from surveyapp.domain.programme import LOG, ProgrammeState
 from surveyapp.domain.records import Listing
 
 if TYPE_CHECKING:
+    from surveyapp.domain.advance import PartDone
     from surveyapp.domain.programme import Programme, ProgrammeResult
-    from surveyapp.io.sensor_logs.blocks import Progress
     from surveyapp.io.sensor_logs.reading import LogRequest
 
 
@@ -134,7 +134,7 @@ def finish_programme(
     log: LogOptions | None = None,
     card: Folder | None = None,
     now: datetime | None = None,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> ProgrammeResult:
     """End a run: its readings become a sensor log of the project, which is calibrated.
 

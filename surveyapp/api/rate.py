@@ -12,13 +12,14 @@ from surveyapp.api.sensors import LogOptions, open_sensor_log
 from surveyapp.domain.line_spectrum import LineSpectrum
 from surveyapp.domain.motion import Motion
 from surveyapp.domain.north import NorthResult
+from surveyapp.domain.told import told_about
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.languages import said
 
 if TYPE_CHECKING:
     from surveyapp.core.sensors.rate.fog_station_plan import FogStationPlan
     from surveyapp.core.sensors.rate.stop_plan import StopPlan
-    from surveyapp.io.sensor_logs.blocks import Progress
+    from surveyapp.domain.advance import PartDone
 
 
 def plan_fog_station(
@@ -47,10 +48,10 @@ def plan_fog_station(
 
     problems = []
     for option, value, low, high in (
-        ("--elevation-deg", elevation_deg, -89.0, 89.0),
-        ("--rate", rate_deg_s, 1e-6, 1e5),
-        ("--samples", samples, 1, 1e9),
-        ("--table-rate-relative-sigma", relative_rate_sigma, 0.0, 1.0),
+        ("elevation_deg", elevation_deg, -89.0, 89.0),
+        ("rate", rate_deg_s, 1e-6, 1e5),
+        ("samples", samples, 1, 1e9),
+        ("table_rate_relative_sigma", relative_rate_sigma, 0.0, 1.0),
     ):
         if value is not None and not low <= value <= high:
             problems.append(
@@ -130,7 +131,7 @@ def north(
     log: LogOptions | None = None,
     allow_outside: bool = False,
     options: Mapping[str, object] | None = None,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> NorthResult:
     """Find north from the log of a rate sensor.
 
@@ -157,7 +158,7 @@ def north(
 
     opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
     stated = opened.entry.options.get("method") if opened.entry is not None else None
-    return find_north(
+    found = find_north(
         NorthRequest(
             method=method or str(stated or ""),
             file=opened.file,
@@ -168,6 +169,7 @@ def north(
             progress=progress,
         )
     )
+    return told_about(found, opened.subject)
 
 
 def spectrum(
@@ -181,7 +183,7 @@ def spectrum(
     sensitivity_deg_h_t: float | None = None,
     shielding: float | None = None,
     allow_outside: bool = False,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> LineSpectrum:
     """Interference lines of a column.
 
@@ -208,13 +210,14 @@ def spectrum(
 
     opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
     other = None if against is None else open_sensor_log(against, log=log).file
-    return find_spectrum(
+    found = find_spectrum(
         opened.file,
         column,
         magnetic=MagneticOptions(field_uT, sensitivity_deg_h_t, shielding),
         against=other,
         progress=progress,
     )
+    return told_about(found, opened.subject)
 
 
 def motion(
@@ -224,7 +227,7 @@ def motion(
     log: LogOptions | None = None,
     allow_outside: bool = False,
     options: Mapping[str, object] | None = None,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> Motion:
     """State of motion of a vehicle, and its path.
 
@@ -249,4 +252,5 @@ def motion(
 
     opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
     found = find_motion(opened.file, options or {}, progress=progress)
-    return replace(found, warnings=(*found.warnings, *not_taken_out(opened.entry)))
+    found = replace(found, warnings=(*found.warnings, *not_taken_out(opened.entry)))
+    return told_about(found, opened.subject)

@@ -11,7 +11,7 @@ from surveyapp.errors import Problem, SurveyError
 
 if TYPE_CHECKING:
     from surveyapp.diagnosis.sensors.diagnosis import SensorDiagnosis
-    from surveyapp.io.sensor_logs.blocks import Progress
+    from surveyapp.domain.advance import PartDone
     from surveyapp.workflows.diagnosing_sensor import SensorDiagnosed
 
 
@@ -25,7 +25,7 @@ def diagnose_log(
     confirm: str | None = None,
     adopt: bool = False,
     keep: bool = False,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> SensorDiagnosis:
     """Find which effect a sensor log holds beyond the base model, and prove it.
 

@@ -14,14 +14,14 @@ from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.log_preview import LogPreview
 
 if TYPE_CHECKING:
+    from surveyapp.domain.advance import PartDone
     from surveyapp.domain.chart import SensorPictures
-    from surveyapp.io.sensor_logs.blocks import Progress
     from surveyapp.io.sensor_logs.reading import LogRequest
     from surveyapp.workflows.sensor_pictures import SensorResult
 
 
 def preview_sensor_log(
-    source: Folder, *, log: LogOptions | None = None, progress: Progress | None = None
+    source: Folder, *, log: LogOptions | None = None, progress: PartDone | None = None
 ) -> LogPreview:
     """What would be understood of a log: columns, units, first values, and what is wrong.
 
@@ -55,7 +55,7 @@ def add_sensor_log(
     latitude_deg: float | None = None,
     calibrated_on: date | None = None,
     options: Mapping[str, object] | None = None,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> LogPreview:
     """Take a log into a project: copied below ``sensors/``, pinned by its hash, entered.
 
@@ -107,7 +107,7 @@ def sensor_pictures(
     *,
     sensor: str | None = None,
     log: LogOptions | None = None,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> SensorPictures:
     """What is plotted of a result of a sensor log.
 

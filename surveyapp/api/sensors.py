@@ -14,12 +14,14 @@ import numpy as np
 from surveyapp.api.project import SOFTWARE, Folder, open_project, require
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.noise import AllanResult, FilterResult
+from surveyapp.domain.subject import Subject
+from surveyapp.domain.told import told_about
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 
 if TYPE_CHECKING:
+    from surveyapp.domain.advance import PartDone
     from surveyapp.domain.sensor_entry import SensorLogEntry
-    from surveyapp.io.sensor_logs.blocks import Progress
     from surveyapp.io.sensor_logs.reading import LogFile
     from surveyapp.workflows.compensating import CompensationResult
 
@@ -56,6 +58,11 @@ class OpenedLog:
     file: LogFile
     entry: SensorLogEntry | None
     folder: Path
+
+    @property
+    def subject(self) -> Subject:
+        """The sensor log: what warnings of its results are about."""
+        return Subject.of("sensor", self.file.request.id if self.entry is None else self.entry.id)
 
     def to_dict(self) -> dict[str, object]:
         """Keys of the JSON, schema ``surveyapp.sensor_log/1``."""
@@ -99,7 +106,7 @@ def open_sensor_log(
         if sensor is not None:
             found, expected = str(path), "a project folder"
             raise SurveyError(
-                Problem("--sensor names a log of a project", "--sensor", found, expected)
+                Problem("--sensor names a log of a project", "sensor", found, expected)
             )
         request = LogRequest(
             path=path,
@@ -141,7 +148,7 @@ def calibrate(
     card: Folder | None = None,
     allow_outside: bool = False,
     options: Mapping[str, object] | None = None,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> Calibration:
     """Calibrate a sensor from its log.
 
@@ -190,7 +197,7 @@ def calibrate(
         today=datetime.now(UTC).astimezone().date(),
         progress=progress,
     )
-    result = run_calibration(request)
+    result = told_about(run_calibration(request), opened.subject)
     if card is not None and result.met:
         write_card(Path(card), result, request, software=SOFTWARE)
     return result
@@ -205,7 +212,7 @@ def allan(
     estimator: Literal["oadev", "adev"] = "oadev",
     taus: Sequence[float] | None = None,
     allow_outside: bool = False,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> AllanResult:
     """Allan deviation with intervals, and the noise coefficients, of the columns of a log.
 
@@ -236,9 +243,10 @@ def allan(
     from surveyapp.workflows.noise import allan_of_log
 
     opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
-    return allan_of_log(
+    found = allan_of_log(
         opened.file, column=column, estimator=estimator, taus=taus, progress=progress
     )
+    return told_about(found, opened.subject)
 
 
 def filter_log(
@@ -253,7 +261,7 @@ def filter_log(
     seed: int = 1,
     out: Folder | None = None,
     allow_outside: bool = False,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> FilterResult:
     """Filter a column of a log, and tell what it costs: deviation ratios with the lag of a step.
 
@@ -296,7 +304,7 @@ def filter_log(
         times = np.arange(raw.size) / result.before.rate_hz
         columns = {"time_s": times, result.column: raw, f"filtered_{result.column}": filtered}
         write_columns(Path(out), columns, inputs=(opened.file.request.path,))
-    return result
+    return told_about(result, opened.subject)
 
 
 def compensate(
@@ -309,7 +317,7 @@ def compensate(
     sensor: str | None = None,
     log: LogOptions | None = None,
     allow_outside: bool = False,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> CompensationResult:
     """Apply a sensor card to a log, and write the corrected columns.
 
@@ -358,6 +366,7 @@ def compensate(
         declination=added,
         progress=progress,
     )
-    return write_compensated(
+    written = write_compensated(
         parts, record, used, kind=kind, card_path=os.fspath(card), out=Path(out)
     )
+    return told_about(written, opened.subject)

@@ -10,9 +10,10 @@ import argparse
 import contextlib
 import importlib
 import os
+import re
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from types import ModuleType
 from typing import Any, NoReturn
 
@@ -106,6 +107,11 @@ COMMANDS: tuple[Command, ...] = (
 )
 
 
+ARGUMENT = re.compile(r"`([A-Za-z][A-Za-z0-9_]*)`")
+OPTIONS = {"columns": "--map", "units": "--unit", "fixed": "--fix"}
+"""Options that are called otherwise than the arguments of the API that they give."""
+
+
 class Parser(argparse.ArgumentParser):
     """An argument parser whose errors are survey errors."""
 
@@ -139,10 +145,28 @@ class Parser(argparse.ArgumentParser):
         )
 
     def as_typed(self, problem: Problem) -> Problem:
-        """A problem of an argument of the API under the name of the option that gave it."""
-        option = f"--{problem.where.replace('_', '-')}"
+        """A problem that names arguments of the API, with the options that gave them.
+
+        The API names an argument alone (``where``), or between backticks within a text.
+        """
         known = {name for action in self._actions for name in action.option_strings}
-        return replace(problem, where=option) if option in known else problem
+
+        def option(name: str) -> str | None:
+            found = OPTIONS.get(name, f"--{name.replace('_', '-')}")
+            return found if found in known else None
+
+        def typed(text: str) -> str:
+            if "`" not in text:
+                return text
+            return ARGUMENT.sub(lambda found: option(found[1]) or found[0], text)
+
+        return Problem(
+            what=typed(problem.what),
+            where=option(problem.where) or typed(problem.where),
+            found=problem.found,
+            expected=typed(problem.expected),
+            hint=typed(problem.hint),
+        )
 
     def _get_value(self, action: argparse.Action, arg_string: str) -> Any:
         """The value of an option; a number must be finite."""

@@ -14,8 +14,8 @@ from surveyapp.languages import said
 
 if TYPE_CHECKING:
     from surveyapp.api.sensors import LogOptions
+    from surveyapp.domain.advance import PartDone
     from surveyapp.domain.calibration import Calibration
-    from surveyapp.io.sensor_logs.blocks import Progress
 
 
 def add_log_arguments(parser: argparse.ArgumentParser) -> None:
@@ -92,7 +92,7 @@ def pairs(
     return found
 
 
-def progress_bar() -> Progress | None:
+def progress_bar() -> PartDone | None:
     """A bar on standard error while a large log is read; none where nobody looks."""
     if not sys.stderr.isatty():
         return None

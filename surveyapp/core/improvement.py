@@ -4,12 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Final
 
 from surveyapp.domain.results import BudgetLine
-
-AT_CALIBRATION: Final = "constant: "
-"""Before the name of a source whose error came in with the instrument constant."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,7 +15,7 @@ class Improvement:
     Parameters
     ----------
     source : str
-        As in the budget, without the mark of the calibration.
+        Name of the source in the budget.
     at_calibration : bool
         Whether it came in with the instrument constant.
     sigma, without : float
@@ -46,8 +42,8 @@ def most_helpful(budget: tuple[BudgetLine, ...]) -> Improvement | None:
     total = math.fsum(item.sigma**2 for item in budget)
     rest = math.fsum(item.sigma**2 for item in budget if item is not largest)
     return Improvement(
-        source=largest.source.removeprefix(AT_CALIBRATION),
-        at_calibration=largest.source.startswith(AT_CALIBRATION),
+        source=largest.name,
+        at_calibration=largest.at_calibration,
         sigma=math.sqrt(total),
         without=math.sqrt(rest),
     )

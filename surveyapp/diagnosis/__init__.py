@@ -10,11 +10,11 @@ from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.engine import diagnose
 from surveyapp.diagnosis.plain_words import plain_words
 from surveyapp.diagnosis.result import Diagnosis
-from surveyapp.diagnosis.subjects.campaign import Determination, campaign
+from surveyapp.diagnosis.subjects.campaign import CampaignDetermination, campaign
 from surveyapp.diagnosis.subjects.reversal_run import TurningPoints, reversal_run
 
 __all__ = [
-    "Determination",
+    "CampaignDetermination",
     "Diagnosis",
     "Case",
     "TurningPoints",

@@ -111,9 +111,10 @@ def base_level(problem: Case) -> Level:
 
 
 def orthonormal_design(fit: Fit) -> Floats:
-    """Orthonormal basis of the columns of a fit, dependent ones dropped."""
-    norms = np.sqrt((fit.design**2).sum(axis=0))
-    unit = fit.design / np.where(norms > 0.0, norms, 1.0)
+    """Orthonormal basis of the columns of a fit and of its own errors, dependent ones dropped."""
+    design = fit.design if fit.hidden is None else np.hstack([fit.design, fit.hidden])
+    norms = np.sqrt((design**2).sum(axis=0))
+    unit = design / np.where(norms > 0.0, norms, 1.0)
     u, s, _ = np.linalg.svd(unit, full_matrices=False)
     return np.asarray(u[:, s > 1e-9 * s[0]])
 

@@ -14,9 +14,11 @@ import numpy as np
 
 from surveyapp.diagnosis.candidates import Candidate
 from surveyapp.diagnosis.case import Case
+from surveyapp.diagnosis.course_error import beside, information_beside, larger_than_noise
 from surveyapp.diagnosis.stochastic import EXTRA_PARAMETERS, NoiseFit, best_noises
 from surveyapp.diagnosis.swing import fit_swing, starting_values, tangent, triangular
 from surveyapp_models.arrays import Floats
+from surveyapp_models.effects.recurrent import course_errors
 
 DEPENDENT = 1e-6
 """Relative singular value below which columns are one and the same."""
@@ -72,6 +74,9 @@ class Fit:
         names are decided by. Equal to ``bic`` until it is worked out.
     noise : NoiseFit or None
         A stochastic rival beside the members.
+    hidden : ndarray, shape (n, q), or None
+        Orthonormal columns along which the fit errs by itself, by more than the noise: the error of
+        a course that was saved from another run.
     """
 
     members: tuple[Member, ...]
@@ -83,6 +88,7 @@ class Fit:
     bic: float
     score: float
     noise: NoiseFit | None = None
+    hidden: Floats | None = None
 
     @property
     def key(self) -> frozenset[str]:
@@ -178,7 +184,31 @@ def fit_members(problem: Case, members: Iterable[Member], start: Floats | None =
     amplitude = _amplitude(problem, theta, law)
     residual = y - X @ linear - problem.side * amplitude
     bic = information(problem, residual, parameters)
-    return Fit(every, linear, theta, np.hstack([X, D]), residual, parameters, bic, bic)
+    fit = Fit(every, linear, theta, np.hstack([X, D]), residual, parameters, bic, bic)
+    return _beside_courses(problem, fit)
+
+
+def _beside_courses(problem: Case, fit: Fit) -> Fit:
+    """The fit with the errors of the saved courses in it counted, where there are any."""
+    errors, at = [], problem.base.shape[1]
+    for member in fit.members:
+        effect, size = member.candidate.effect, member.candidate.size
+        if effect is not None and effect.course and problem.half_swing is not None:
+            errors.append(fit.linear[at] * course_errors(effect, problem.half_swing))
+        at += size
+    if not errors or unit_variance(problem) is not None:
+        return fit
+    hidden = beside(np.hstack(errors) * problem.root_weights[:, None], fit.design)
+    bic = information_beside(
+        fit.residual,
+        hidden,
+        parameters=fit.parameters,
+        floor=problem.noise_floor**2,
+        scale=problem.scale,
+    )
+    variance = fit.sum_of_squares / max(problem.size - fit.design.shape[1], 1)
+    larger = larger_than_noise(hidden, variance)
+    return dataclasses.replace(fit, bic=bic, score=bic, hidden=larger if larger.size else None)
 
 
 def independent(problem: Case, members: Iterable[Member]) -> bool:

@@ -89,7 +89,10 @@ def statistic(problem: Case, fit: Fit, item: Projected, q: Floats) -> float:
     if known is not None:
         return reduction / known
     floor = (problem.size - q.shape[1]) * problem.noise_floor**2
-    return float(ratio(np.array(reduction), np.array(fit.sum_of_squares), floor))
+    left = fit.sum_of_squares
+    if fit.hidden is not None:
+        left = float(np.sum((fit.residual - q @ (q.T @ fit.residual)) ** 2))
+    return float(ratio(np.array(reduction), np.array(left), floor))
 
 
 def open_gate(problem: Case, fit: Fit, pool: Iterable[Candidate], draws: int) -> Gate:

@@ -58,8 +58,8 @@ def run_advice(case: Case, base: Fit, rng: np.random.Generator) -> Outlook | Non
     for action in RUN_ACTIONS:
         design = design_of(case, base, action)
         groups = rivals_of(case, candidates, design, action)
-        state = _State.of(base.residual / noise[0], design, groups, noise[1])
-        now = now or state.north
+        state = _State.of(base.residual / noise[0], design, groups, noise[1], north=now)
+        now = state.north
         results.append(_worth(state, action, rng, noise[0]))
     results.sort(key=lambda item: (-item.information, item.interval95))
     assert now is not None
@@ -97,8 +97,16 @@ class _State:
     north: tuple[float, float]
 
     @classmethod
-    def of(cls, y: Floats, design: Design, groups: Sequence[Rival], nu0: float) -> _State:
-        """Weigh all members by the run and keep those that count."""
+    def of(
+        cls,
+        y: Floats,
+        design: Design,
+        groups: Sequence[Rival],
+        nu0: float,
+        *,
+        north: tuple[float, float] | None = None,
+    ) -> _State:
+        """Weigh all members by the run and keep those that count; north if it is known already."""
         n = design.first
         flat = _kept(design.flat[:n])
         q, nu = np.linalg.qr(flat)[0], nu0 + n - flat.shape[1]
@@ -109,7 +117,7 @@ class _State:
         ]
         top = max(float(log.max()) for log in logs)
         total = sum(float(np.exp(log - top).sum()) for log in logs)
-        now = _north_now(design, groups, parts, (logs, top, total, nu))
+        now = north or _north_now(design, groups, parts, (logs, top, total, nu))
         kept, weights, posterior = [], [], []
         for group, part, log in zip(groups, parts, logs, strict=True):
             w = np.exp(log - top) / total
@@ -142,16 +150,16 @@ def _kept(flat: Floats) -> Floats:
 
 def _solved(x: Floats, q: Floats, y: Floats, nu0: float) -> _Solved:
     """X (m, n, r) beside the orthonormal q (n, p) on each row of y (d, n)."""
-    left = x - np.einsum("np,mpr->mnr", q, np.einsum("np,mnr->mpr", q, x))
+    left = x - q @ (q.T @ x)
     r = x.shape[2]
-    gram = np.einsum("mnr,mns->mrs", left, left) + np.eye(r)
+    gram = np.swapaxes(left, 1, 2) @ left + np.eye(r)
     inverse = np.linalg.inv(gram)
     free = y - (y @ q) @ q.T
-    score = np.einsum("mnr,dn->mdr", left, free)
-    b = np.einsum("mrs,mds->mdr", inverse, score)
+    score = free @ left
+    b = np.asarray(score @ inverse)  # the inverse is symmetric
     squares = np.einsum("dn,dn->d", free, free)
     rest = np.maximum(nu0 + squares[None, :] - np.einsum("mdr,mdr->md", b, score), 1e-12)
-    return _Solved(np.linalg.slogdet(gram)[1], b, rest, inverse, left)
+    return _Solved(np.linalg.slogdet(gram)[1], b, rest, np.asarray(inverse), left)
 
 
 def _north(
@@ -186,7 +194,8 @@ def _north_now(
     means, spreads, weights = [], [], []
     for group, part, log in zip(groups, parts, logs, strict=True):
         w = np.exp(log - top) / total
-        share[group.unit] = share.get(group.unit, 0.0) + float(w.sum())
+        for unit, weight in zip(group.units, w.tolist(), strict=True):
+            share[unit] = share.get(unit, 0.0) + weight
         zero = np.zeros((1, n))
         mean, spread = _north(group.columns[:, :n], group.run, flat, (part, zero))
         means.append(mean[:, 0])
@@ -205,15 +214,16 @@ def _worth(
     readings = _drawn(state, rng)
     flat = state.design.flat
     q, nu = np.linalg.qr(flat)[0], state.nu0 + flat.shape[0] - flat.shape[1]
-    logs, means, spreads, units = [], [], [], []
-    for group, before in zip(state.groups, state.weights, strict=True):
+    logs, means, spreads = [], [], []
+    units: list[str] = []
+    for group in state.groups:
         solved = _solved(group.columns, q, readings, state.nu0)
-        log = group.log_prior - 0.5 * solved.log_det[:, None] - 0.5 * nu * np.log(solved.rest)
+        log = (group.log_prior - 0.5 * solved.log_det)[:, None] - 0.5 * nu * np.log(solved.rest)
         mean, spread = _north(group.columns, group.both, flat, (solved, readings))
         logs.append(log)
         means.append(mean)
         spreads.append(solved.rest / nu * spread[:, None])
-        units += [group.unit] * len(before)
+        units += group.units
     log = np.concatenate(logs)
     w = np.exp(log - log.max(axis=0))
     w /= w.sum(axis=0)

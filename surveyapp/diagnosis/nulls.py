@@ -11,6 +11,7 @@ import hashlib
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from surveyapp.diagnosis.case import OwnScale
 from surveyapp.diagnosis.projection import Projected
@@ -145,8 +146,9 @@ def _simulate(projected: tuple[Projected, ...], q: Floats, noise: Noise, key: by
     floor = (q.shape[0] - q.shape[1]) * noise.rounding**2 / 12.0
     total = np.einsum("dn,dn->d", residuals, residuals)
     found = np.empty((len(projected), noise.draws))
+    single = residuals.astype(np.float32)
     for c, item in enumerate(projected):
-        largest = _largest(item, residuals)
+        largest = _largest(item, single)
         found[c] = largest if noise.known else ratio(largest, total, floor)
     order = np.sort(found, axis=1)
     weights = np.array([item.candidate.weight for item in projected])
@@ -162,18 +164,17 @@ def ratio(reduction: Floats, total: Floats, floor: float) -> Floats:
     return np.asarray(reduction / np.maximum(np.maximum(total - reduction, floor), 1e-300))
 
 
-def _largest(item: Projected, residuals: Floats) -> Floats:
+def _largest(item: Projected, residuals: NDArray[np.float32]) -> Floats:
     """Largest reduction over the grid for each draw; single precision is enough to rank draws."""
     g, n, q = item.columns.shape
     draws = residuals.shape[0]
     if g == 0:
         return np.zeros(draws)
     flat = item.columns.transpose(1, 2, 0).reshape(n, q * g).astype(np.float32)
-    single = residuals.astype(np.float32)
     result = np.empty(draws)
     size = max(1, CHUNK // (g * q))
     for begin in range(0, draws, size):
-        along = single[begin : begin + size] @ flat
+        along = residuals[begin : begin + size] @ flat
         if item.candidate.one_sided:
             np.maximum(along, 0.0, out=along)
         np.square(along, out=along)

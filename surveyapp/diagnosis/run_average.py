@@ -4,6 +4,10 @@ The base keeps most of the prior until something is proved: from a dozen points 
 whatever it looks for, and the model that it finds narrows the sigma for nothing. The members are
 Gaussian: each effect of the catalogue at each of its grid points in two sizes, one and two slips,
 one and two shifts, a wandering north; constant, amplitude and damping are flat beneath them.
+Noise that is correlated from reading to reading moves no north and is a member too, by its
+likelihood with constant, amplitude and damping integrated out, averaged over the correlation: a
+dozen such readings look like a drift, a step or nothing, and their mean is known far less well
+than their scatter says.
 
 Source: prediction.md B; O'Hagan & Forster (2004), Bayesian Inference, 11.11.
 """
@@ -43,11 +47,15 @@ SHARES = {
     "midpoint_step": 0.04,
     "two shifts": 0.03,
     "wandering": 0.04,
+    "correlated": 0.33,
 }
 OTHER_SHARE = 0.02
 """Prior of every other effect, before all are scaled to 1 - BASE_PRIOR. A slip of the pen is the
 commonest cause: it counts three times as much here as well (``candidates.GROSS_WEIGHT``), and two
-of them look like a step."""
+of them look like a step. Correlated readings count as much as both together: what errs in one
+reading may err in its neighbour."""
+CORRELATIONS = (0.3, 0.5, 0.7, 0.85)
+"""Of neighbouring readings: those of ``stochastic`` that a dozen points tell from a constant."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,6 +179,8 @@ def _groups(case: Case, base: Fit) -> Iterator[_Group]:
         yield _Group(candidate.id, columns / scale, rows / scale[:, 0, :])
     yield from _shifts(case)
     yield _wandering(case)
+    roots = correlated_roots(case.position)
+    yield _Group("correlated", roots, np.zeros((len(roots), case.size)))
 
 
 def _gross(n: int, count: int, unit: str) -> _Group:
@@ -201,3 +211,14 @@ def _wandering(case: Case) -> _Group:
     values, vectors = np.linalg.eigh(walk)
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     return _Group("wandering", root[None], (case.value_weights @ root)[None])
+
+
+def correlated_roots(position: Floats) -> Floats:
+    """Roots of the covariances rho^|i - j| of readings at some positions, shape (m, n, n).
+
+    The readings err so beside their own noise; north does not move.
+    """
+    lag = np.abs(position[:, None] - position[None, :]) / float(
+        np.median(np.diff(np.sort(position)))
+    )
+    return np.asarray(np.linalg.cholesky(np.array([rho**lag for rho in CORRELATIONS])))

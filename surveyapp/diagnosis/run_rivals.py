@@ -16,12 +16,22 @@ from numpy.typing import NDArray
 from surveyapp.diagnosis.candidates import Candidate, swing_columns
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.fits import Fit
-from surveyapp.diagnosis.run_average import BASE_PRIOR, GROSS_SIZES, OTHER_SHARE, SHARES, SIZES
+from surveyapp.diagnosis.run_average import (
+    BASE_PRIOR,
+    GROSS_SIZES,
+    MOST_UNNAMED,
+    OTHER_SHARE,
+    SHARES,
+    SIZES,
+    correlated_roots,
+)
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Columns, Effect
 
 MOST_FOR_PAIRS = 16
 """Points up to which two slips and two shifts are members: their number grows with the square."""
+MOST_POINTS = 80
+"""Grid points of an effect that are members; of a longer grid every second or third."""
 GAP_HALF_SWINGS = 6.0
 """Between two runs that follow each other: clamping, sights, a new start."""
 OF_OBSERVER = frozenset({"dry_friction"})
@@ -67,12 +77,13 @@ class Design:
 
 @dataclass(frozen=True, slots=True)
 class Rival:
-    """Members of one unit and size.
+    """Members of as many columns each, of all units and sizes.
 
     Parameters
     ----------
-    unit : str
-    log_prior : float
+    units : tuple of str
+        Of each member.
+    log_prior : ndarray, shape (m,)
         Of each member.
     columns : ndarray, shape (m, n + k, r)
         What it does to the readings, in its prior standard deviations.
@@ -80,16 +91,17 @@ class Rival:
         What it does to north, the mean over the run and over run and action.
     """
 
-    unit: str
-    log_prior: float
+    units: tuple[str, ...]
+    log_prior: Floats
     columns: Floats
     run: Floats
     both: Floats
 
     def some(self, chosen: NDArray[np.bool_]) -> Rival:
         """Only the chosen members."""
-        parts = (part[chosen] for part in (self.columns, self.run, self.both))
-        return Rival(self.unit, self.log_prior, *parts)
+        parts = (part[chosen] for part in (self.log_prior, self.columns, self.run, self.both))
+        units = tuple(u for u, keep in zip(self.units, chosen.tolist(), strict=True) if keep)
+        return Rival(units, *parts)
 
 
 def design_of(case: Case, base: Fit, action: RunAction) -> Design:
@@ -136,16 +148,37 @@ def rivals_of(
         found.append(_of_effect(candidate, design, action))
     found += _shifts(case, size, action)
     found.append(_wandering(case, size, action))
+    if n <= MOST_UNNAMED:
+        found.append(_correlated(case, size, action))
     total = sum(SHARES.get(unit, OTHER_SHARE) for unit, _, _ in found)
-    nothing = np.zeros((1, 0))
-    rivals = [Rival("base", math.log(BASE_PRIOR), np.zeros((1, size, 0)), nothing, nothing)]
+    nothing = np.zeros((1, 1))
+    base = np.full(1, math.log(BASE_PRIOR))
+    rivals = [Rival(("base",), base, np.zeros((1, size, 1)), nothing, nothing)]
     for unit, columns, north in found:
         sizes = GROSS_SIZES if unit in SLIPS else SIZES
         share = (1.0 - BASE_PRIOR) * SHARES.get(unit, OTHER_SHARE) / total
-        prior = math.log(share / len(sizes) / len(columns))
+        prior = np.full(len(columns), math.log(share / len(sizes) / len(columns)))
         run, both = north[:, :n].mean(axis=1), north.mean(axis=1)
-        rivals += [Rival(unit, prior, s * columns, s * run, s * both) for s in sizes]
-    return rivals
+        names = (unit,) * len(columns)
+        rivals += [Rival(names, prior, s * columns, s * run, s * both) for s in sizes]
+    return _joined(rivals)
+
+
+def _joined(rivals: Sequence[Rival]) -> list[Rival]:
+    """Members of as many columns in one: the algebra is done for all of them at once."""
+    found = []
+    for count in sorted({item.columns.shape[2] for item in rivals}):
+        own = [item for item in rivals if item.columns.shape[2] == count]
+        found.append(
+            Rival(
+                tuple(unit for item in own for unit in item.units),
+                np.concatenate([item.log_prior for item in own]),
+                np.concatenate([item.columns for item in own]),
+                np.concatenate([item.run for item in own]),
+                np.concatenate([item.both for item in own]),
+            )
+        )
+    return found
 
 
 def _of_effect(candidate: Candidate, design: Design, action: RunAction) -> Moves:
@@ -154,7 +187,8 @@ def _of_effect(candidate: Candidate, design: Design, action: RunAction) -> Moves
     assert effect is not None
     n = design.first
     columns, north = [], []
-    for point in candidate.points:
+    stride = 1 + (len(candidate.points) - 1) // MOST_POINTS
+    for point in candidate.points[::stride]:
         x, mid = _both(effect, design, action, dict(point))
         scale = max(float(np.max(np.abs(x[:n]))), 1e-300)
         if action.other_observer and candidate.id in OF_OBSERVER:
@@ -241,3 +275,20 @@ def _wandering(case: Case, size: int, action: RunAction) -> Moves:
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     root = root[:, values > 1e-9 * values[-1]]
     return "wandering", root[None], root[None]
+
+
+def _correlated(case: Case, size: int, action: RunAction) -> Moves:
+    """Readings that err alike from one to the next; those of a new run know nothing of the first.
+
+    Two more points go on where the run ended; north does not move.
+    """
+    n = case.size
+    spacing = float(np.median(np.diff(np.sort(case.position))))
+    more = case.position[-1] + spacing * np.arange(1.0, size - n + 1.0)
+    if not action.anew:
+        roots = correlated_roots(np.concatenate([case.position, more]))
+    else:
+        own, other = correlated_roots(case.position), correlated_roots(more)
+        roots = np.zeros((len(own), size, size))
+        roots[:, :n, :n], roots[:, n:, n:] = own, other
+    return "correlated", roots, np.zeros_like(roots)

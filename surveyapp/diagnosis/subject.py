@@ -31,7 +31,7 @@ class BaseModel(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Subject:
+class DiagnosedSubject:
     """One kind of record.
 
     Parameters
@@ -131,7 +131,7 @@ class Record:
     series: Floats | None = None
 
 
-def case_of(subject: Subject, record: Record) -> Case:
+def case_of(subject: DiagnosedSubject, record: Record) -> Case:
     """Make the case of a record of any subject.
 
     The value is taken over the record: what an effect adds on average belongs to it.
@@ -185,7 +185,7 @@ POSITION_ONLY = "position"
 
 
 def _check(
-    subject: Subject,
+    subject: DiagnosedSubject,
     identity: str,
     values: Floats,
     columns: Mapping[str, Floats],

@@ -217,14 +217,9 @@ def tangent(
 def starting_values(y: Floats, side: Floats, half_swing: Floats) -> Floats:
     """First amplitude, damping and 0, from a coarse scan of the damping."""
     decays = np.concatenate([[0.0], np.geomspace(1e-4, 0.5, 24)])
-    best: tuple[float, Floats] | None = None
-    for decay in decays:
-        X = np.column_stack([np.ones_like(y), side * np.exp(-decay * half_swing)])
-        b, *_ = np.linalg.lstsq(X, y, rcond=None)
-        left = y - X @ b
-        rss = float(left @ left)
-        if best is None or rss < best[0]:
-            best = (rss, np.array([b[1], decay, 0.0]))
-    if best is None:
-        raise AssertionError("the scan is never empty")
-    return best[1]
+    columns = side * np.exp(-decays[:, None] * half_swing)
+    apart = columns - columns.mean(axis=1, keepdims=True)
+    along = apart @ y
+    squares = np.maximum(np.einsum("dn,dn->d", apart, apart), 1e-300)
+    best = int(np.argmax(along**2 / squares))  # what the swing explains beside a mean
+    return np.array([along[best] / squares[best], decays[best], 0.0])

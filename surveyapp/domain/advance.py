@@ -10,3 +10,7 @@ Advance = Callable[[str, int, int], None]
 
 def silent(_what: str, _done: int, _total: int) -> None:
     """Nobody waits."""
+
+
+PartDone = Callable[[float], None]
+"""Told from time to time which part of a work is done, 0 to 1."""

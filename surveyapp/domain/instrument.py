@@ -245,6 +245,11 @@ class AdoptedEffect:
     software : str
     unit : str
         Unit of before, after and confirm.
+    course : tuple of tuple of float
+        Of a course of north that recurs and is not explained: rows of half swings, the shift
+        of north there (1 at its largest) and its errors; empty = an effect of the catalogue.
+    run : str
+        The run that the course was saved from.
     """
 
     id: str
@@ -262,6 +267,8 @@ class AdoptedEffect:
     adopted_at: str = ""
     software: str = ""
     unit: str = "arcsec"
+    course: tuple[tuple[float, ...], ...] = ()
+    run: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -173,12 +173,18 @@ class Verdicts:
 
 @dataclass(frozen=True, slots=True)
 class BudgetLine:
-    """Share of one source in the variance of an azimuth."""
+    """Share of one source in the variance of an azimuth.
+
+    ``source`` is for people; what it is about is told by ``name``, and by ``at_calibration`` where
+    it came in with the sessions of the instrument constant.
+    """
 
     source: str
     sigma: float
     share: float
     origin: str = ""
+    name: str = ""
+    at_calibration: bool = False
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""

@@ -12,6 +12,7 @@ from surveyapp.io.cards import number_pair
 from surveyapp.io.files import shown
 from surveyapp.io.tables import Table, as_number
 from surveyapp.languages import said
+from surveyapp_models.effects.recurrent import course_faults
 
 
 def read_effect(table: Table) -> AdoptedEffect:
@@ -43,6 +44,8 @@ def read_effect(table: Table) -> AdoptedEffect:
         adopted_at="" if adopted_at is None else str(adopted_at),
         software=table.text("software") or "",
         unit=table.text("unit") or "arcsec",
+        course=_course(table),
+        run=table.text("run") or "",
     )
     table.get("note")
     table.warn_unknown()
@@ -97,6 +100,22 @@ def _covariance(effect: Table, size: int) -> tuple[tuple[float, ...], ...]:
         )
         return ()
     return tuple(numbers)
+
+
+def _course(effect: Table) -> tuple[tuple[float, ...], ...]:
+    value = effect.get("course")
+    if value is None:
+        return ()
+    rows = value if isinstance(value, list) else [None]
+    numbers = [[as_number(item) for item in row] if isinstance(row, list) else [] for row in rows]
+    course = tuple(tuple(x for x in row if x is not None) for row in numbers)
+    fault = course_faults(course)
+    if any(len(row) != len(given) for row, given in zip(course, numbers, strict=True)):
+        fault = "something that is no number"
+    if fault:
+        effect.problem("course cannot be used", fault, "[[half swings, shift, errors ...], ...]")
+        return ()
+    return course
 
 
 def _valid(effect: Table) -> tuple[tuple[str, float, float], ...]:

@@ -23,7 +23,6 @@ from surveyapp.io.tables import Findings, Table, as_number, parse_toml
 from surveyapp.io.tomltext import atomic_write, toml_key, toml_value
 from surveyapp.languages import said
 
-CARD_FORMAT: Final = 1
 _ASYMMETRY: Final = 1e-9
 
 
@@ -140,7 +139,7 @@ def write_sensor_card(path: Path, card: SensorCard) -> None:
             raise SurveyError(
                 Problem(
                     "a file that is no sensor card stands there",
-                    "--card",
+                    "card",
                     shown_path(path),
                     "a name of its own for the card",
                 )

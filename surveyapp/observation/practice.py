@@ -176,7 +176,7 @@ def begin(
         raise SurveyError(
             Problem(
                 said("this speed is not possible"),
-                "--speed",
+                "speed",
                 f"{speed:g}",
                 said("{slowest:g} to {fastest:g}", slowest=SLOWEST, fastest=FASTEST),
             )

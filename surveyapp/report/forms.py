@@ -153,7 +153,7 @@ def blank_form(method: str, *, software: str) -> Document:
         raise SurveyError(
             Problem(
                 "there is no form for this method",
-                "--blank",
+                "blank",
                 method,
                 " | ".join(FORMS),
                 nearest_names(method, FORMS),

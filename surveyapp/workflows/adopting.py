@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, cast
 
+import numpy as np
+
 from surveyapp.core.checks.adopted_checks import identity_of
 from surveyapp.core.orientation.session_digest import sessions_digest
 from surveyapp.diagnosis.case import Case
@@ -27,6 +29,7 @@ from surveyapp.io.writing import with_subtables
 from surveyapp.languages import said
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Effect
+from surveyapp_models.effects.recurrent import course_faults, recurrent_course
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,12 +96,14 @@ def tables_to_adopt(
     elif not diagnosis.adopted:
         refused.append(NotWritten("", "no effect is named: nothing was written"))
     for item in diagnosis.adopted:
-        effect = catalogue.get(item.effect)
+        effect = catalogue.get(item.effect) or _saved_course(item.effect, problem)
         if effect is None:
             reason = "an effect of your own is in no catalogue, and orient could not use it"
             refused.append(NotWritten(item.effect, reason))
             continue
         table = effect_table(item, problem, project)
+        if effect.course:
+            table |= {"course": [list(place) for place in effect.course], "run": effect.run}
         place = tuple(dict(cast("Mapping[str, float | str]", table.get("grid", {}))).items())
         wanted = identity_of(AdoptedEffect(item.effect, grid=place), effect)
         if any(_same(wanted, other, effect, problem) for other in already):
@@ -107,6 +112,20 @@ def tables_to_adopt(
             continue
         tables.append(table)
     return tables, tuple(refused)
+
+
+def _saved_course(name: str, problem: Case) -> Effect | None:
+    """A course that was saved from a run: it is data, which the project can carry; else None.
+
+    What a file calls one is believed only where its columns are those of the course.
+    """
+    effect = next((item for item in problem.effects if item.id == name), None)
+    if effect is None or problem.half_swing is None or course_faults(effect.course):
+        return None
+    saved = recurrent_course(name, effect.course, run=effect.run)
+    columns = {"half_swing": problem.half_swing}
+    same = np.allclose(saved.basis(columns), effect.basis(columns), atol=1e-9)
+    return saved if same and effect.subject == saved.subject else None
 
 
 def _same(wanted: tuple[object, ...], other: AdoptedEffect, effect: Effect, problem: Case) -> bool:

@@ -21,13 +21,13 @@ from surveyapp.core.sensors.compensation import (
     compensate_tilt,
     field_doubt,
 )
+from surveyapp.domain.advance import PartDone
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_card import SensorCard
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.sensor_cards import read_sensor_card
-from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.io.sensor_logs.writing import write_parts
 from surveyapp.languages import said
@@ -92,7 +92,7 @@ def compensate_log(
     entry: SensorLogEntry | None = None,
     today: date | None = None,
     declination: Declination | None = None,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> tuple[Iterator[Compensated], SensorLog, SensorCard]:
     """Correct a log by a card, block by block.
 

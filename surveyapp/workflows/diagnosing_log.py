@@ -9,11 +9,11 @@ from typing import Final
 
 from surveyapp.diagnosis.sensors.diagnosis import SensorDiagnosis, diagnose_sensor
 from surveyapp.diagnosis.sensors.records import SensorRecord, compass_record, tilt_record
+from surveyapp.domain.advance import PartDone
 from surveyapp.domain.project import Project
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import QUATERNION, SensorLog
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.languages import said
 from surveyapp.workflows.adopting import NotWritten, sensor_tables
@@ -45,7 +45,7 @@ def diagnose_log(
     *,
     own: Sequence[Effect] = (),
     confirm: SecondLog | None = None,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> SensorDiagnosis:
     """Diagnose a compass or a tilt log.
 
@@ -138,7 +138,7 @@ def adopt_log(
 
 
 def _record(
-    kind: str, identity: str, file: LogFile, own: Sequence[Effect], *, progress: Progress | None
+    kind: str, identity: str, file: LogFile, own: Sequence[Effect], *, progress: PartDone | None
 ) -> tuple[SensorRecord, SensorLog]:
     """A log as the loop takes it."""
     needed = tuple(need.name for effect in own for need in effect.needs if file.has(need.name))

@@ -18,10 +18,10 @@ from surveyapp.core.sensors.filters import (
     run_filter,
     step_lag,
 )
+from surveyapp.domain.advance import PartDone
 from surveyapp.domain.noise import AllanChannel, FilterResult
 from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
-from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile
 from surveyapp.languages import said
 from surveyapp.workflows.noise import channel_of, noise_columns, read_columns
@@ -42,7 +42,7 @@ def filter_log(
     q: float | None,
     r: float | None,
     seed: int = 1,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> tuple[FilterResult, Floats, Floats]:
     """Filter one column.
 

@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from datetime import datetime
 from pathlib import Path
 
+from surveyapp.domain.advance import PartDone
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.north import NorthResult
 from surveyapp.domain.programme import ProgrammeResult, ProgrammeState
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.project import read_project
-from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogRequest, open_log
 from surveyapp.io.sensor_logs.tables import request_of
 from surveyapp.workflows.calibrating import CalibrationRequest, run_calibration
@@ -31,7 +31,7 @@ def end_run(
     card: Path | None,
     moment: datetime,
     software: str,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> ProgrammeResult:
     """Enter the log of a run, and calibrate it or find north from it.
 
@@ -98,7 +98,7 @@ def _north(
     options: Mapping[str, object],
     *,
     moment: datetime,
-    progress: Progress | None,
+    progress: PartDone | None,
 ) -> NorthResult:
     return find_north(
         NorthRequest(

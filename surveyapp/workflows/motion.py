@@ -14,10 +14,10 @@ from surveyapp.core.sensors.rate.motion_log import (
     MotionOptions,
     judge_motion,
 )
+from surveyapp.domain.advance import PartDone
 from surveyapp.domain.motion import Motion
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.languages import said
 
@@ -29,7 +29,7 @@ SMALLEST_ALARM: Final = 1e-9
 
 
 def find_motion(
-    file: LogFile, options: Mapping[str, object], *, progress: Progress | None = None
+    file: LogFile, options: Mapping[str, object], *, progress: PartDone | None = None
 ) -> Motion:
     """Read a record and judge its motion.
 
@@ -79,17 +79,17 @@ def motion_options(options: Mapping[str, object], problems: list[Problem]) -> Mo
     alarm = _number(options, "false_alarm", 0.01)
     if not SMALLEST_ALARM <= alarm < 0.5:
         expected = said("{smallest_alarm:g} to 0.5", smallest_alarm=SMALLEST_ALARM)
-        problems.append(Problem("this is no probability", "--false-alarm", f"{alarm:g}", expected))
+        problems.append(Problem("this is no probability", "false_alarm", f"{alarm:g}", expected))
     factor = _number(options, "still_gate_factor", 1.0)
     if not factor > 0.0 or not math.isfinite(factor):
-        where = "--still-gate-factor"
+        where = "still_gate_factor"
         problems.append(Problem("this is no factor", where, f"{factor:g}", "above 0"))
     cycle = str(options.get("snap_power_cycle") or "current")
     if cycle not in ("previous", "current"):
         expected = "previous or current"
-        problems.append(Problem("there is no such cycle", "--snap-power-cycle", cycle, expected))
-    begin = _numbers(options.get("begin"), "--from", 3, problems)
-    end = _numbers(options.get("end"), "--to", 2, problems)
+        problems.append(Problem("there is no such cycle", "snap_power_cycle", cycle, expected))
+    begin = _numbers(options.get("begin"), "from", 3, problems)
+    end = _numbers(options.get("end"), "to", 2, problems)
     return MotionOptions(
         false_alarm=alarm,
         still_gate_factor=factor,

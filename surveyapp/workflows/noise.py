@@ -11,11 +11,11 @@ import numpy as np
 from surveyapp.core.sensors.allan import AllanCurve, Estimator, allan_curve, octaves
 from surveyapp.core.sensors.noise_coefficients import coefficients_of
 from surveyapp.core.sensors.noise_units import named_coefficients
+from surveyapp.domain.advance import PartDone
 from surveyapp.domain.noise import AllanChannel, AllanResult
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SENSOR_COLUMNS, TEXT_COLUMNS, SensorLog
 from surveyapp.errors import Problem, SurveyError, nearest_names
-from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
@@ -51,7 +51,7 @@ def noise_columns(file: LogFile, column: str | None) -> tuple[str, ...]:
     return found
 
 
-def read_columns(file: LogFile, names: tuple[str, ...], progress: Progress | None) -> SensorLog:
+def read_columns(file: LogFile, names: tuple[str, ...], progress: PartDone | None) -> SensorLog:
     """Read columns of numbers with their times, all finite and varying."""
     canonical = tuple(n for n in names if n in SENSOR_COLUMNS)
     others = tuple(n for n in names if n not in SENSOR_COLUMNS)
@@ -128,7 +128,7 @@ def allan_of_log(
     column: str | None = None,
     estimator: Estimator = "oadev",
     taus: Sequence[float] | None = None,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> AllanResult:
     """Allan deviation of the columns of a log.
 

@@ -107,7 +107,7 @@ def part_of(path: str, orientation: Orientation, wanted: Wanted) -> Part:
 def _campaign(orientation: Orientation, instrument: str) -> Evidence | None:
     """What the determinations of a project say of the causes; None where they are too few."""
     constant = next(c for c in orientation.constants if c.instrument.id == instrument)
-    if len(constant.calibrations) < LEAST_CAMPAIGN or constant.instrument.effects:
+    if constant.set_ups < LEAST_CAMPAIGN or constant.instrument.effects:
         return None
     try:
         case = campaign(determinations(orientation, instrument), instrument=instrument)
@@ -204,11 +204,11 @@ class InstrumentDiagnosis:
         else:
             said += _pooled_words(self.pooled)
         if self.priors is not None:
+            campaigns = "1 campaign" if self.campaigns == 1 else f"{self.campaigns} campaigns"
             said.append(
-                f"{self.campaigns} campaigns with {self.priors.sessions} determinations: in "
-                f"{self.priors.share(BASE):.0%} of them nothing but noise is taken for likely; "
-                "where something is at work it is mostly "
-                f"{_likeliest(self.priors)}."
+                f"{campaigns} with {self.priors.sessions} determinations: nothing but noise is "
+                f"taken for likely in {self.priors.share(BASE):.0%} of the next ones; where "
+                f"something is at work it is mostly {_likeliest(self.priors)}."
             )
         said += [f"{w.text[0].upper()}{w.text[1:].rstrip('.')}." for w in self.warnings]
         if self.written:

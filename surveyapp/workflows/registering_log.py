@@ -12,6 +12,7 @@ from typing import Final
 
 import numpy as np
 
+from surveyapp.domain.advance import PartDone
 from surveyapp.domain.log_preview import LogPreview, PreviewedColumn
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_entry import SENSOR_KINDS
@@ -20,7 +21,6 @@ from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.files import decode, shown_path
 from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.io.project import read_project
-from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, LogRequest, Need, open_log
 from surveyapp.io.sensor_logs.tables import is_inside
 from surveyapp.io.tomltext import atomic_write
@@ -58,7 +58,7 @@ class LogEntryWish:
     more: Mapping[str, object] = field(default_factory=dict)
 
 
-def preview_log(request: LogRequest, *, progress: Progress | None = None) -> LogPreview:
+def preview_log(request: LogRequest, *, progress: PartDone | None = None) -> LogPreview:
     """What would be understood of a log, and everything that is wrong with it, in words.
 
     Raises
@@ -148,7 +148,7 @@ def register_log(
     request: LogRequest,
     wish: LogEntryWish,
     *,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> LogPreview:
     """Take a log into a project: a copy below ``sensors/`` and a ``[[sensor_log]]``.
 

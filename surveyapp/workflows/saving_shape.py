@@ -24,42 +24,21 @@ from surveyapp_models.arrays import Floats
 
 TEMPLATE: Final = '''"""Saved by surveyapp diagnose --save-shape: {shape} of run {identity}.
 
-Not explained. Trying it on other runs tells whether it recurs:
+Not explained. Trying it on other runs tells whether it recurs; where it is named it can be adopted:
 
     surveyapp diagnose DIR --session OTHER --effects THIS_FILE
+    surveyapp diagnose DIR --session OTHER --effects THIS_FILE --adopt
 """
 
-import numpy as np
+from surveyapp_models.effects.recurrent import recurrent_course
 
-from surveyapp_models.angles import ARCSEC
-from surveyapp_models.effects.effect import HALF_SWING, Coefficient, Effect
-
-TIME = {time}
-COURSE = {course}
-"""Half swings, and the shift of north there, 1 at its largest."""
-
-
-def basis(columns, /, **grid):
-    """The saved course; beyond its ends it stays."""
-    return np.interp(columns["half_swing"], TIME, COURSE)[:, None]
-
+COURSE = (
+{course}
+)
+"""Half swings, the shift of north there (1 = {size:+.1f} arc-seconds), and its errors."""
 
 EFFECTS = (
-    Effect(
-        id="{id}",
-        title="Not explained, recurrent: the course of run {identity}",
-        subject="reversal_run",
-        needs=(HALF_SWING,),
-        coefficients=(
-            Coefficient("size", "arcsec", ARCSEC, -3600.0, 3600.0, "{size:+.1f} in that run"),
-        ),
-        basis=basis,
-        datum="north averaged over the run, as observed",
-        source="run {identity}, {shape}: {size:+.1f} arc-seconds, not explained",
-        remedy="It recurs and nobody knows why: look for what these runs have in common.",
-        symptom="north took the same unexplained course as in run {identity}",
-        separate_by="a run under other circumstances: another observer, tripod, hour or place",
-    ),
+    recurrent_course("{id}", COURSE, run="{identity}", told="{shape}, {size:+.1f} arc-seconds"),
 )
 '''
 
@@ -79,15 +58,17 @@ def shape_text(problem: Case, *, draws: int = DEFAULT_DRAWS) -> str:
     if member is None:
         found = " + ".join(best.effects) or "the base model"
         raise SurveyError(_no_shape(problem, found, "a bend, an oscillation, a pulse"))
-    course = _course(problem, best, member)
-    time = problem.position
+    course, errors = _course(problem, best, member)
+    time = problem.position if problem.half_swing is None else problem.half_swing
     size = float(course[np.argmax(np.abs(course))])
     name = re.sub(r"[^a-z0-9]+", "_", problem.identity.lower()).strip("_")[:40] or "run"
     return TEMPLATE.format(
         shape=member.candidate.id.replace("_", " "),
         identity=re.sub(r'["\\\\{}\r\n]', " ", problem.identity),
-        time=[round(float(t), 3) for t in time],
-        course=[round(float(v / size), 4) for v in course],
+        course="\n".join(
+            f"    ({', '.join(f'{x:.4f}' for x in row)}),"
+            for row in np.column_stack([time, course / size, errors / size]).tolist()
+        ),
         id=f"recurrent_{name}",
         size=size / ARCSEC,
     )
@@ -97,14 +78,16 @@ def _is_course(member: Member) -> bool:
     return member.candidate.kind == "shape" and member.candidate.id not in AMPLITUDE_SHAPES
 
 
-def _course(problem: Case, fit: Fit, member: Member) -> Floats:
-    """What north itself did, about its mean [rad], shape (n,)."""
-    values, _ = coefficients(problem, fit)[member.candidate.id]
+def _course(problem: Case, fit: Fit, member: Member) -> tuple[Floats, Floats]:
+    """What north itself did, about its mean [rad], shape (n,), and its errors, shape (n, q)."""
+    values, covariance = coefficients(problem, fit)[member.candidate.id]
     columns = member.columns
     if member.candidate.midpoint is not None:
         columns = member.candidate.midpoint[member.g]
-    course = columns @ values
-    return np.asarray(course - course.mean())
+    columns = columns - columns.mean(axis=0)
+    spread, turned = np.linalg.eigh(covariance)
+    errors = columns @ turned * np.sqrt(np.maximum(spread, 0.0))
+    return np.asarray(columns @ values), np.asarray(errors)
 
 
 def _no_shape(problem: Case, found: str, expected: str) -> Problem:

@@ -6,13 +6,13 @@ from typing import Final
 
 from surveyapp.core.sensors.charts import logs, results
 from surveyapp.core.sensors.rate.stop_plan import StopPlan
+from surveyapp.domain.advance import PartDone
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.chart import Picture, SensorPictures
 from surveyapp.domain.line_spectrum import LineSpectrum
 from surveyapp.domain.motion import Motion
 from surveyapp.domain.noise import AllanResult, FilterResult
 from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2, SensorLog
-from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.workflows.calibrating.tilt import DIVIDING_HEAD, TWO_AXES
 
@@ -30,7 +30,7 @@ NEEDS: Final = {
 
 
 def pictures_of(
-    result: SensorResult, file: LogFile | None = None, *, progress: Progress | None = None
+    result: SensorResult, file: LogFile | None = None, *, progress: PartDone | None = None
 ) -> SensorPictures:
     """Pictures of a result.
 
@@ -58,7 +58,7 @@ def pictures_of(
 
 
 def _of_calibration(
-    result: Calibration, file: LogFile | None, progress: Progress | None
+    result: Calibration, file: LogFile | None, progress: PartDone | None
 ) -> tuple[Picture, ...]:
     made = [*results.table_charts(result), *results.turns_of(result)]
     made += logs.stop_pictures(result, gravity=STANDARD_GRAVITY_M_S2)

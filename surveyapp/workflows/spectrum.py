@@ -13,11 +13,11 @@ from surveyapp.diagnosis.long_records.interference import (
     plotted_density,
     scatter_of,
 )
+from surveyapp.domain.advance import PartDone
 from surveyapp.domain.line_spectrum import LineSpectrum, MagneticBudget
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import NUMBER_COLUMNS, SensorLog
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.languages import said
 from surveyapp.workflows.noise import FEWEST
@@ -41,7 +41,7 @@ def find_spectrum(
     *,
     magnetic: MagneticOptions,
     against: LogFile | None = None,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> LineSpectrum:
     """Lines of a column.
 
@@ -88,7 +88,7 @@ def _axes(file: LogFile, other: LogFile, column: str) -> list[str]:
     return [column]
 
 
-def _read(file: LogFile, columns: list[str], progress: Progress | None) -> SensorLog:
+def _read(file: LogFile, columns: list[str], progress: PartDone | None) -> SensorLog:
     known = tuple(c for c in columns if c in NUMBER_COLUMNS)
     others = tuple(c for c in columns if c not in NUMBER_COLUMNS)
     log = file.read(
@@ -106,13 +106,13 @@ def _read(file: LogFile, columns: list[str], progress: Progress | None) -> Senso
 def _magnetic_problems(magnetic: MagneticOptions) -> list[Problem]:
     problems = []
     if (magnetic.field_uT is None) != (magnetic.sensitivity_deg_h_t is None):
-        missing = "--sensitivity" if magnetic.sensitivity_deg_h_t is None else "--field-uT"
+        missing = "sensitivity" if magnetic.sensitivity_deg_h_t is None else "field_uT"
         problems.append(
             Problem("a magnetic budget needs field and sensitivity", missing, "", "both of them")
         )
     if magnetic.shielding is not None and not magnetic.shielding > 0.0:
         found = f"{magnetic.shielding:g}"
-        problems.append(Problem("this is no shielding factor", "--shielding", found, "above 0"))
+        problems.append(Problem("this is no shielding factor", "shielding", found, "above 0"))
     return problems
 
 

@@ -13,7 +13,6 @@ from surveyapp import api
 from surveyapp.core.plan import plan_methods
 from surveyapp.core.simulate.project import project_files, project_truth, simulate_reversal_project
 from surveyapp.core.simulate.specification import SessionSpec
-from surveyapp.core.swing.preorientation import quarter_period
 from surveyapp.errors import SurveyError
 from surveyapp_models.angles import ARCSEC, RHO_ARCSEC
 from tests.api.projects import CARD, GYRO, rows, write
@@ -208,13 +207,6 @@ def test_two_turning_points_are_a_pre_orientation(tmp_path: Path) -> None:
     # A (1 - q) / 2 with A = 3 degrees, q = .98: 108"
     assert session.gyro_north.sigma * RHO_ARCSEC == pytest.approx(108.0, abs=0.5)
     assert any(w.code == "pre_orientation" for w in result.warnings)
-
-
-def test_quarter_period_costs_what_the_sheet_says() -> None:
-    # physics.md 2.6: 0.89' per second per degree of amplitude (T1 = 425 s)
-    quarter = quarter_period(period_s=425.0, amplitude=math.radians(1.0))
-    assert quarter.wait_s == pytest.approx(106.25)
-    assert math.degrees(quarter.error_per_second) * 60.0 == pytest.approx(0.89, abs=0.005)
 
 
 def test_plan_promises_what_simulated_sessions_keep(tmp_path: Path) -> None:

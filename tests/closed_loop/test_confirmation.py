@@ -10,7 +10,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from surveyapp.diagnosis import Case, Determination, TurningPoints
+from surveyapp.diagnosis import CampaignDetermination, Case, TurningPoints
 from surveyapp.diagnosis.candidates import all_candidates
 from surveyapp.diagnosis.engine import diagnose
 from surveyapp.diagnosis.fits import Member, fit_members, scan_law
@@ -88,7 +88,7 @@ def series(seed: int, effect: str | None) -> Case:
     days = np.arange(n) // 3 * 14.0 + np.arange(n) % 3 * 0.1
     line = np.arange(n) // 3 % 4
     made = [
-        Determination.at(
+        CampaignDetermination.at(
             0.0,
             sigma=5.0 * ARCSEC,
             elapsed_days=float(days[i]),

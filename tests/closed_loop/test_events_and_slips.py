@@ -18,19 +18,20 @@ SHARED = Path(__file__).resolve().parents[3] / "shared/cases"
 
 
 def test_a_step_is_not_refused_by_a_clean_second_run() -> None:
-    made, _ = problems(Truth("step", 20, step=40.0), 6, 5)
-    clean, _ = problems(Truth("clean", 20), 6, 6)
+    made, _ = problems(Truth("step", 20, step=40.0), 4, 5)
+    clean, _ = problems(Truth("clean", 20), 4, 6)
     named = 0
     for number, (case, second) in enumerate(zip(made, clean, strict=True)):
         first = replace(case, identity=f"a{number}")
-        alone = diagnose(first, draws=1000)
-        found = diagnose(first, confirm=replace(second, identity=f"b{number}"), draws=1000)
+        alone = diagnose(first, draws=500, advise=False)
+        other = replace(second, identity=f"b{number}")
+        found = diagnose(first, confirm=other, draws=500, advise=False)
         names = [item.effect for item in found.adopted]
         if "midpoint_step" in [item.effect for item in alone.adopted]:
             assert "midpoint_step" in names
             assert {w.code for w in found.warnings} & {"event_unconfirmed", "event_confirmed"}
             named += 1
-    assert named >= 4
+    assert named >= 2  # of four, where .96 are named
 
 
 def test_a_drift_with_another_coefficient_is_refused() -> None:
@@ -38,7 +39,10 @@ def test_a_drift_with_another_coefficient_is_refused() -> None:
     other, _ = problems(Truth("drift", 20, drift=12.0, one_sign=True), 2, 6)
     for case, second in zip(made, other, strict=True):
         found = diagnose(
-            replace(case, identity="a"), confirm=replace(second, identity="b"), draws=1000
+            replace(case, identity="a"),
+            confirm=replace(second, identity="b"),
+            draws=500,
+            advise=False,
         )
         assert "midpoint_drift" not in [item.effect for item in found.adopted]
         assert any("another one" in w.text for w in found.warnings)

@@ -163,8 +163,8 @@ def test_deflection_of_a_steep_sight() -> None:
 def test_references_cannot_be_mixed() -> None:
     gyro = Azimuth(1.0, "GYRO")
     assert gyro.with_constant(0.5).reference == "ASTRONOMIC"
-    with pytest.raises(SurveyError, match="MAGNETIC"):
-        gyro.with_declination(0.1)
+    with pytest.raises(SurveyError, match="ASTRONOMIC"):
+        gyro.without_deflection(0.1)
     with pytest.raises(SurveyError):
         gyro.minus(Azimuth(1.0, "GRID"))
     grid = (

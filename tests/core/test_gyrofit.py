@@ -9,7 +9,6 @@ from surveyapp.core.swing.gyrofit import (
     design,
     fit_damped_swing,
     schuler_means,
-    schuler_standard_error,
     unwrap,
 )
 
@@ -18,6 +17,29 @@ JOHANNESBURG = (  # Williams & Belling 1967, p. 273: 20 turning points of a Wild
     "179-13-42 181-05-58 179-14-35 181-04-50 179-14-58 181-04-32 179-15-39 181-03-56 "
     "179-15-59 181-03-39 179-16-19 181-03-02"
 )
+
+
+def schuler_standard_error(points: int, sigma: float) -> float:
+    """Standard error of the mean of all overlapping Schuler means.
+
+    The means share readings: dividing the scatter by the root of their number is wrong by a factor
+    of up to two.
+
+    Parameters
+    ----------
+    points : int
+        Number of consecutive turning points, at least 3.
+    sigma : float
+        Standard deviation of one turning point.
+
+    Source: physics.md 2.1, se = sigma sqrt(16 v - 44) / (4 (v - 2)) for v >= 4; sqrt(6)/4 sigma
+    for v = 3.
+    """
+    if points < 3:
+        raise ValueError("a Schuler mean needs three turning points")
+    if points == 3:
+        return sigma * math.sqrt(6.0) / 4.0
+    return sigma * math.sqrt(16.0 * points - 44.0) / (4.0 * (points - 2))
 
 
 def seconds(text: str) -> np.ndarray:

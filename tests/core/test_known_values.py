@@ -6,13 +6,17 @@ import math
 
 import numpy as np
 import pytest
+from scipy.optimize import bisect
 
 from surveyapp.core.network.spheres import three_spheres
 from surveyapp.core.observing.by_method import progress_of
+from surveyapp.core.statistics import levels
+from surveyapp.core.statistics.repeated import between_variance
 from surveyapp.core.swing.card_physics import card_at
 from surveyapp.core.swing.clamped import circle_resolution
 from surveyapp.core.swing.goodness import Judge
 from surveyapp.core.swing.session import reduce_swing
+from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.diagnosis.long_records.blocks import split
 from surveyapp.domain.instrument import InstrumentCard, Periods
 from surveyapp.domain.project import Method, OrientationSession
@@ -147,3 +151,32 @@ def test_blocks_share_each_stretch_in_equal_times() -> None:
         number = [min(int((v - values[0]) / length), parts - 1) for v in values]
         expected += [start + number.index(k) for k in range(parts)]
     assert blocks.first.tolist() == expected
+
+
+def test_the_shares_of_the_level_sum_to_no_more_than_the_whole() -> None:
+    """Four kinds of fit, the constants, nine other families: the docstrings of ``levels``."""
+    whole = 4 * levels.FIT_KIND + levels.CONSTANT_SHARE + 9 * levels.FAMILY_SHARE
+    assert whole <= levels.PROJECT_LEVEL
+
+
+def test_the_scatter_of_runs_of_one_sigma_is_known_in_closed_form() -> None:
+    """Own variances v: the extra one is sum of squares / wanted - v; three runs clearly apart."""
+    values, own = [0.0, 30.0, 75.0], 4.0
+    group = [Uncertain(x, {Source("rounds", f"s{i}"): own}) for i, x in enumerate(values)]
+    squares = sum((x - 35.0) ** 2 for x in values)
+    found = between_variance([group], probability=0.0)
+    assert found == pytest.approx(squares / 2.0 - own**2, rel=1e-12)
+    # of unlike variances: the same sum of squares, by the bisection of scipy
+    unlike = [Uncertain(x, {Source("rounds", f"s{i}"): 3.0 + i}) for i, x in enumerate(values)]
+
+    def excess(extra: float) -> float:
+        weights = 1.0 / (np.array([9.0, 16.0, 25.0]) + extra)
+        mean = weights @ np.array(values) / weights.sum()
+        return float(weights @ (np.array(values) - mean) ** 2) - 2.0
+
+    assert between_variance([unlike], probability=0.0) == pytest.approx(
+        bisect(excess, 0.0, 1e5, xtol=1e-9), rel=1e-9
+    )
+    assert between_variance([group[:2]], probability=0.0) > 0.0
+    close = [Uncertain(x / 100.0, item.parts) for x, item in zip(values, group, strict=True)]
+    assert between_variance([close], probability=0.0) == 0.0

@@ -1,7 +1,7 @@
 """interval95_arcsec holds the truth: the integrated equation, a field book, the public command.
 
-Bounds: with 400 runs and a true coverage of 95 % the share lies between 91.4 and 97.8 % with
-probability 0.999 (binomial); the campaign of ``make bench`` has 2000 runs a method.
+Bounds: with 240 runs and a true coverage of 95 % the share lies between 89.6 and 98.7 % with
+probability 0.999 (binomial); the campaign of ``make bench`` has 1000 runs a method.
 """
 
 import math
@@ -17,13 +17,13 @@ from bench.coverage import azimuth_of, campaign, further, judged, write_files
 from surveyapp import api
 from surveyapp.core.simulate.specification import SwingMethod
 
-RUNS = 400
+RUNS = 240
 LOW, HIGH = (float(bdtrik(p, RUNS, 0.95)) / RUNS for p in (0.0005, 0.9995))
 
 
 def test_bounds_are_those_of_the_binomial_distribution() -> None:
-    assert pytest.approx(0.95 - 3.29 * math.sqrt(0.95 * 0.05 / RUNS), abs=6e-3) == LOW
-    assert HIGH < 0.985
+    assert pytest.approx(0.95 - 3.29 * math.sqrt(0.95 * 0.05 / RUNS), abs=1e-2) == LOW
+    assert HIGH < 0.995
 
 
 @pytest.mark.statistical
@@ -35,14 +35,14 @@ def test_interval_holds_the_truth(method: SwingMethod, seed: int, sigma_about: f
     for item in campaign(method, RUNS, seed):
         assert LOW <= item.share <= HIGH
         assert abs(item.bias_in_sigma) < 0.3
-        # the sigma is the scatter: chi-square bounds of a variance from 400 runs, 99.9 %, widened
+        # the sigma is the scatter: chi-square bounds of a variance from 240 runs, 99.9 %, widened
         # by the scatter of the sigmas themselves (few degrees of freedom)
         ratio = float(np.std(item.errors) / np.sqrt(np.mean(item.sigmas**2)))
-        assert 0.85 < ratio < 1.15
+        assert 0.82 < ratio < 1.18
         assert float(np.mean(item.sigmas)) < sigma_about
 
 
-FEW = {"gyro": 120, "grid": 40, "combined": 120}
+FEW = {"gyro": 100, "grid": 30, "combined": 120}
 """Runs of a further line in the suite; the bench has 1000 (docs/reference/coverage.md)."""
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from surveyapp.diagnosis.subject import Record, Subject, case_of
+from surveyapp.diagnosis.subject import DiagnosedSubject, Record, case_of
 from surveyapp.errors import SurveyError
 
 PAGE = Path(__file__).parents[2] / "docs/how-to/add-a-subject.md"
@@ -37,7 +37,7 @@ def test_the_toy_subject_finds_the_expansion_of_steel(toy: dict[str, Any]) -> No
 
 
 def test_wrong_records_are_told_together(toy: dict[str, Any]) -> None:
-    subject: Subject = toy["TAPE"]
+    subject: DiagnosedSubject = toy["TAPE"]
     record = Record([1.0, np.nan], {"temperature_c": [1.0]}, sigma=[1.0, 0.0])
     with pytest.raises(SurveyError) as caught:
         case_of(subject, record)
@@ -45,7 +45,7 @@ def test_wrong_records_are_told_together(toy: dict[str, Any]) -> None:
 
 
 def test_a_subject_holds_together(toy: dict[str, Any]) -> None:
-    subject: Subject = toy["TAPE"]
+    subject: DiagnosedSubject = toy["TAPE"]
     with pytest.raises(ValueError, match="another subject"):
         dataclasses.replace(subject, id="chain")
     with pytest.raises(ValueError, match="each base parameter"):

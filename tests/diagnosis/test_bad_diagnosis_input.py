@@ -8,7 +8,7 @@ import json
 import numpy as np
 import pytest
 
-from surveyapp.diagnosis import Determination, TurningPoints, diagnose
+from surveyapp.diagnosis import CampaignDetermination, TurningPoints, diagnose
 from surveyapp.diagnosis.subjects.campaign import campaign
 from surveyapp.diagnosis.subjects.reversal_run import reversal_run
 from surveyapp.errors import SurveyError
@@ -79,11 +79,11 @@ def test_no_times_is_said() -> None:
 
 def test_a_campaign_needs_sigmas_when_it_is_short_and_all_or_none() -> None:
     with pytest.raises(SurveyError, match="no stated sigmas"):
-        campaign([Determination.at(0.0), Determination.at(1e-5)])
+        campaign([CampaignDetermination.at(0.0), CampaignDetermination.at(1e-5)])
     with pytest.raises(SurveyError, match="others have none"):
-        campaign([Determination.at(0.0, sigma=1e-5), Determination.at(1e-5)])
+        campaign([CampaignDetermination.at(0.0, sigma=1e-5), CampaignDetermination.at(1e-5)])
     with pytest.raises(SurveyError, match="too few determinations"):
-        campaign([Determination.at(0.0, sigma=1e-5)])
+        campaign([CampaignDetermination.at(0.0, sigma=1e-5)])
 
 
 def test_tongjin_two_constants_are_not_separable() -> None:
@@ -92,8 +92,12 @@ def test_tongjin_two_constants_are_not_separable() -> None:
     result = diagnose(
         campaign(
             [
-                Determination.at(-9.72 * ARCSEC, sigma=sigma, order=1.0, line="G3007-G3006"),
-                Determination.at(-24.27 * ARCSEC, sigma=sigma, order=2.0, line="G3024-G3022"),
+                CampaignDetermination.at(
+                    -9.72 * ARCSEC, sigma=sigma, order=1.0, line="G3007-G3006"
+                ),
+                CampaignDetermination.at(
+                    -24.27 * ARCSEC, sigma=sigma, order=2.0, line="G3024-G3022"
+                ),
             ],
             instrument="HGG05 15001",
         )
@@ -110,7 +114,7 @@ def test_tongjin_two_constants_are_not_separable() -> None:
 
 def test_tongjin_agrees_when_its_sigmas_are_large() -> None:
     determinations = [
-        Determination.at(-9.72 * ARCSEC, sigma=15.0 * ARCSEC, order=1.0, line="a"),
-        Determination.at(-24.27 * ARCSEC, sigma=15.0 * ARCSEC, order=2.0, line="b"),
+        CampaignDetermination.at(-9.72 * ARCSEC, sigma=15.0 * ARCSEC, order=1.0, line="a"),
+        CampaignDetermination.at(-24.27 * ARCSEC, sigma=15.0 * ARCSEC, order=2.0, line="b"),
     ]
     assert diagnose(campaign(determinations)).verdict == "adequate"

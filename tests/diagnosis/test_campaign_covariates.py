@@ -11,10 +11,11 @@ import pytest
 
 from surveyapp import api
 from surveyapp.cli.main import main
+from surveyapp.core.orientation.campaign_columns import SETTLED_H
 from surveyapp.core.orientation.circumstances import facts_of
 from surveyapp.core.prediction.average import Determinations, predict
 from surveyapp.diagnosis.engine import diagnose
-from surveyapp.diagnosis.subjects.campaign import Determination, campaign
+from surveyapp.diagnosis.subjects.campaign import CampaignDetermination, campaign
 from surveyapp.domain.priors import DEFAULT_PRIORS
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
@@ -33,7 +34,7 @@ def told(column: str, values: Floats | list[str], shift: Floats, seed: int = 1) 
     rng = np.random.default_rng(seed)
     y = shift + SIGMA * rng.standard_normal(N)
     items = [
-        Determination.at(
+        CampaignDetermination.at(
             float(y[i]) * ARCSEC,
             sigma=SIGMA * ARCSEC,
             elapsed_days=20000.0 + 3.0 * (i // 3) + 0.05 * (i % 3),
@@ -127,4 +128,6 @@ def test_hours_since_transport_follow_from_the_stations(tmp_path: Path) -> None:
         if elsewhere:
             assert hours == pytest.approx(24.0 * (days[key] - max(elsewhere)))
             checked += 1
+        else:
+            assert hours == SETTLED_H
     assert checked > 5

@@ -37,7 +37,7 @@ def run(seed: int, *, drift: float = 0.0) -> Case:
 @pytest.mark.statistical
 def test_the_asymptote_lies_in_its_interval() -> None:
     inside = count = 0
-    for seed in range(16):
+    for seed in range(10):
         datum = diagnose(run(seed), draws=300, advise=False).after_best.value_at_datum
         if datum is None or datum.effect != "warm_up":
             continue
@@ -45,7 +45,7 @@ def test_the_asymptote_lies_in_its_interval() -> None:
         assert found.interval95 is not None
         inside += abs(wrap_pi(found.value - NORTH)) <= found.interval95
         count += 1
-    assert count >= 8
+    assert count >= 5
     # .85 of those that were found, which are a selection; once in a thousand times below that
     assert inside >= stats.binom.ppf(0.001, count, 0.85)
 
@@ -72,7 +72,11 @@ def test_the_sigma_of_an_asymptote_contains_that_of_its_time() -> None:
 
 def test_the_sigma_of_the_datum_is_told() -> None:
     case = run(1)
-    told = [t for t in words_of(diagnose(case, draws=300), case) if "from the average" in t]
+    told = [
+        t
+        for t in words_of(diagnose(case, draws=300, advise=False), case)
+        if "from the average" in t
+    ]
     assert told
     assert all("(sigma " in text for text in told)
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy import optimize, stats
 
-from surveyapp.diagnosis import Case, Determination, TurningPoints
+from surveyapp.diagnosis import CampaignDetermination, Case, TurningPoints
 from surveyapp.diagnosis.candidates import Candidate, all_candidates
 from surveyapp.diagnosis.compare import orthonormal_design, spans
 from surveyapp.diagnosis.fits import Fit, Member, fit_members, with_noise
@@ -141,7 +141,7 @@ def test_every_noise_model_is_whitened() -> None:
 def test_leave_one_out_is_what_leaving_out_gives() -> None:
     g = np.random.default_rng(8)
     made = [
-        Determination.at(v * ARCSEC, elapsed_days=float(i), sigma=5.0 * ARCSEC)
+        CampaignDetermination.at(v * ARCSEC, elapsed_days=float(i), sigma=5.0 * ARCSEC)
         for i, v in enumerate(5.0 * g.standard_normal(12) + np.arange(12))
     ]
     problem = campaign(made)

@@ -27,7 +27,7 @@ from bench._long_records import (
     walk,
     white,
 )
-from surveyapp.diagnosis import Determination, TurningPoints, diagnose
+from surveyapp.diagnosis import CampaignDetermination, TurningPoints, diagnose
 from surveyapp.diagnosis.long_records.blocks import block_means, runs_of, split
 from surveyapp.diagnosis.long_records.lines import find_lines
 from surveyapp.diagnosis.long_records.record import LONG, reduce_record
@@ -366,9 +366,9 @@ def test_a_long_swing_is_refused() -> None:
 # --- campaigns -----------------------------------------------------------------------------------
 
 
-def determinations(n: int, lines: list[str], g: np.random.Generator) -> list[Determination]:
+def determinations(n: int, lines: list[str], g: np.random.Generator) -> list[CampaignDetermination]:
     return [
-        Determination.at(
+        CampaignDetermination.at(
             5.0 * ARCSEC * g.standard_normal() + (12.0 * ARCSEC if line == "B" else 0.0),
             sigma=(4.0 + 2.0 * g.random()) * ARCSEC,
             elapsed_days=float(i),

@@ -75,8 +75,9 @@ def test_events_do_not_recur_and_the_instrument_does() -> None:
         design = design_of(case, base, action)
         columns: dict[str, list[float]] = {}
         for rival in rivals_of(case, single_effects(case, base.theta), design, action):
-            if rival.columns.shape[2]:
-                columns.setdefault(rival.unit, []).append(float(np.abs(rival.columns[:, n:]).max()))
+            largest = np.abs(rival.columns[:, n:]).max(axis=(1, 2))
+            for unit, size in zip(rival.units, largest.tolist(), strict=True):
+                columns.setdefault(unit, []).append(size)
         assert set(columns["gross_error"]) == {0.0}
         for unit in ("midpoint_drift", "warm_up", "quadratic_drag", "dry_friction"):
             assert min(columns[unit]) > 0.0, unit

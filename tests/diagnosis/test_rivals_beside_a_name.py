@@ -19,7 +19,7 @@ from surveyapp.diagnosis.engine import diagnose
     ids=lambda truth: truth.name,
 )
 def test_no_rival_within_the_margin_stands_without_a_reason(truth: Truth) -> None:
-    cases, _ = problems(truth, 6, 17)
+    cases, _ = problems(truth, 4, 17)
     explained = 0
     for case in cases:
         result = diagnose(case, draws=300, advise=False)
@@ -33,4 +33,4 @@ def test_no_rival_within_the_margin_stands_without_a_reason(truth: Truth) -> Non
             if item.delta_bic is not None and item.delta_bic < MARGIN and item.effect not in named
         ]
         assert all(item.reason for item in near), near
-    assert explained >= 3
+    assert explained >= 2

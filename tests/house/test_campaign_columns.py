@@ -8,7 +8,7 @@ import pytest
 from surveyapp.core.orientation.campaign_columns import BY_NAME, COLUMNS, LABELLED, CampaignColumn
 from surveyapp.core.orientation.circumstances import Circumstances, columns_of
 from surveyapp.core.prediction.kernels import COLUMNS_READ
-from surveyapp.diagnosis.subjects.campaign import Determination, campaign
+from surveyapp.diagnosis.subjects.campaign import CampaignDetermination, campaign
 from surveyapp.errors import SurveyError
 from surveyapp.io.user_effects.probe import COLUMNS as PROBED
 from surveyapp_models.effects import of_subject
@@ -40,7 +40,7 @@ def test_a_column_reaches_the_diagnosis_the_orientation_and_the_trial(
     told: list[float | str] = [f"n{v:g}" if column.named else float(v) for v in made]
     facts = [Circumstances.of({column.name: value}) for value in told]
     handed = columns_of(facts)[column.name]
-    case = campaign([Determination(1e-5 * i, 1e-5, fact) for i, fact in enumerate(facts)])
+    case = campaign([CampaignDetermination(1e-5 * i, 1e-5, fact) for i, fact in enumerate(facts)])
     if column.named:
         assert len(np.unique(handed)) == len(set(told))
         assert {case.grid_labels[column.name][v] for v in case.columns[column.name]} == set(told)

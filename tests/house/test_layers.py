@@ -34,16 +34,12 @@ def loaded_after(code: str) -> set[str]:
     return set(json.loads(done.stdout))
 
 
-def test_headless_modules_import_neither_textual_nor_reportlab() -> None:
+def test_headless_modules_import_neither_screens_nor_what_is_heavy() -> None:
+    """Textual and reportlab never; scipy, pyproj and the like on first use only."""
     names = [name for name in modules() if not name.endswith("__main__")]
     assert len(names) > 60
     loaded = loaded_after("import importlib\n" + f"for n in {names!r}: importlib.import_module(n)")
     assert not {"textual", "reportlab", "rich"} & loaded
-
-
-def test_scipy_and_pyproj_are_imported_on_first_use_only() -> None:
-    names = [name for name in modules() if not name.endswith("__main__")]
-    loaded = loaded_after("import importlib\n" + f"for n in {names!r}: importlib.import_module(n)")
     assert not {"scipy", "pyproj", "tomlkit", "filelock", "defusedxml", "platformdirs"} & loaded
 
 

@@ -69,7 +69,7 @@ CELL = st.one_of(
 
 @given(tables=st.lists(TABLE, max_size=6), top=st.dictionaries(WORDS, VALUE, max_size=2))
 @settings(
-    max_examples=250,
+    max_examples=120,
     deadline=None,
     derandomize=True,
     suppress_health_check=[HealthCheck.too_slow],
@@ -95,7 +95,7 @@ def test_any_project_data_is_read_or_refused(
     unit=st.sampled_from(list(AngleUnit)),
     quoted=st.booleans(),
 )
-@settings(max_examples=300, deadline=None, derandomize=True)
+@settings(max_examples=150, deadline=None, derandomize=True)
 def test_any_cells_are_read_or_refused(
     rows: list[list[str]], unit: AngleUnit, quoted: bool
 ) -> None:

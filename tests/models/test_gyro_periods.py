@@ -24,14 +24,6 @@ from surveyapp_models.gyro.coefficients import (
     transit_coefficient_ratio,
 )
 from surveyapp_models.gyro.estimates import Estimate
-from surveyapp_models.gyro.latitude_fit import (
-    MeasuredPeriod,
-    fit_latitude_law,
-    predicted_clamped_period,
-    predicted_torsion_ratio,
-    predicted_tracking_period,
-    predicted_transit_coefficient,
-)
 from surveyapp_models.gyro.moments import (
     directive_moment,
     latitude_verdict,
@@ -460,52 +452,3 @@ PERIODS: dict[Literal["tracking", "clamped"], Callable[[SuspendedGyro, float], f
     "tracking": tracking_period_s,
     "clamped": clamped_period_s,
 }
-
-
-def test_latitude_law_from_periods_at_several_places() -> None:
-    gyro = table_gyro()
-    exact = [
-        MeasuredPeriod(kind, rad(d), period(gyro, rad(d)), 0.1)
-        for d in (18.0, -35.0, 53.0)
-        for kind, period in PERIODS.items()
-    ]
-    law = fit_latitude_law(exact)
-    assert law.dof == 4
-    assert predicted_tracking_period(law, rad(63)).value == pytest.approx(
-        tracking_period_s(gyro, rad(63)), rel=1e-5
-    )
-    assert predicted_clamped_period(law, rad(-63)).value == pytest.approx(
-        clamped_period_s(gyro, rad(63)), rel=1e-5
-    )
-    assert predicted_torsion_ratio(law, rad(47)).value == pytest.approx(0.2, rel=1e-3)
-    with pytest.raises(ValueError, match="no clamped period"):
-        fit_latitude_law([p for p in exact if p.kind == "tracking"])
-
-
-@pytest.mark.statistical
-def test_latitude_law_covariance_and_chi_square() -> None:
-    gyro, rng, runs = table_gyro(), np.random.default_rng(7), 600
-    places = [(k, rad(d)) for d in (0.0, 26.0, 47.0, 60.0) for k in PERIODS]
-    predictions = (
-        predicted_tracking_period,
-        predicted_clamped_period,
-        predicted_torsion_ratio,
-        lambda law, at: predicted_transit_coefficient(law, at, scale_value=600.0),
-    )
-    scores, chi = [], 0.0
-    t1, t2 = tracking_period_s(gyro, rad(70)), clamped_period_s(gyro, rad(70))
-    truth = (t1, t2, (t1 / t2) ** 2 - 1, math.pi / 2 * 600 * t1**2 / t2**3)
-    for _ in range(runs):
-        law = fit_latitude_law(
-            [
-                MeasuredPeriod(k, lat, PERIODS[k](gyro, lat) + 0.2 * rng.normal(), 0.2)
-                for k, lat in places
-            ]
-        )
-        chi += law.chi_square
-        estimates = [predict(law, rad(70)) for predict in predictions]
-        scores.append([(e.value - v) / e.sigma for e, v in zip(estimates, truth, strict=True)])
-    assert chi / (runs * 6) == pytest.approx(1.0, abs=4 * math.sqrt(2 / (runs * 6)))
-    variance = np.var(scores, axis=0)
-    assert np.all(np.abs(variance - 1.0) < 4 * math.sqrt(2 / runs))
-    assert np.all(np.abs(np.mean(scores, axis=0)) < 4 / math.sqrt(runs))

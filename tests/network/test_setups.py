@@ -75,6 +75,48 @@ def test_rounds_make_the_reading_smaller_and_never_the_centring(
     assert h == pytest.approx(math.hypot(50 * 4 * ARCSEC / math.sqrt(rounds), heights), rel=1e-3)
 
 
+@pytest.mark.parametrize("rounds", [1, 4, 16])
+def test_rounds_of_an_angle_share_the_centring_too(tmp_path: Path, rounds: int) -> None:
+    lines = ["kind,at,from,to,value,unit,set"]
+    lines += [f"angle,A,B,C,90.0,deg,1/{k + 1}" for k in range(rounds)]
+    lines += ["distance,A,,C,50.0,m,"]
+    _, n, _ = sigmas(tmp_path / "p", "\n".join(lines) + "\n")
+    shared = np.array([1e-3 / 50, 1e-3 / 100, 2e-3 / 50, 2e-3 / 100])
+    reading = (4.0 * ARCSEC) ** 2  # sigma_angle is that of the angle itself
+    expected = 50.0 * math.sqrt(reading / rounds + float(shared @ shared))
+    assert n == pytest.approx(expected, rel=1e-3)
+
+
+def test_two_angles_of_a_set_up_share_what_centring_does_to_both(tmp_path: Path) -> None:
+    """Full covariance by hand: rows d angle / d (instrument e n, B e n, C e n, D e n)."""
+    network = api.network(_folder(tmp_path, "angle,A,B,C,90.0,deg,1/1\nangle,A,C,D,90.0,deg,1/1\n"))
+    (block,) = network.blocks
+    # B 100 m north, C 50 m east, D 80 m south of A: an azimuth changes by (cos de - sin dn) / s
+    b, c, d = (np.array([1 / 100, 0.0]), np.array([0.0, -1 / 50]), np.array([-1 / 80, 0.0]))
+    zero = np.zeros(2)
+    rows = np.array(
+        [
+            np.concatenate([-(c - b), -b, c, zero]),
+            np.concatenate([-(d - c), zero, -c, d]),
+        ]
+    )
+    sigma = np.array([1.0, 1.0, *[2.0] * 6]) * 1e-3
+    expected = (rows * sigma) @ (rows * sigma).T
+    assert np.array(block.covariance)[0, 1] == pytest.approx(expected[0, 1], rel=1e-3)
+    own = np.diag(expected) + (4.0 * ARCSEC) ** 2
+    assert np.diag(np.array(block.covariance)) == pytest.approx(own, rel=1e-3)
+
+
+def _folder(tmp_path: Path, angles: str) -> Path:
+    folder = tmp_path / "two"
+    project(folder, STATIONS + '[[station]]\nname = "D"\n')
+    (folder / "observations").mkdir()
+    text = "kind,at,from,to,value,unit,set\n" + angles
+    text += "distance,A,,C,50.0,m,\ndistance,A,,D,80.0,m,\n"
+    (folder / "observations" / "main.csv").write_text(text, encoding="utf-8")
+    return folder
+
+
 def test_sets_without_a_set_up_stay_independent(tmp_path: Path) -> None:
     e, _, _ = sigmas(tmp_path / "p", book(4, setup=""))
     assert e == pytest.approx(math.sqrt((1e-6 + 5e-6) / 4), rel=1e-3)

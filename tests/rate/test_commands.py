@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from surveyapp.core.simulate.rate.table_programmes import DEG_H, fog_north_rows, fog_station_log
+from surveyapp.core.simulate.rate.table_programmes import DEG_H, fog_station_log
 from surveyapp_models.rate.fog_station import FogOnTelescope
 from tests.cli.command import run as surveyapp
+from tests.rate.fog_rows import fog_north_rows
 from tests.rate.logs import PUBLISHED_CONSTANT, published_run
 
 

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from surveyapp.core.sensors.rate.fog_north import FogNorth, Position, solve_north
-from surveyapp.core.simulate.rate.table_programmes import DEG_H, fog_north_rows
+from surveyapp.core.simulate.rate.table_programmes import DEG_H
 from surveyapp_models.angles import ARCSEC, wrap_pi
 from surveyapp_models.constants import EARTH_RATE
 from surveyapp_models.rate.fog_station import FogOnTelescope
+from tests.rate.fog_rows import fog_north_rows
 from tests.rate.logs import PUBLISHED_CONSTANT
 
 

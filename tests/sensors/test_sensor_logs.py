@@ -144,10 +144,10 @@ def test_counts_other_units_and_unknown_ones(tmp_path: Path) -> None:
     assert told == ["log.csv, gyr_x_rad_s: gyr_x_rad_s is counts without a scale"]
     told = problems_of(request(log(9.8), units={"acc_x_m_s2": "uT", "nobody": "g"}), need)
     assert "log.csv, acc_x_m_s2: this unit does not fit the column" in told
-    assert "log.csv, --unit: the file has no such column" in told
+    assert "log.csv, `units`: the file has no such column" in told
     told = problems_of(request(log(9.8), columns={"acc_q": "x", "mag_x_uT": "mx"}), need)
-    assert "log.csv, --map: there is no such column" in told
-    assert "log.csv, --map mag_x_uT: the file has no such column" in told
+    assert "log.csv, `columns`: there is no such column" in told
+    assert "log.csv, `columns` mag_x_uT: the file has no such column" in told
 
 
 def test_one_axis_in_another_unit_is_found(tmp_path: Path) -> None:

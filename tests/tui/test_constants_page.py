@@ -151,9 +151,9 @@ async def test_the_page_draws_and_says_how_it_was_tested(
 
 def test_what_helps_most_is_the_largest_part_and_the_rest_is_what_remains() -> None:
     budget = (
-        BudgetLine("rounds", 3.0, 0.2),
-        BudgetLine("constant: sights", 6.0, 0.7),
-        BudgetLine("centring", 2.0, 0.1),
+        BudgetLine("rounds", 3.0, 0.2, name="rounds"),
+        BudgetLine("constant: sights", 6.0, 0.7, name="sights", at_calibration=True),
+        BudgetLine("centring", 2.0, 0.1, name="centring"),
     )
     found = most_helpful(budget)
     assert found is not None

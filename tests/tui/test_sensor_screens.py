@@ -10,6 +10,7 @@ from textual.pilot import Pilot
 from textual.widgets import DataTable, Input, OptionList, Static, TabbedContent
 
 from surveyapp import api
+from surveyapp.domain.advance import PartDone
 from surveyapp.observation.sensors import tasks
 from surveyapp.observation.sensors.desk import card_path
 from surveyapp.observation.sensors.options import told_options
@@ -131,7 +132,7 @@ async def test_a_cancelled_task_shows_nothing(
     async with app.run_test(size=SMALL) as pilot:
         screen = await open_log(pilot)
 
-        def slow(*_: object, progress: tasks.Progress | None = None) -> tasks.Examined:
+        def slow(*_: object, progress: PartDone | None = None) -> tasks.Examined:
             assert progress is not None
             app.call_from_thread(screen.action_cancel)
             progress(0.5)

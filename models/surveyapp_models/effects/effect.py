@@ -191,6 +191,11 @@ class Effect:
     event : bool
         Whether it happens once (a step, a slip): it does not recur in a second record, has no
         coefficient that records share, and is not pooled.
+    course : tuple of tuple of float
+        Of a course of north that was saved without a name: rows of half swings, the shift
+        there (1 at its largest) and its errors (``recurrent.Course``); empty = a cause of its own.
+    run : str
+        The run that such a course was saved from.
     """
 
     id: str
@@ -214,6 +219,8 @@ class Effect:
     midpoint: Basis | None = None
     reference: ReferenceState | None = None
     event: bool = False
+    course: tuple[tuple[float, ...], ...] = ()
+    run: str = ""
 
     def __post_init__(self) -> None:
         if self.law is not None and len(self.coefficients) != 1:

@@ -141,6 +141,8 @@ def transit_coefficient_ratio(ratio: float, *, latitude: float, to_latitude: flo
 
     sqrt(cos phi2/cos phi1) ((1 + lambda2)/(1 + lambda1))^(3/2): C falls with latitude where
     lambda < 1/2, stands still at 1/2 and rises above it.
+
+    ``latitude``, ``to_latitude`` [rad].
     """
     fall = math.cos(to_latitude) / math.cos(latitude)
     stiffer = (1.0 + ratio / fall) / (1.0 + ratio)

@@ -301,6 +301,8 @@ def integrate_precession(
 
     Parameters and result as of ``integrate``; the elevation is eliminated, so there is no
     nutation. It stands as an independent route to the same motion.
+
+    ``latitude`` [rad].
     """
     tape = TapeTop() if tape is None else tape
     force = _forcing(gyro, latitude, tape, disturbance or Disturbance())

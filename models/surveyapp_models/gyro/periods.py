@@ -60,6 +60,8 @@ def mode_rates(gyro: SuspendedGyro, latitude: float, *, clamped: bool) -> ModeRa
     The roots of J J_z s^4 + [J K + J_z (P + M) + H^2] s^2 + (P + M) K = 0, with K = M + D where
     the clamp is fixed and K = M where the tape follows. The slow one differs from 2 pi/T1 or
     2 pi/T2 by parts in 10^7: that is what eliminating the elevation costs.
+
+    ``latitude`` [rad].
     """
     moment = directive_moment(gyro, latitude)
     stiffness = moment + (gyro.torsion if clamped else 0.0)
@@ -118,7 +120,10 @@ def period_with_damping_s(period_s: float, *, ratio_per_half_swing: float) -> fl
 
 
 def tracking_period_spin_sensitivity(gyro: SuspendedGyro, latitude: float) -> float:
-    """Return d ln T1/d ln H, about +0.48: one percent of spin is half a percent of period."""
+    """Return d ln T1/d ln H, about +0.48: one percent of spin is half a percent of period.
+
+    ``latitude`` [rad].
+    """
     precession = effective_inertia(gyro, latitude) - gyro.vertical_inertia
     moment = directive_moment(gyro, latitude)
     own = 2.0 - moment / (gyro.pendulosity + moment)
@@ -126,7 +131,10 @@ def tracking_period_spin_sensitivity(gyro: SuspendedGyro, latitude: float) -> fl
 
 
 def clamped_period_spin_sensitivity(gyro: SuspendedGyro, latitude: float) -> float:
-    """Return d ln T2/d ln H; larger than that of T1, since the tape does not lose stiffness."""
+    """Return d ln T2/d ln H; larger than that of T1, since the tape does not lose stiffness.
+
+    ``latitude`` [rad].
+    """
     moment = directive_moment(gyro, latitude)
     share = moment / (moment + gyro.torsion)
     return tracking_period_spin_sensitivity(gyro, latitude) + 0.5 * (1.0 - share)

@@ -48,13 +48,19 @@ def axis_rotation(axis: int, angle: float) -> Floats:
 
 
 def attitude_matrix(*, heading: float, pitch: float = 0.0, roll: float = 0.0) -> Floats:
-    """Body to east, north, up, shape (3, 3); angles in rad."""
+    """Body to east, north, up, shape (3, 3); angles in rad.
+
+    ``heading``, ``pitch``, ``roll`` [rad].
+    """
     level = axis_rotation(2, -heading) @ axis_rotation(0, pitch)
     return np.asarray(level @ axis_rotation(1, roll))
 
 
 def attitude_quaternion(*, heading: float, pitch: float = 0.0, roll: float = 0.0) -> Floats:
-    """The same as a quaternion, shape (4,)."""
+    """The same as a quaternion, shape (4,).
+
+    ``heading``, ``pitch``, ``roll`` [rad].
+    """
     return quaternions.from_matrix(attitude_matrix(heading=heading, pitch=pitch, roll=roll))
 
 

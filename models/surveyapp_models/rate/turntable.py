@@ -98,7 +98,10 @@ def profile(rates: Floats, *, interval_s: float, start: float = 0.0) -> Floats:
 def trapezoid(
     rate: float, *, turning_s: float, ramp_s: float, pause_s: float, interval_s: float
 ) -> Floats:
-    """Rates of a pause, run-up, steady turning, run-down and pause, shape (n,)."""
+    """Rates of a pause, run-up, steady turning, run-down and pause, shape (n,).
+
+    ``rate`` and result in one unit of rate.
+    """
     ramp = np.linspace(0.0, rate, max(round(ramp_s / interval_s), 1), endpoint=False)
     pause = np.zeros(round(pause_s / interval_s))
     steady = np.full(round(turning_s / interval_s), rate)

@@ -68,5 +68,8 @@ def reading_resolution(readings: Sequence[Reading]) -> float:
 
 
 def rounding_sigma(resolution: float) -> float:
-    """Standard deviation of rounding to a resolution, resolution / sqrt(12)."""
+    """Standard deviation of rounding to a resolution, resolution / sqrt(12).
+
+    ``resolution`` and result in one unit: [rad] or [div].
+    """
     return resolution / math.sqrt(12.0)

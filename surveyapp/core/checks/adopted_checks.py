@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from surveyapp.core.orientation.adopted import unknown_ranges, without_reference
+from surveyapp.core.orientation.adopted_course import course_of, unexplained
 from surveyapp.core.orientation.campaign_columns import LABELLED
 from surveyapp.core.orientation.session_digest import sessions_digest
 from surveyapp.domain.instrument import AdoptedEffect, Instrument
@@ -33,7 +34,8 @@ def check_adopted(project: Project) -> list[ResultWarning]:
     Returns
     -------
     list of ResultWarning
-        ``adopted_data_changed``, ``adopted_without_reference``, ``effect_range_unknown``,
+        ``adopted_data_changed``, ``course_not_explained``,
+        ``adopted_without_reference``, ``effect_range_unknown``,
         ``known_constant_at_reference``.
 
     Raises
@@ -55,6 +57,7 @@ def check_adopted(project: Project) -> list[ResultWarning]:
     for instrument in project.instruments:
         warnings += _told(project, instrument)
     for session in project.sessions:
+        warnings += unexplained(session)
         for adopted in session.effects:
             warnings += _changed(project, adopted, session)
     return warnings
@@ -73,6 +76,11 @@ def _problems(effects: Sequence[AdoptedEffect], subject: SubjectId, owner: str) 
     for adopted in effects:
         where = said("project.toml, {owner}, adopted effect {id}", owner=owner, id=adopted.id)
         effect = catalogue.get(adopted.id)
+        if adopted.course and (effect is not None or subject != "reversal_run"):
+            what = said("a saved course belongs to a run, and bears no name of the catalogue")
+            found.append(Problem(what, where, adopted.id, "an id of its own, in a session"))
+            continue
+        effect = effect or course_of(adopted)
         if effect is None:
             hint = nearest_names(adopted.id, catalogue)
             found.append(

@@ -6,6 +6,7 @@ from surveyapp.core.checks.coordinate_checks import coordinate_checks
 from surveyapp.core.checks.determination_checks import determination_checks
 from surveyapp.core.checks.grid_checks import grid_checks
 from surveyapp.core.checks.session_blunders import session_blunder_checks
+from surveyapp.core.checks.slip_checks import slip_checks
 from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.domain.results import Check
 
@@ -17,4 +18,5 @@ def always_on_checks(orientation: Orientation) -> list[Check]:
         *session_blunder_checks(orientation),
         *coordinate_checks(orientation),
         *determination_checks(orientation),
+        *slip_checks(orientation),
     ]

@@ -7,6 +7,7 @@ tells that they cannot be meant: then nothing that is computed with it is right.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -27,6 +28,10 @@ MOST_ARC_TO_CHORD_ARCMIN: Final = 1.0
 """10 km long and 100 km off the axis: 2.5" (physics.md 3.4)."""
 MOST_DISTORTION_ARCMIN: Final = 1.0
 """Of an angle, by a grid that is not conformal: beyond, a convergence says nothing."""
+MOST_BEYOND_DEG: Final = 3.0
+"""Outside of the area of use of the crs: 330 km. A grid of a country is carried on across its
+border, not across the next country; a million left out of a northing makes nine degrees, feet in
+place of metres more."""
 
 _CLAUSE: Final = said("no survey is computed so: unit, order of the coordinates, or crs")
 _QUESTION: Final = said(
@@ -41,6 +46,7 @@ class _Place:
 
     station: str
     local: Differential
+    beyond_deg: float
 
     @property
     def scale_error(self) -> float:
@@ -92,7 +98,11 @@ def refuse_unfit_grid(project: Project) -> None:
 
 def _place_checks(grid: Grid, positions: dict[str, Position]) -> list[Check]:
     places = [
-        _Place(name, grid.differential(latitude=at.latitude, longitude=at.longitude))
+        _Place(
+            name,
+            grid.differential(latitude=at.latitude, longitude=at.longitude),
+            grid.beyond_deg(latitude=at.latitude, longitude=at.longitude),
+        )
         for name, at in positions.items()
         if at.latitude is not None and at.longitude is not None
     ]
@@ -127,7 +137,19 @@ def _place_checks(grid: Grid, positions: dict[str, Position]) -> list[Check]:
         limit = MOST_CONVERGENCE_DEG
         subject = Subject.of("station", turned.station)
         checks.append(_check("convergence", subject, abs(degrees), limit, text=text, unit="deg"))
-    return checks
+    return [*checks, *_area_check(grid, places)]
+
+
+def _area_check(grid: Grid, places: Sequence[_Place]) -> list[Check]:
+    """The station furthest from the area of use of the crs, where one lies outside of it."""
+    far = max(places, key=lambda place: place.beyond_deg)
+    if far.beyond_deg == 0.0:
+        return []
+    text = said(
+        "{beyond:.1f} degrees outside of the area of {grid}", beyond=far.beyond_deg, grid=grid.name
+    )
+    subject = Subject.of("station", far.station)
+    return [_check("area", subject, far.beyond_deg, MOST_BEYOND_DEG, text=text, unit="deg")]
 
 
 def _chord_check(orientation: Orientation) -> list[Check]:

@@ -42,6 +42,8 @@ def deflection_term(
     """Deflection term eta tan(phi) + (xi sin A - eta cos A) cot z.
 
     Source: physics.md 3.5; Torge & Mueller (2012), Geodesy, 4th ed., eq. 6.18.
+
+    ``latitude``, ``azimuth``, ``zenith`` [rad].
     """
     cot_z = math.cos(zenith) / math.sin(zenith)
     by_xi = math.sin(azimuth) * cot_z
@@ -76,10 +78,6 @@ class Azimuth:
         """GEODETIC to GRID: subtract convergence and arc-to-chord [rad]."""
         return self._moved("GEODETIC", "GRID", -convergence - arc_to_chord)
 
-    def with_declination(self, declination: float) -> Azimuth:
-        """MAGNETIC to GEODETIC: add the declination, positive east [rad]."""
-        return self._moved("MAGNETIC", "GEODETIC", declination)
-
     def minus(self, other: Azimuth) -> float:
         """Difference [rad] in (-pi, pi] of two azimuths of one reference."""
         if other.reference != self.reference:
@@ -103,7 +101,10 @@ def _mixed(found: Reference, expected: Reference) -> Problem:
 
 
 def latitude_problem(latitude: float, where: str) -> Problem | None:
-    """Refuse a latitude at which a suspended gyro does not work; None where it does."""
+    """Refuse a latitude at which a suspended gyro does not work; None where it does.
+
+    ``latitude`` [rad].
+    """
     if abs(math.degrees(latitude)) <= MAX_LATITUDE_DEG:
         return None
     return Problem(

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 AREA_MARGIN_DEG: Final = 1.0
 """Beside its area by less, a grid may still be in use: the neighbour's zone is often carried on."""
+ZONE_DEG: Final = 6.0
+"""Width of a zone of UTM."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,6 +138,23 @@ class Grid:
         from_west = (math.degrees(longitude) - west + AREA_MARGIN_DEG) % 360.0
         inside = south - AREA_MARGIN_DEG <= math.degrees(latitude) <= north + AREA_MARGIN_DEG
         return not (inside and from_west <= width + 2.0 * AREA_MARGIN_DEG)
+
+    def beyond_deg(self, *, latitude: float, longitude: float) -> float:
+        """How far a place [rad] lies outside of the area of the grid [degrees of arc], 0 inside.
+
+        The zone beside that of a transverse Mercator is inside: whole countries are mapped so.
+        """
+        if self.area_deg is None:
+            return 0.0
+        west, south, east, north = self.area_deg
+        latitude_deg = math.degrees(latitude)
+        along = max(south - latitude_deg, latitude_deg - north, 0.0)
+        width = (east - west) % 360.0 or 360.0
+        from_west = (math.degrees(longitude) - west) % 360.0
+        across = 0.0 if from_west <= width else min(from_west - width, 360.0 - from_west)
+        if self.transverse_mercator:
+            across = max(across - ZONE_DEG, 0.0)
+        return math.hypot(along, across * math.cos(latitude))
 
     def _outside(self, where: str) -> SurveyError:
         return SurveyError(

@@ -25,9 +25,23 @@ LEAST_SHARE = 1e-4
 """Of a side's sigma: a constant known so well is known exactly, and the equations stay regular."""
 
 
-def _name(line: LineResult) -> str:
-    """Lines of one instrument with one choice of constant share it."""
-    return f"{line.instrument} {line.constant_choice}" if line.constant_choice else line.instrument
+Constant = tuple[str, str | None]
+"""Lines of one instrument with one choice of constant share it."""
+
+
+def _constant(line: LineResult) -> Constant:
+    return line.instrument, line.constant_choice or None
+
+
+def _names(lines: Sequence[LineResult]) -> dict[Constant, str]:
+    """A name of its own for every constant: an instrument may be called ``G1 pooled``."""
+    names: dict[Constant, str] = {}
+    for key in map(_constant, lines):
+        name = " ".join(filter(None, key))
+        while key not in names and name in names.values():
+            name += "'"
+        names.setdefault(key, name)
+    return names
 
 
 def _own_sigma(line: LineResult) -> float:
@@ -39,19 +53,19 @@ def _own_sigma(line: LineResult) -> float:
     return math.sqrt(max(total.sigma**2 - line.constant_sigma**2, own**2))
 
 
-def _shared(lines: Sequence[LineResult]) -> dict[str, tuple[float, float]]:
-    """The constant that all lines of one name share: value of the surest, and its sigma.
+def _shared(lines: Sequence[LineResult]) -> dict[Constant, tuple[float, float]]:
+    """The constant that lines share: value of the surest, and its sigma.
 
     Constants that are predicted for each line differ; the difference is part of the reduction of
     the line, and what its sigma has beyond the common one belongs to the line.
     """
-    found: dict[str, tuple[float, float]] = {}
+    found: dict[Constant, tuple[float, float]] = {}
     for line in lines:
         if line.constant is None or line.constant_sigma is None:
             continue
-        known = found.get(_name(line))
+        known = found.get(_constant(line))
         if known is None or line.constant_sigma < known[1]:
-            found[_name(line)] = (line.constant, line.constant_sigma)
+            found[_constant(line)] = (line.constant, line.constant_sigma)
     return found
 
 
@@ -73,9 +87,9 @@ def oriented_lines(
     sides: list[OrientedLine] = []
     constants: dict[str, GyroConstant] = {}
     warnings: list[ResultWarning] = []
-    shared = _shared(lines)
+    shared, names = _shared(lines), _names(lines)
     for line in lines:
-        name, sight = _name(line), f"{line.station}-{line.target}"
+        name, sight = names[_constant(line)], f"{line.station}-{line.target}"
         sigma = _own_sigma(line)
         if not 0.0 < sigma < math.inf:
             text = said(
@@ -90,7 +104,7 @@ def oriented_lines(
             )
             warnings.append(ResultWarning("convergence_unknown", text, line.subject))
         reduction = (line.convergence or 0.0) + line.deflection + (line.arc_to_chord or 0.0)
-        value, common = shared.get(name, (line.constant or 0.0, line.constant_sigma))
+        value, common = shared.get(_constant(line), (line.constant or 0.0, line.constant_sigma))
         if line.constant is not None and line.constant_sigma is not None and common is not None:
             reduction -= line.constant - value
             sigma = math.sqrt(sigma**2 + max(line.constant_sigma**2 - common**2, 0.0))
@@ -128,7 +142,8 @@ def with_shared_errors(
     tuple of (sides, constants)
         The sigma of a constant becomes that of what all its sides have alike.
     """
-    by_key = {(x.result.station, x.result.target, _name(x.result)): x for x in lines}
+    names_of = _names([item.result for item in lines])
+    by_key = {(x.result.station, x.result.target, names_of[_constant(x.result)]): x for x in lines}
     used = [
         place
         for place, item in enumerate(found[0])

@@ -1,11 +1,12 @@
 """What the rounds of one set-up share: centring and height of the instrument and of each target.
 
 A set ``S/R`` is round R of set-up S. Between its rounds nobody centred anew: the same millimetre is
-in all of them, so that ten rounds do not make it smaller. Directions, distances and zenith angles
-of a set-up with the traverse's own sigmas get one covariance matrix; a row with a sigma of its own
-is taken as it stands.
+in all of them, so that ten rounds do not make it smaller. Directions, angles, distances and zenith
+angles of a set-up with the traverse's own sigmas get one covariance matrix; a row with a sigma of
+its own is taken as it stands.
 
-Source: direction t of length s: d alpha = (cos alpha de - sin alpha dn) / s; distance: ds =
+Source: direction t of length s: d alpha = (cos alpha de - sin alpha dn) / s, an angle is the
+difference of two of them; distance: ds =
 sin alpha de + cos alpha dn; zenith angle over the slope S: dz = -sin z dh / S (Ghilani, ch. 7).
 """
 
@@ -28,7 +29,7 @@ from surveyapp_models.arrays import Floats
 K = ObservationKind
 Lengths = Mapping[tuple[str, str], float]
 """Horizontal lengths of sides by their two stations [m]."""
-_KINDS = frozenset({K.DIRECTION, K.DISTANCE, K.SLOPE_DISTANCE, K.ZENITH})
+_KINDS = frozenset({K.DIRECTION, K.ANGLE, K.DISTANCE, K.SLOPE_DISTANCE, K.ZENITH})
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,12 +109,34 @@ def _targets(found: Sequence[Observation], lengths: Lengths) -> dict[str, _Targe
             )
             turns[obs.set] = 0.0 if fellow is None else fellow.value - azimuths[fellow.to]
         azimuths.setdefault(obs.to, wrap_pi(obs.value - turns[obs.set]))
+    _by_angles(found, azimuths)
     zeniths = {o.to: o.value for o in reversed(found) if o.kind is K.ZENITH}
     at = found[0].at
     return {
         name: _Target(azimuths.get(name), lengths.get((at, name)), zeniths.get(name, math.pi / 2))
-        for name in dict.fromkeys(obs.to for obs in found)
+        for name in dict.fromkeys(name for obs in found for name in _sighted(obs))
     }
+
+
+def _sighted(obs: Observation) -> tuple[str, ...]:
+    """Targets of an observation, that of the back sight last."""
+    return (obs.to, obs.back) if obs.kind is K.ANGLE else (obs.to,)
+
+
+def _by_angles(found: Sequence[Observation], azimuths: dict[str, float]) -> None:
+    """Directions of the targets that angles tie to known ones; where none is, the first begins.
+
+    Of angles that hang together with no other the common frame is unknown: they stay out.
+    """
+    angles = [obs for obs in found if obs.kind is K.ANGLE]
+    if angles and not azimuths:
+        azimuths[angles[0].back] = 0.0
+    for _ in angles:
+        for obs in angles:
+            if obs.back in azimuths:
+                azimuths.setdefault(obs.to, wrap_pi(azimuths[obs.back] + obs.value))
+            elif obs.to in azimuths:
+                azimuths[obs.back] = wrap_pi(azimuths[obs.to] - obs.value)
 
 
 def _effect(obs: Observation, target: _Target) -> tuple[float, float, float]:
@@ -125,7 +148,7 @@ def _effect(obs: Observation, target: _Target) -> tuple[float, float, float]:
     if target.azimuth is None:
         return 0.0, 0.0, 0.0
     sin, cos = math.sin(target.azimuth), math.cos(target.azimuth)
-    if obs.kind is K.DIRECTION:
+    if obs.kind in (K.DIRECTION, K.ANGLE):
         if target.length is None:
             return 0.0, 0.0, 0.0
         return cos / target.length, -sin / target.length, 0.0
@@ -138,12 +161,17 @@ def _covariance(
 ) -> Floats:
     """Covariance of what the rows of one set-up share."""
     instrument, target, instrument_h, target_h = shared
-    effects = np.array([_effect(obs, places[obs.to]) for obs in found])
-    common = effects * np.array([instrument, instrument, instrument_h])
-    covariance = common @ common.T
-    own = effects * np.array([target, target, target_h])
-    same = np.array([[a.to == b.to for b in found] for a in found], dtype=np.float64)
-    return np.asarray(covariance + same * (own @ own.T), dtype=np.float64)
+    names = list(places)
+    effects = np.zeros((len(found), len(names), 3))
+    for i, obs in enumerate(found):
+        seen = _sighted(obs)
+        if obs.kind is K.ANGLE and any(places[name].azimuth is None for name in seen):
+            continue
+        for name, sign in zip(seen, (1.0, -1.0), strict=False):
+            effects[i, names.index(name)] = sign * np.array(_effect(obs, places[name]))
+    common = effects.sum(axis=1) * np.array([instrument, instrument, instrument_h])
+    own = (effects * np.array([target, target, target_h])).reshape(len(found), -1)
+    return np.asarray(common @ common.T + own @ own.T, dtype=np.float64)
 
 
 def as_blocks(

@@ -27,7 +27,6 @@ from surveyapp.languages import said
 
 K = ObservationKind
 MM: Final = 1e-3
-_HORIZONTAL = frozenset({K.ANGLE, K.DIRECTION, K.AZIMUTH, K.GYRO})
 _LENGTHS = frozenset({K.DISTANCE, K.SLOPE_DISTANCE})
 
 

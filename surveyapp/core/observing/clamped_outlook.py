@@ -33,6 +33,8 @@ def north_now(
     """Gyro north exactly as the reduction gives it; else why there is none; its sigma's source.
 
     The reason is empty where there are simply too few readings yet.
+
+    ``latitude`` [rad].
     """
     try:
         reduction = reduce_nontracking(session, card, Judge(rng), latitude=latitude, estimator=None)

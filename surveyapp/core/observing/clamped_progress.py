@@ -167,7 +167,10 @@ def _seen(standing: Standing, fit: DampedFit | None) -> Progress:
 def standing_of(
     session: OrientationSession, card: InstrumentCard, latitude: float | None
 ) -> Standing:
-    """Collect what stands in the book, however little; passages without a time tell nothing."""
+    """Collect what stands in the book, however little; passages without a time tell nothing.
+
+    ``latitude`` [rad].
+    """
     numbered = number_rows(session)
     rows = [row for _, row in numbered.readings]
     first = numbered.readings[0][0] if rows else 0

@@ -217,8 +217,10 @@ def swing_curve(
 
     Parameters
     ----------
-    north, amplitude, log_decrement : float
-        Of the fit.
+    north, amplitude : float
+        Of the fit [rad].
+    log_decrement : float
+        Of the fit, a half swing [-].
     first_side : float
         +1 if point 0 stands on the right, else -1.
     index : ndarray, shape (m,)

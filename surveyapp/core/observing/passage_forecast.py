@@ -242,7 +242,10 @@ def _converged(swing: ClampedSwing, start: Floats, prior: tuple[Floats, Floats])
 
 
 def forecast_passage(fit: PassageFit, after: int, division: float) -> PassageForecast:
-    """Forecast the passage behind turning point ``after``."""
+    """Forecast the passage behind turning point ``after``.
+
+    ``division`` is what one division of the scale is worth [rad].
+    """
     moment, sigma = fit.passage(after, division)
     way: Literal["L", "R", ""] = ""
     if fit.swing.readings.size:
@@ -271,6 +274,8 @@ def judge_last(
         ``MISSED`` where it comes half a swing or more later than counted, else ``MISTIMED`` (a
         passage pressed twice comes far too early); p is the probability of so large a deviation of
         a clean passage.
+
+    ``division`` is what one division of the scale is worth [rad].
     """
     if fit is None:
         return None

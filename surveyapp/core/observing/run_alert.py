@@ -148,7 +148,7 @@ def search(
         Columns of the model.
     candidates : (ndarray of shape (n, m), list)
     sigma : float or None
-        Stated standard deviation of a residual; it counts as much as eight readings.
+        Stated standard deviation in the unit of the residuals; counts as much as eight readings.
 
     Returns
     -------

@@ -186,9 +186,18 @@ def _supply(place: Place) -> float | None:
     return sum(values) / len(values) if values else None
 
 
+SETTLED_H = 168.0
+"""A week: what an instrument is taken for where nothing tells when it came to its first station."""
+
+
 def hours_since_transport(places: Sequence[Place]) -> list[Told]:
-    """As stated, else hours since the latest determination at another station."""
+    """As stated, else hours since the latest determination at another station.
+
+    At the first station of a campaign nobody knows when it arrived: it counts as settled, so that
+    those that follow can be judged.
+    """
     found: list[Told] = []
+    first: list[int] = []
     for place in places:
         stated, day = place.session.hours_since_transport, day_of(place)
         if stated is not None or day is None:
@@ -200,7 +209,12 @@ def hours_since_transport(places: Sequence[Place]) -> list[Told]:
             for other, station in days
             if other is not None and other < day and station != place.session.station
         ]
+        if not elsewhere:
+            first.append(len(found))
         found.append(24.0 * (day - max(elsewhere)) if elsewhere else None)
+    if any(value is not None for value in found):
+        for row in first:
+            found[row] = SETTLED_H
     return found
 
 
@@ -309,7 +323,7 @@ COLUMNS: tuple[CampaignColumn, ...] = (
         "transport_h",
         "h since transport",
         "`hours_since_transport` of the session, else hours since the latest determination at "
-        "another station",
+        "another station; at the first station of all it counts as settled (a week)",
         hours_since_transport,
         _within(0.5, 72.0),
     ),

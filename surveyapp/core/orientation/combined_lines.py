@@ -16,7 +16,6 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from surveyapp.core.orientation.deflection_field import DeflectionField
 from surveyapp.core.orientation.lines import OrientedLine, angle_result
@@ -25,8 +24,8 @@ from surveyapp.core.statistics.levels import CONSISTENT
 from surveyapp.core.statistics.repeated import weights_of
 from surveyapp.core.uncertain import Source, Uncertain, aligned, combine
 from surveyapp.domain.combined_result import CombinedPart, CombinedResult
+from surveyapp_models.arrays import Floats
 
-Floats = NDArray[np.float64]
 SINGULAR = 1e-12
 """Share of the largest own variance below which a difference of lines has no error of its own."""
 LEAST_DOF = 2.0

@@ -104,6 +104,11 @@ class InstrumentConstant:
     average: Uncertain | None = None
 
     @property
+    def set_ups(self) -> int:
+        """Independent determinations: several lines sighted from one set-up are one."""
+        return len({item.session for item in self.calibrations})
+
+    @property
     def choice(self) -> ConstantChoice:
         """What its sessions use if they say nothing else."""
         if self.instrument.constant_choice is not None:
@@ -259,14 +264,13 @@ def choose(
         return _interpolated(constant, moment, where, block=block)
     if choice.kind == "nearest":
         return _nearest(constant, distance_to, where)
-    if constant.instrument.constant_choice is None and len(constant.calibrations) < LEAST_PREDICTED:
+    if constant.instrument.constant_choice is None and constant.set_ups < LEAST_PREDICTED:
         return Chosen(with_archive(constant), "pooled")
     return Chosen(constant.pooled, "pooled")
 
 
 def _not_predicted(constant: InstrumentConstant, where: str) -> Chosen:
-    count = len(constant.calibrations)
-    if not count:
+    if not (count := constant.set_ups):
         return Chosen(None, None)
     text = counted(
         "{where}: the constant of {id} cannot be predicted from {count} determination: all are "
@@ -277,8 +281,7 @@ def _not_predicted(constant: InstrumentConstant, where: str) -> Chosen:
         where=where,
         id=constant.instrument.id,
     )
-    warning = ResultWarning("prediction_impossible", text)
-    return Chosen(with_archive(constant), "pooled", (warning,))
+    return Chosen(with_archive(constant), "pooled", (ResultWarning("prediction_impossible", text),))
 
 
 ARCHIVE_SOURCE = said("constant: scatter in the archive")
@@ -293,9 +296,8 @@ def with_archive(constant: InstrumentConstant) -> Uncertain | None:
     priors = constant.instrument.priors
     if constant.pooled is None or priors is None or not priors.scatter:
         return constant.pooled
-    n = len(constant.calibrations)
-    # of the mean of n and of the line itself
-    part = priors.scatter * math.sqrt(1.0 + 1.0 / n)
+    # of the mean of all set-ups and of the line itself
+    part = priors.scatter * math.sqrt(1.0 + 1.0 / constant.set_ups)
     dof = float(max(priors.sessions - 1, 1))
     return constant.pooled.with_part(Source(ARCHIVE_SOURCE, constant.instrument.id, dof), part)
 

@@ -18,7 +18,7 @@ from surveyapp.core.geodesy import (
     deflection_term,
 )
 from surveyapp.core.orientation.instrument_constant import Chosen
-from surveyapp.core.orientation.terms import ALWAYS, origin_of
+from surveyapp.core.orientation.terms import ALWAYS, TERMS
 from surveyapp.core.statistics.repeated import Consistency, consistency, weights_of
 from surveyapp.core.uncertain import Source, Uncertain, aligned, combine
 from surveyapp.domain.mine_grid import StatedConvergence
@@ -294,29 +294,28 @@ def budget(item: Uncertain, calibration_sessions: frozenset[str]) -> tuple[Budge
 
     Terms that nobody states stand at its end with zero: what is not counted is seen.
     """
-    by_source: dict[str, float] = {}
+    by_source: dict[tuple[str, bool], float] = {}
     for source, part in item.parts.items():
-        name = source.name
-        if source.entity in calibration_sessions:
-            name = f"constant: {name}"
-        by_source[name] = by_source.get(name, 0.0) + part * part
+        key = source.name, source.entity in calibration_sessions
+        by_source[key] = by_source.get(key, 0.0) + part * part
     total = math.fsum(by_source.values())
     if not 0.0 < total < math.inf:
         return ()
     ordered = sorted(by_source.items(), key=lambda entry: -entry[1])
     rows = [
-        BudgetLine(_words(name), math.sqrt(value), value / total, origin_of(name))
-        for name, value in ordered
+        _budget_line(name, value, value / total, at_calibration=there)
+        for (name, there), value in ordered
         if value > NOTHING * total
     ]
-    named = {row.source.removeprefix("constant: ") for row in rows}
-    rows += [
-        BudgetLine(term(name), 0.0, 0.0, origin_of(name)) for name in ALWAYS if name not in named
-    ]
+    named = {row.name for row in rows}
+    rows += [_budget_line(name, 0.0, 0.0) for name in ALWAYS if name not in named]
     return tuple(rows)
 
 
-def _words(name: str) -> str:
-    """A source as a text: of a constant's terms the term is a text of its own."""
-    own = name.removeprefix("constant: ")
-    return term(name) if own == name else said("constant: {name}", name=term(own))
+def _budget_line(
+    name: str, variance: float, share: float, *, at_calibration: bool = False
+) -> BudgetLine:
+    """A line whose source is a text: of a constant's terms the term is a text of its own."""
+    told = said("constant: {name}", name=term(name)) if at_calibration else term(name)
+    sigma, origin = math.sqrt(variance), TERMS.get(name, "")
+    return BudgetLine(told, sigma, share, origin, name=name, at_calibration=at_calibration)

@@ -21,6 +21,7 @@ from surveyapp.core.orientation.instrument_constant import (
     InstrumentConstant,
 )
 from surveyapp.core.orientation.prediction_notes import Wanted, one_block, told_of
+from surveyapp.core.orientation.set_ups import one_a_set_up
 from surveyapp.core.prediction.average import Determinations, Predicted, predict
 from surveyapp.core.prediction.kernels import COLUMNS_READ, telling
 from surveyapp.core.statistics.distributions import student_quantile
@@ -84,7 +85,7 @@ class PredictedConstants:
 
 def predictable(constant: InstrumentConstant) -> bool:
     """Whether there are enough determinations to predict from."""
-    return len(constant.calibrations) >= LEAST_PREDICTED
+    return constant.set_ups >= LEAST_PREDICTED
 
 
 def predict_constants(
@@ -98,14 +99,14 @@ def predict_constants(
     Parameters
     ----------
     constant : InstrumentConstant
-        With at least ``LEAST_PREDICTED`` calibrations.
+        With calibrations in at least ``LEAST_PREDICTED`` sessions.
     facts : mapping of (session, target) to Circumstances
         Of the calibrations.
     wanted : sequence of Wanted
     priors : Priors
     """
-    used = _latest(constant.calibrations, facts)
-    known = [facts[item.session, item.target] for item in used]
+    latest = _latest(one_a_set_up(constant.calibrations, facts))
+    used, known = [item for item, _ in latest], [told for _, told in latest]
     base = _Base(constant, used, known, *_shared(used))
     named = frozenset(
         UNIT_OF_EFFECT[e.id] for e in constant.instrument.effects if e.id in UNIT_OF_EFFECT
@@ -177,14 +178,14 @@ class _Base:
 
 
 def _latest(
-    calibrations: Sequence[Calibration], facts: Mapping[tuple[str, str], Circumstances]
-) -> list[Calibration]:
+    items: Sequence[tuple[Calibration, Circumstances]],
+) -> list[tuple[Calibration, Circumstances]]:
     """The latest determinations, all of them where nobody knows when they were made."""
-    days = [facts[item.session, item.target].number("elapsed_days") for item in calibrations]
-    if len(calibrations) <= MOST or any(day is None for day in days):
-        return list(calibrations)[-MOST:]
+    days = [told.number("elapsed_days") for _, told in items]
+    if len(items) <= MOST or any(day is None for day in days):
+        return list(items)[-MOST:]
     order = np.argsort(np.array(days, dtype=np.float64), kind="stable")[-MOST:]
-    return [calibrations[i] for i in sorted(order.tolist())]
+    return [items[i] for i in sorted(order.tolist())]
 
 
 def _own(item: Calibration) -> Uncertain:

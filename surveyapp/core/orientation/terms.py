@@ -53,8 +53,3 @@ ALWAYS: Final = (
     "deflection",
 )
 """Terms that stand on every budget, zero or not."""
-
-
-def origin_of(name: str) -> str:
-    """Where the size of a term comes from; of the constant's terms that of the term itself."""
-    return TERMS.get(name.removeprefix("constant: "), "")

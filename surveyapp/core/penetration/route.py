@@ -98,6 +98,9 @@ def ahead_and_beside(gap: tuple[float, float], azimuth: float) -> tuple[float, f
 
 
 def axes(axis_azimuth: float) -> Floats:
-    """Unit vectors to the right of the axis and along it, as columns (E, N), shape (2, 2)."""
+    """Unit vectors to the right of the axis and along it, as columns (E, N), shape (2, 2).
+
+    ``axis_azimuth`` [rad].
+    """
     sine, cosine = math.sin(axis_azimuth), math.cos(axis_azimuth)
     return np.array([[cosine, sine], [-sine, cosine]])

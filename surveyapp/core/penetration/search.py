@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surveyapp.core.penetration.placement import Ints, Outlook
+from surveyapp.core.penetration.placement import Outlook
 
 ENUMERATED = 20_000
 """Placements up to which every one is looked at."""
@@ -117,13 +117,6 @@ def exchanged(start: Outlook, chosen: Sequence[int]) -> Found:
         tuple(float(lateral[i]) for i in order),
         False,
     )
-
-
-def every_nth(candidates: Ints, sides: int, *, to_the_end: bool) -> list[int]:
-    """Places of a fixed rule, for comparison: evenly between, or evenly to the last side."""
-    count = len(candidates)
-    step = count / (sides if to_the_end else sides + 1)
-    return [min(round(step * (i + 1)), count) - 1 for i in range(sides)]
 
 
 def least_sides(start: Outlook, allowed: float) -> tuple[tuple[int, ...], float] | None:

@@ -76,7 +76,7 @@ def averaged(found: Members) -> Predicted:
     mean = w @ found.means
     apart = found.means - mean
     base = found.units.index(BASE)
-    readings = found.covariance[base]
+    readings = found.covariance[base] - found.beyond[base]
     total = np.einsum("m,mij->ij", w, found.covariance) + np.einsum("m,mi,mj->ij", w, apart, apart)
     shares: dict[str, float] = {}
     for name, weight in zip(found.units, w, strict=True):

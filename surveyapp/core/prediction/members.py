@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from surveyapp.core.prediction.kernels import PAIRED, Kernel, kernels, step_columns
+from surveyapp.core.prediction.unseen import unseen
 from surveyapp.domain.priors import (
     AMPLITUDES,
     BASE,
@@ -118,6 +119,8 @@ class Members:
     means : ndarray, shape (m, t)
     covariance : ndarray, shape (m, t, t)
     carried : ndarray, shape (m, t, r)
+    beyond : ndarray, shape (m, t, t)
+        Of the covariance, what lies beyond the range of the determinations adds.
     noise : ndarray, shape (m,)
         Variance factor of the determinations.
     dof, unit : float
@@ -132,6 +135,7 @@ class Members:
     means: Floats
     covariance: Floats
     carried: Floats
+    beyond: Floats
     noise: Floats
     dof: float
     unit: float
@@ -175,6 +179,8 @@ def members(data: Determinations, priors: Priors) -> Members:
     carried = to[:, :, 2:b] + rest[:, :, None] * (
         terms.products[:, None, 0, 2:b] / one[:, None, None]
     )
+    extra = unseen(data.columns, n, data.targets, priors)
+    inner = inner + extra
     found = Members(
         units=terms.units,
         sizes=terms.sizes,
@@ -184,6 +190,7 @@ def members(data: Determinations, priors: Priors) -> Members:
         means=centre / unit + means,
         covariance=(spread / nu)[:, None, None] * inner,
         carried=carried,
+        beyond=(spread / nu)[:, None, None] * extra,
         noise=spread / nu,
         dof=nu,
         unit=unit,
@@ -204,6 +211,7 @@ def _in_every_state(found: Members, count: int) -> Members:
         means=np.concatenate([found.means[:, k] for k in rows]),
         covariance=np.concatenate([found.covariance[:, k, k] for k in rows]),
         carried=np.concatenate([found.carried[:, k] for k in rows]),
+        beyond=np.concatenate([found.beyond[:, k, k] for k in rows]),
         noise=np.tile(found.noise, count),
         dof=found.dof,
         unit=found.unit,

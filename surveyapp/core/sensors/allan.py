@@ -7,16 +7,16 @@ equivalent degrees of freedom of table 5.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
 
+from surveyapp.domain.advance import PartDone
 from surveyapp_models.arrays import Floats
 
 Estimator = Literal["oadev", "adev"]
-Progress = Callable[[float], None]
 
 BLOCK: Final = 1 << 15
 """Samples of a block: three of them stay in the cache of a processor."""
@@ -75,7 +75,7 @@ def allan_variances(
     factors: Sequence[int],
     *,
     estimator: Estimator = "oadev",
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> Floats:
     """Allan variance at each averaging factor, shape (k,) [unit^2 of the series].
 
@@ -124,7 +124,7 @@ def allan_curve(
     rate_hz: float,
     factors: Sequence[int] | None = None,
     estimator: Estimator = "oadev",
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> AllanCurve:
     """Allan deviation with 95 % intervals.
 

@@ -89,7 +89,7 @@ def simulate_kind(
     if kind in rate_recipes.PROGRAMMES:
         known = rate_recipes.effects_of(kind, programme)
     elif programme is not None:
-        raise SurveyError(Problem("this kind has no programmes", "--programme", programme))
+        raise SurveyError(Problem("this kind has no programmes", "programme", programme))
     if coefficients and kind != "noise":
         found, expected = said("a simulation of {kind}", kind=kind), "simulate noise"
         raise SurveyError(Problem("coefficients belong to noise", "coefficient", found, expected))

@@ -18,6 +18,9 @@ import numpy as np
 from surveyapp_models.arrays import Floats
 
 PROBABILITY = 0.95
+NEAR = 1e-5
+"""Of the probability, at which several half-widths at once are good enough."""
+STEPS = 60
 TIGHT, CLOSE = 1e-9, 1e-9
 """Relative width of a half-width, and its probability, at which its search ends."""
 MOST_MEMBERS = 600
@@ -67,7 +70,10 @@ class Mixture:
         )
 
     def half_width(self, beside: float = 0.0) -> float:
-        """Half-width in which .95 lies, beside an independent error of a variance ``beside``."""
+        """Half-width in which .95 lies, beside an independent error of a variance ``beside``.
+
+        ``beside`` in the square of the unit of the offsets [rad^2].
+        """
         if beside not in self._cache:
             self._cache[beside] = self._half_width(beside)
         return self._cache[beside]
@@ -111,18 +117,22 @@ def half_widths(weights: Floats, means: Floats, variance: Floats, dof: float) ->
     scale = np.sqrt(np.maximum(variance, 1e-12))
     low = np.zeros(weights.shape[0])
     high = (np.abs(offsets) + 6.0 * scale).max(axis=1)
-    for _ in range(25):
-        middle = 0.5 * (low + high)
-        inside = student_cdf((middle[:, None] - offsets) / scale, dof)
-        inside -= student_cdf((-middle[:, None] - offsets) / scale, dof)
-        enough = (weights * inside).sum(axis=1) >= PROBABILITY
-        high, low = np.where(enough, middle, high), np.where(enough, low, middle)
-    return np.asarray(0.5 * (low + high))
-
-
-def normal_cdf(z: Floats) -> Floats:
-    """Normal distribution function, error below 1e-7."""
-    return _normal(z)[0]
+    above, under = np.full_like(low, PROBABILITY), np.full_like(low, PROBABILITY - 1.0)
+    spread = np.sqrt((weights * (scale**2 + offsets**2)).sum(axis=1))
+    guess = np.minimum(2.0 * spread, 0.999 * high)
+    for _ in range(STEPS):
+        inside = student_cdf((guess[:, None] - offsets) / scale, dof)
+        inside -= student_cdf((-guess[:, None] - offsets) / scale, dof)
+        value = PROBABILITY - (weights * inside).sum(axis=1)
+        less = value > 0.0
+        # Illinois, as for one mixture
+        low, high = np.where(less, guess, low), np.where(less, high, guess)
+        above = np.where(less, value, 0.5 * above)
+        under = np.where(less, 0.5 * under, value)
+        if bool(np.all((np.abs(value) < NEAR) | (high - low <= NEAR * high))):
+            break
+        guess = low + (high - low) * above / (above - under)
+    return np.asarray(guess)
 
 
 def _normal(z: Floats) -> tuple[Floats, Floats]:

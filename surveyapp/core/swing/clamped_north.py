@@ -77,6 +77,8 @@ def reduce_nontracking(
     SurveyError
         If the clamp reading, the times, one side of the swing or the card's scale value or torsion
         ratio is missing, or if the amplitude lies beyond the scale.
+
+    ``latitude`` [rad].
     """
     clamp = clamp_reading(session)
     constants = _constants(session, card, latitude)

@@ -27,7 +27,10 @@ lies every instrument of the cards."""
 
 
 def is_classical(session: OrientationSession, card: InstrumentCard, latitude: float | None) -> bool:
-    """Whether a transit session can be reduced by C alone, and by nothing else."""
+    """Whether a transit session can be reduced by C alone, and by nothing else.
+
+    ``latitude`` [rad].
+    """
     complete = card_at(card, latitude).torsion_ratio is not None and card.scale_value is not None
     return session.method == "transit" and card.transit_c is not None and not complete
 

@@ -100,6 +100,8 @@ def design(index: Floats, sides: Floats, *, amplitude: float, log_decrement: flo
     Returns
     -------
     ndarray, shape (n, 3)
+
+    ``amplitude`` [rad].
     """
     decay = sides * np.exp(-log_decrement * index)
     columns = np.empty((index.size, 3))
@@ -304,26 +306,3 @@ def damping_left(fit: DampedFit, weights: Floats, *, index: Floats, sides: Float
         return 0.0
     swing = fit.amplitude * sides * np.exp(-fit.log_decrement * (index - index[0]))
     return abs(float(weights @ swing))
-
-
-def schuler_standard_error(points: int, sigma: float) -> float:
-    """Standard error of the mean of all overlapping Schuler means.
-
-    The means share readings: dividing the scatter by the root of their number is wrong by a factor
-    of up to two.
-
-    Parameters
-    ----------
-    points : int
-        Number of consecutive turning points, at least 3.
-    sigma : float
-        Standard deviation of one turning point.
-
-    Source: physics.md 2.1, se = sigma sqrt(16 v - 44) / (4 (v - 2)) for v >= 4; sqrt(6)/4 sigma
-    for v = 3.
-    """
-    if points < 3:
-        raise ValueError("a Schuler mean needs three turning points")
-    if points == 3:
-        return sigma * math.sqrt(6.0) / 4.0
-    return sigma * math.sqrt(16.0 * points - 44.0) / (4.0 * (points - 2))

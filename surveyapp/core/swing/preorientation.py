@@ -10,7 +10,6 @@ Source: physics.md 2.6.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 from surveyapp.core.swing.reduction import Reduction
 from surveyapp.core.uncertain import Source, Uncertain
@@ -70,32 +69,3 @@ def pre_orientation(session: OrientationSession, card: InstrumentCard) -> Reduct
         amplitude=0.5 * abs(second - first),
         warnings=(ResultWarning("pre_orientation", text),),
     )
-
-
-@dataclass(frozen=True, slots=True)
-class QuarterPeriod:
-    """When the line of sight passes north after a turning point.
-
-    Parameters
-    ----------
-    wait_s : float
-        From the turning point to north [s].
-    error_per_second : float
-        What one second of delay costs [rad/s].
-    """
-
-    wait_s: float
-    error_per_second: float
-
-
-def quarter_period(*, period_s: float, amplitude: float) -> QuarterPeriod:
-    """Quarter-period method: keep tracking, stop T1/4 after a turning point.
-
-    Parameters
-    ----------
-    period_s : float
-        T1 at this latitude [s].
-    amplitude : float
-        Of the swing [rad]; one degree costs 0.89' per second at 425 s.
-    """
-    return QuarterPeriod(0.25 * period_s, amplitude * 2.0 * math.pi / period_s)

@@ -133,7 +133,10 @@ def reduce_swing(
     run_model: RunModel | None = None,
     twist: TripodTwist | None = None,
 ) -> Reduction:
-    """Reduce the observation itself by the session's method, a turning tripod taken out of it."""
+    """Reduce the observation itself by the session's method, a turning tripod taken out of it.
+
+    ``latitude`` [rad].
+    """
     chosen = estimator_for(session, estimator)
     if session.method == "automatic":
         return reduce_automatic(session, card)

@@ -234,7 +234,10 @@ def _mean_at(
 
 
 def drift_probability(sights: SightSet, *, sigma: float, dof: float) -> float | None:
-    """Two-sided probability of a drift this large if the tripod stood still, None without one."""
+    """Two-sided probability of a drift this large if the tripod stood still, None without one.
+
+    ``sigma`` and sights [rad].
+    """
     if sights.drift is None or sigma <= 0.0:
         return None
     ratio = abs(sights.drift) / (sigma * math.sqrt(sights.drift_cofactor))

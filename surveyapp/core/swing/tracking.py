@@ -308,7 +308,7 @@ def tape_zero_of(
     swing: Sequence[Reading],
     latitude: float | None,
 ) -> tuple[TapeZero | None, TapeZeroCoefficient | None, Uncertain | None, list[ResultWarning]]:
-    """Tape zero of a session, its coefficient, the correction with its error, and warnings."""
+    """Tape zero at a latitude [rad], its coefficient, the correction with its error, warnings."""
     zero = reduce_tape_zero(session.book, swing)
     coefficient = tape_zero_coefficient(card, latitude)
     if zero is None:

@@ -28,7 +28,7 @@ NOTHING_TOLD = Circumstances(None, {})
 
 
 @dataclass(frozen=True, slots=True)
-class Determination:
+class CampaignDetermination:
     """One determination of a constant (or of one azimuth).
 
     Parameters
@@ -59,7 +59,7 @@ class Determination:
         *,
         order: float | None = None,
         **columns: float | str | None,
-    ) -> Determination:
+    ) -> CampaignDetermination:
         """A determination with its circumstances by the names of their columns.
 
         Parameters
@@ -149,7 +149,7 @@ ACTIONS = (
 
 
 def campaign(
-    determinations: Sequence[Determination],
+    determinations: Sequence[CampaignDetermination],
     *,
     instrument: str = "",
     reference_temperature_c: float | None = None,
@@ -160,7 +160,7 @@ def campaign(
 
     Parameters
     ----------
-    determinations : sequence of Determination
+    determinations : sequence of CampaignDetermination
     instrument : str
     reference_temperature_c : float, optional
     resolution : float
@@ -229,7 +229,7 @@ def campaign(
     )
 
 
-def _check(determinations: Sequence[Determination], instrument: str) -> None:
+def _check(determinations: Sequence[CampaignDetermination], instrument: str) -> None:
     faults = []
     where = said("campaign of {instrument}", instrument=instrument) if instrument else "campaign"
     if len(determinations) < 2:
@@ -271,7 +271,7 @@ def _check(determinations: Sequence[Determination], instrument: str) -> None:
 
 
 def _columns(
-    determinations: Sequence[Determination],
+    determinations: Sequence[CampaignDetermination],
 ) -> tuple[dict[str, Floats], dict[str, dict[float, str]], list[ResultWarning]]:
     """Columns that say something, the names behind numbers, and what stands in for the time."""
     facts = [d.circumstances for d in determinations]

@@ -14,8 +14,10 @@ import numpy as np
 
 from surveyapp.core.checks.adopted_checks import occurrences
 from surveyapp.core.orientation.adopted import SOURCE
+from surveyapp.core.orientation.adopted_course import courses_of
 from surveyapp.core.orientation.campaign_columns import Name
 from surveyapp.core.orientation.circumstances import Circumstances, facts_of
+from surveyapp.core.orientation.set_ups import one_a_set_up
 from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.core.statistics.repeated import SHARED
 from surveyapp.core.swing.run_model import ModelledNorth
@@ -31,7 +33,7 @@ from surveyapp.diagnosis.candidates import Candidate, all_candidates
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.fits import Fit, Member, fit_members
 from surveyapp.diagnosis.run_value import value_of
-from surveyapp.diagnosis.subjects.campaign import Determination, campaign
+from surveyapp.diagnosis.subjects.campaign import CampaignDetermination, campaign
 from surveyapp.diagnosis.subjects.reversal_run import TurningPoints, reversal_run
 from surveyapp.domain.instrument import AdoptedEffect, InstrumentCard
 from surveyapp.domain.project import OrientationSession
@@ -70,7 +72,7 @@ def run_problem(
     twist : TripodTwist or None
         Turning of the tripod that the sights tell: known and taken out as well.
     extra : tuple of Effect
-        The user's own.
+        The user's own; the courses that the session has adopted are tried in any case.
 
     Raises
     ------
@@ -95,6 +97,8 @@ def run_problem(
         math.nan if row.temperature_c is None else row.temperature_c for row in points.rows
     ]
     known = not all(math.isnan(value) for value in temperature)
+    own = {effect.id for effect in extra}
+    carried = tuple(item for item in courses_of(session.effects) if item.id not in own)
     return reversal_run(
         TurningPoints(
             readings=(points.origin + points.values).tolist(),
@@ -108,7 +112,7 @@ def run_problem(
             instrument=session.instrument,
             identity=session.id,
         ),
-        extra,
+        (*extra, *carried),
     )
 
 
@@ -162,7 +166,10 @@ def modelled_run(
     latitude: float | None,
     twist: TripodTwist | None = None,
 ) -> ModelledNorth:
-    """Observed north of a session with its adopted effects, before the tape-zero correction."""
+    """Observed north of a session with its adopted effects, before the tape-zero correction.
+
+    ``latitude`` [rad].
+    """
     problem = run_problem(session, card, latitude=latitude, twist=twist)
     fit = adopted_fit(problem, session.effects)
     value = value_of(problem, fit)
@@ -178,27 +185,30 @@ def modelled_run(
     )
 
 
-def determinations(orientation: Orientation, instrument: str) -> tuple[Determination, ...]:
+def determinations(orientation: Orientation, instrument: str) -> tuple[CampaignDetermination, ...]:
     """Every determination of the constant of one instrument, in order of time where it is known.
 
     The sigma is that of what belongs to one determination alone: centring, deflection and the
     known azimuth are the line's own, and whether a line stands off is to be found, not assumed.
+    Several lines sighted from one set-up are one determination.
     """
     by_key = facts_of(orientation.sessions, instrument, orientation.positions)
     constant = next(c for c in orientation.constants if c.instrument.id == instrument)
     found = []
+    lines: dict[str, list[str]] = {}
     for calibration in constant.calibrations:
-        facts = by_key[calibration.session, calibration.target]
+        lines.setdefault(calibration.session, []).append(str(calibration.line))
+    for calibration, facts in one_a_set_up(constant.calibrations, by_key):
         own = calibration.value.without(
             *SHARED, said("run-to-run scatter"), said("{source} outside its range", source=SOURCE)
         )
-        label = f"{calibration.session} ({calibration.line})"
+        label = f"{calibration.session} ({' + '.join(lines[calibration.session])})"
         subject = Subject.session(calibration.session, calibration.target)
         found.append(_determination(calibration.value.value, own, facts, subject, label=label))
     return _in_time(found if found else _azimuths(orientation, instrument, by_key))
 
 
-def _in_time(items: Sequence[Determination]) -> tuple[Determination, ...]:
+def _in_time(items: Sequence[CampaignDetermination]) -> tuple[CampaignDetermination, ...]:
     """In order of time, whatever the order of the project's tables.
 
     Where every date is the same (or none is known) the sequence stands in for time.
@@ -218,9 +228,9 @@ def _azimuths(
     orientation: Orientation,
     instrument: str,
     by_key: dict[tuple[str, str], Circumstances],
-) -> list[Determination]:
+) -> list[CampaignDetermination]:
     """Repeated gyro azimuths of the most often observed line of an uncalibrated instrument."""
-    lines: dict[Name, list[Determination]] = {}
+    lines: dict[Name, list[CampaignDetermination]] = {}
     for item in orientation.sessions:
         if item.session.instrument != instrument:
             continue
@@ -237,7 +247,7 @@ def _azimuths(
             subject = Subject.session(item.session.id, target.target)
             own = target.gyro_azimuth
             members.append(_determination(-value, own, facts, subject, label=subject.id))
-    longest: list[Determination] = []
+    longest: list[CampaignDetermination] = []
     for members in lines.values():
         longest = members if len(members) > len(longest) else longest
     return longest
@@ -245,10 +255,10 @@ def _azimuths(
 
 def _determination(
     value: float, own: Uncertain, facts: Circumstances, subject: Subject, *, label: str
-) -> Determination:
+) -> CampaignDetermination:
     sigma = own.sigma
     stated = sigma if 0.0 < sigma < math.inf else None
-    return Determination(value, stated, facts, label, subject)
+    return CampaignDetermination(value, stated, facts, label, subject)
 
 
 def campaign_problem(

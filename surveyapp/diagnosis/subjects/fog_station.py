@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from surveyapp.diagnosis.case import Case
-from surveyapp.diagnosis.subject import Record, Subject, case_of
+from surveyapp.diagnosis.subject import DiagnosedSubject, Record, case_of
 from surveyapp.diagnosis.subjects.rate import COLUMNS
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
@@ -114,7 +114,7 @@ def fog_case(turns: Sequence[FogTurn], *, identity: str, extra: tuple[Effect, ..
     slope = np.linalg.lstsq(design, output, rcond=None)[0][count:]
     own = np.abs(design[:, count:] @ slope)
     columns |= {"half_size_x": 0.5 * own, "half_size_y": 0.0 * own, "half_size_z": 0.0 * own}
-    subject = Subject(
+    subject = DiagnosedSubject(
         id="rate",
         title="a gyro on a total station",
         value_name="the mean bias of the gyro",

@@ -16,7 +16,7 @@ import numpy as np
 from surveyapp.core.sensors.rate.hand_held import TurnRows
 from surveyapp.diagnosis.action import Action, last_rows
 from surveyapp.diagnosis.case import Case, OwnScale
-from surveyapp.diagnosis.subject import Record, Subject, case_of
+from surveyapp.diagnosis.subject import DiagnosedSubject, Record, case_of
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
@@ -142,12 +142,12 @@ COLUMNS = (
 )
 
 
-def rate_subject(*, turned: bool) -> Subject:
+def rate_subject(*, turned: bool) -> DiagnosedSubject:
     """The subject of stops at rest, or of stops on a table that turned."""
     biases = tuple(f"bias_{a}" for a in "xyz")
     matrix = tuple(f"response_{a}{b}" for a in "xyz" for b in "xyz")
     names = (*biases, *matrix) if turned else biases
-    return Subject(
+    return DiagnosedSubject(
         id="rate",
         title="a rate sensor",
         value_name="the mean bias of the three gyros",

@@ -13,7 +13,6 @@ atmosphere the instrument has corrected is taken as it stands.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -232,14 +231,3 @@ def _warnings(
         )
         found.append(ResultWarning("atmosphere_applied", text))
     return tuple(found)
-
-
-def condition_count(problem: Case) -> int:
-    """Independent conditions of a traverse, the degrees of freedom of its adjustment."""
-    return problem.size - 1
-
-
-def chi_square_ratio(problem: Case) -> float:
-    """Root of the sum of squares of the conditions over their number: sigma0 over its a priori."""
-    conditions = problem.observations[1:]
-    return math.sqrt(float(conditions @ conditions) / condition_count(problem))

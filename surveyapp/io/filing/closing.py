@@ -87,7 +87,7 @@ def reopen_project(
     """
     if not reason.strip():
         raise SurveyError(
-            Problem("a reopening needs a reason", "--reason", "", "one sentence for the ledger")
+            Problem("a reopening needs a reason", "reason", "", "one sentence for the ledger")
         )
     with ProjectLock(folder, even_closed=True) as lock:
         _writable(lock)
@@ -151,7 +151,7 @@ def _known(project: Project, session: str | None) -> None:
         raise SurveyError(
             Problem(
                 "there is no session of this name",
-                "--session",
+                "session",
                 session,
                 "the id of a session",
                 nearest_names(session, names),

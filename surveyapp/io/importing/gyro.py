@@ -140,7 +140,7 @@ def _instrument(
             raise SurveyError(
                 Problem(
                     "the instrument is no automatic gyro",
-                    "--instrument",
+                    "instrument",
                     f"{instrument}: {kind}",
                     "an instrument whose card says kind = automatic",
                 )
@@ -148,7 +148,7 @@ def _instrument(
         return {}, []
     if not instrument.strip() or not instrument.isprintable() or len(instrument) > 100:
         raise SurveyError(
-            Problem("this is no id of an instrument", "--instrument", shown(instrument))
+            Problem("this is no id of an instrument", "instrument", shown(instrument))
         )
     known = ", ".join(item.id for item in project.instruments) or "none"
     path = f"cards/{_safe(instrument)}.toml"

@@ -68,11 +68,11 @@ def _fix_problems(fixed: Sequence[str], project: Project, points: Mapping[str, K
         point = points.get(name)
         if name in known:
             text = "the station is in the project already: say fixed = true there"
-            problems.append(Problem(text, "--fix", name, "a station that the file brings"))
+            problems.append(Problem(text, "fixed", name, "a station that the file brings"))
         elif point is None or (point.e is None and point.h is None):
             hint = nearest_names(name, [p.name for p in points.values() if p.e is not None])
             problems.append(
-                Problem("the file holds no coordinates of this point", "--fix", name, "", hint)
+                Problem("the file holds no coordinates of this point", "fixed", name, "", hint)
             )
     if problems:
         raise SurveyError(problems)

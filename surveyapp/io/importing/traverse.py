@@ -90,7 +90,7 @@ def traverse_name(options: ImportOptions, file: Path) -> str:
         or any(c in _UNSAFE or not c.isprintable() for c in told)
     ):
         expected = said("printable characters without {unsafe}, no dot in front", unsafe=_UNSAFE)
-        raise SurveyError(Problem("this is no name", "--traverse", shown(told), expected))
+        raise SurveyError(Problem("this is no name", "traverse", shown(told), expected))
     return told
 
 
@@ -264,7 +264,7 @@ def _check_free(project: Project, name: str) -> None:
         raise SurveyError(
             Problem(
                 "the project has a traverse of this name",
-                "--traverse",
+                "traverse",
                 shown(name),
                 "a name that is free",
             )

@@ -65,7 +65,7 @@ def instrument_port(text: str) -> InstrumentPort:
     if found is None or not port:
         hint = nearest_names(name, [item.id for item in PROTOCOLS])
         expected = "protocol:port, such as geocom:COM3 or gsi:/dev/ttyUSB0@2400"
-        raise SurveyError(Problem("this names no instrument", "--instrument", text, expected, hint))
+        raise SurveyError(Problem("this names no instrument", "instrument", text, expected, hint))
     if at and not (baud.isdigit() and 50 <= int(baud) <= 4_000_000):
-        raise SurveyError(Problem("this is no baud rate", "--instrument", baud, "9600 or the like"))
+        raise SurveyError(Problem("this is no baud rate", "instrument", baud, "9600 or the like"))
     return InstrumentPort(found, port, int(baud) if at else BAUD)

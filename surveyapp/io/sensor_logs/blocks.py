@@ -10,13 +10,14 @@ from __future__ import annotations
 import csv
 import hashlib
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 
+from surveyapp.domain.advance import PartDone
 from surveyapp.domain.sensor_log import Array
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import shown, shown_path
@@ -29,9 +30,6 @@ MAPPED_VALUES: Final = 8_000_000
 
 MAX_TOLD: Final = 20
 """Wrong cells that are named one by one; the rest is counted."""
-
-Progress = Callable[[float], None]
-"""Called with the share of the work that is done, 0 to 1."""
 
 
 @dataclass(slots=True)
@@ -122,7 +120,7 @@ def read_rows(
     *,
     lines: int,
     wrong: Wrong,
-    progress: Progress | None = None,
+    progress: PartDone | None = None,
 ) -> Rows:
     """Read the wanted columns of a file.
 

@@ -13,6 +13,7 @@ from typing import Final, Literal
 
 import numpy as np
 
+from surveyapp.domain.advance import PartDone
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import (
     NUMBER_COLUMNS,
@@ -25,7 +26,7 @@ from surveyapp.domain.sensor_log import (
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.files import decode, shown, shown_path
 from surveyapp.io.sensor_logs import checks
-from surveyapp.io.sensor_logs.blocks import Progress, Rows, Wrong, count_lines, read_rows
+from surveyapp.io.sensor_logs.blocks import Rows, Wrong, count_lines, read_rows
 from surveyapp.io.sensor_logs.layout import LOOKED_AT, Layout, find_layout
 from surveyapp.io.sensor_logs.units import COUNTS, DIMENSIONLESS, UNITS, factor_to, unit_in_name
 from surveyapp.languages import said
@@ -134,7 +135,7 @@ class LogFile:
         """Whether the file holds all of these canonical columns."""
         return all(name in self.places for name in names)
 
-    def read(self, need: Need, *, progress: Progress | None = None) -> SensorLog:
+    def read(self, need: Need, *, progress: PartDone | None = None) -> SensorLog:
         """Read what is needed.
 
         Raises
@@ -293,7 +294,7 @@ def open_log(request: LogRequest) -> LogFile:
     return LogFile(request, layout, places, tuple(problems))
 
 
-def read_log(request: LogRequest, need: Need, *, progress: Progress | None = None) -> SensorLog:
+def read_log(request: LogRequest, need: Need, *, progress: PartDone | None = None) -> SensorLog:
     """Read the needed columns of a log; see ``LogFile.read``."""
     return open_log(request).read(need, progress=progress)
 
@@ -306,13 +307,11 @@ def _places(request: LogRequest, layout: Layout, problems: list[Problem]) -> dic
     mapped: dict[str, int] = {}
     for canonical, column in request.columns.items():
         if canonical not in known:
-            hint = nearest_names(canonical, known)
+            place, hint = f"{where}, `columns`", nearest_names(canonical, known)
             expected = "the canonical name of a column"
-            problems.append(
-                Problem("there is no such column", f"{where}, --map", canonical, expected, hint)
-            )
+            problems.append(Problem("there is no such column", place, canonical, expected, hint))
         elif names.count(column) != 1:
-            problems.append(_no_column(column, names, f"{where}, --map {canonical}"))
+            problems.append(_no_column(column, names, f"{where}, `columns` {canonical}"))
         else:
             mapped[canonical] = names.index(column)
     for canonical in known:
@@ -321,8 +320,8 @@ def _places(request: LogRequest, layout: Layout, problems: list[Problem]) -> dic
         elif canonical not in mapped and names.count(canonical) > 1:
             problems.append(_no_column(canonical, names, where))
     stated = (*names, *mapped)
-    for option, given in (("--unit", request.units), ("--scale", request.scale)):
-        place = f"{where}, {option}"
+    for option, given in (("units", request.units), ("scale", request.scale)):
+        place = f"{where}, `{option}`"
         problems += [_no_column(column, names, place) for column in given if column not in stated]
     places = {n: _place(request, n, (names[i], i), problems) for n, i in mapped.items()}
     taken = set(mapped.values())

@@ -51,14 +51,6 @@ UNITS: Final[dict[str, tuple[str, float]]] = {
 _BRACKETS = re.compile(r"[(\[]\s*([^)\]]+?)\s*[)\]]\s*$")
 
 
-def dimension_of(column: str) -> str | None:
-    """Dimension of a canonical column, None for any other."""
-    unit = NUMBER_COLUMNS.get(column)
-    if unit is None:
-        return None
-    return UNITS["deg/s" if unit == "deg/s" else unit][0]
-
-
 def factor_to(column: str, unit: str) -> float | None:
     """Factor from a unit to that of a canonical column; None if the dimensions differ.
 

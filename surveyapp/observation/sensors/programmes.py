@@ -8,12 +8,13 @@ from datetime import datetime
 from pathlib import Path
 
 from surveyapp import api
+from surveyapp.domain.advance import PartDone
 from surveyapp.domain.programme import LOG, STRIKE, Programme, ProgrammeRun, ProgrammeState
 from surveyapp.errors import Problem
 from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.observation.sensors.desk import card_path
 from surveyapp.observation.sensors.options import told_options
-from surveyapp.observation.sensors.tasks import Examined, Progress
+from surveyapp.observation.sensors.tasks import Examined
 
 LOG_SIGN = "log="
 """What a line begins with that names the log of a run."""
@@ -142,7 +143,7 @@ class ProgrammeDesk:
         with ProjectLock(Path(self.folder)) as lock:
             return lock.writable
 
-    def finish(self, options: str, *, progress: Progress | None = None) -> Examined:
+    def finish(self, options: str, *, progress: PartDone | None = None) -> Examined:
         """Calibrate, or find north; the card is written where everything is determined.
 
         Raises

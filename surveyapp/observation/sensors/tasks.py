@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Final, cast
 
 from surveyapp import api
+from surveyapp.domain.advance import PartDone
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.chart import Picture
 from surveyapp.domain.sensor_entry import SensorLogEntry
@@ -14,8 +15,6 @@ from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 from surveyapp.observation.sensors.options import ToldOptions, told_options
 from surveyapp.report.blocks import Block
-
-Progress = Callable[[float], None]
 
 
 class CancelledError(Exception):
@@ -55,7 +54,7 @@ class Examined:
 
 
 def examine(
-    folder: str, entry: SensorLogEntry, task: str, options: str, *, progress: Progress | None = None
+    folder: str, entry: SensorLogEntry, task: str, options: str, *, progress: PartDone | None = None
 ) -> Examined:
     """Run a task on a log of a project.
 
@@ -81,7 +80,7 @@ def examine(
 
 
 def _calibrate(
-    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: Progress | None
+    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: PartDone | None
 ) -> Examined:
     from surveyapp.report.sections.sensors import calibration_body
 
@@ -100,7 +99,7 @@ def _calibrate(
 
 
 def _allan(
-    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: Progress | None
+    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: PartDone | None
 ) -> Examined:
     from surveyapp.report.blocks import without_figures
     from surveyapp.report.sections.sensors import allan_blocks
@@ -112,7 +111,7 @@ def _allan(
 
 
 def _filter(
-    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: Progress | None
+    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: PartDone | None
 ) -> Examined:
     from surveyapp.report.sections.sensor_results import filter_blocks
 
@@ -127,7 +126,7 @@ def _filter(
 
 
 def _spectrum(
-    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: Progress | None
+    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: PartDone | None
 ) -> Examined:
     from surveyapp.report.sections.sensor_results import spectrum_blocks
 
@@ -165,7 +164,7 @@ def _only_column(folder: str, entry: SensorLogEntry, told: ToldOptions) -> str:
 
 
 def _motion(
-    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: Progress | None
+    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: PartDone | None
 ) -> Examined:
     from surveyapp.report.sections.sensor_results import motion_blocks
 
@@ -179,7 +178,7 @@ def _motion(
 
 
 def _north(
-    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: Progress | None
+    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: PartDone | None
 ) -> Examined:
     from surveyapp.report.sections.sensor_results import north_blocks
 
@@ -197,7 +196,7 @@ def _north(
 
 
 def _plan(
-    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: Progress | None
+    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: PartDone | None
 ) -> Examined:
     from surveyapp.report.sections.sensor_results import plan_blocks
 
@@ -208,7 +207,7 @@ def _plan(
 
 
 def _diagnose(
-    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: Progress | None
+    folder: str, entry: SensorLogEntry, told: ToldOptions, progress: PartDone | None
 ) -> Examined:
     from surveyapp.report.sections.sensor_results import diagnosis_blocks
 
@@ -244,7 +243,7 @@ def adopt_effects(folder: str, entry: SensorLogEntry) -> tuple[tuple[str, ...], 
 
 
 TASKS: Final[
-    Mapping[str, Callable[[str, SensorLogEntry, ToldOptions, Progress | None], Examined]]
+    Mapping[str, Callable[[str, SensorLogEntry, ToldOptions, PartDone | None], Examined]]
 ] = {
     "calibrate": _calibrate,
     "allan": _allan,

@@ -37,7 +37,7 @@ def card_of(
         raise SurveyError(
             Problem(
                 "no card can be written: the calibration determines nothing",
-                f"--card, {calibration.source}",
+                f"`card`, {calibration.source}",
                 said("geometry {verdict}", verdict=calibration.geometry.verdict),
                 "a calibration whose parameters are determined",
             )

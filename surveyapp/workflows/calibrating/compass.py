@@ -28,7 +28,7 @@ def calibrate(request: CalibrationRequest) -> Calibration:
     limit = request.number("heading_limit_deg", HEADING_LIMIT_DEG)
     if limit is None or not 0.0 < limit <= 45.0:
         found, expected = str(limit), "more than 0, at most 45"
-        raise SurveyError(Problem("this is no limit", "--heading-limit-deg", found, expected))
+        raise SurveyError(Problem("this is no limit", "heading_limit_deg", found, expected))
     swing = request.file.has("heading_deg")
     acc = ACC if request.file.has(*ACC) else ()
     heading = ("heading_deg",) if swing else ()
@@ -73,7 +73,7 @@ def declination_of(text: str) -> tuple[float, float | None]:
     usable = len(numbers) in (1, 2) and all(math.isfinite(n) for n in numbers)
     if not usable or abs(numbers[0]) > 180.0 or (len(numbers) == 2 and numbers[1] < 0.0):
         expected = "D or D,SIGMA in degrees, east positive"
-        raise SurveyError(Problem("this is no declination", "--declination", text, expected))
+        raise SurveyError(Problem("this is no declination", "declination", text, expected))
     return numbers[0], numbers[1] if len(numbers) == 2 else None
 
 

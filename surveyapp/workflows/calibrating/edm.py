@@ -52,7 +52,7 @@ def calibrate(request: CalibrationRequest) -> Calibration:
     problems = []
     if unit is not None and not 0.1 <= unit <= LONGEST_UNIT_M:
         expected = said("0.1 to {longest_unit_m:g} m", longest_unit_m=LONGEST_UNIT_M)
-        problems.append(Problem("this is no unit length", "--unit-length-m", f"{unit:g}", expected))
+        problems.append(Problem("this is no unit length", "unit_length_m", f"{unit:g}", expected))
     heights = None
     file = _named(request.file)
     missing = [name for name in ("from_pillar", "to_pillar") if not file.has(name)]

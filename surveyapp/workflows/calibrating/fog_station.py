@@ -24,7 +24,7 @@ def calibrate(request: CalibrationRequest) -> Calibration:
         problems.append(
             Problem(
                 "which way the vertical circle reads is not stated",
-                "--reading-from-elevation",
+                "reading_from_elevation",
                 "" if rule is None else str(rule),
                 "increases or decreases",
                 "increases: the reading grows as the gyro goes from its elevation to the "
@@ -36,7 +36,7 @@ def calibrate(request: CalibrationRequest) -> Calibration:
         problems.append(
             Problem(
                 "this is no relative sigma",
-                "--table-rate-relative-sigma",
+                "table_rate_relative_sigma",
                 f"{relative:g}",
                 "0 to 1, as 1e-4",
             )

@@ -52,7 +52,7 @@ def calibrate(request: CalibrationRequest) -> Calibration:
         raise SurveyError(
             Problem(
                 "which programme?" if programme is None else "there is no such programme",
-                "--programme",
+                "programme",
                 "" if programme is None else str(programme),
                 either(PROGRAMMES),
                 "" if programme is None else nearest_names(str(programme), PROGRAMMES),
@@ -77,7 +77,7 @@ def latitude_of(request: CalibrationRequest) -> float | None:
         return None
     if not -90.0 <= degrees <= 90.0:
         raise SurveyError(
-            Problem("this is no latitude", "--latitude", f"{degrees:g}", "-90 to 90 degrees")
+            Problem("this is no latitude", "latitude", f"{degrees:g}", "-90 to 90 degrees")
         )
     return math.radians(degrees)
 
@@ -91,9 +91,9 @@ def _positive(request: CalibrationRequest, name: str, option: str) -> float:
 
 def _six_positions(request: CalibrationRequest) -> Calibration:
     options = SixPositionOptions(
-        flip_sigma=_positive(request, "flip_sigma_arcsec", "--flip-sigma-arcsec") * ARCSEC,
+        flip_sigma=_positive(request, "flip_sigma_arcsec", "flip_sigma_arcsec") * ARCSEC,
         relative_rate_sigma=_positive(
-            request, "table_rate_relative_sigma", "--table-rate-relative-sigma"
+            request, "table_rate_relative_sigma", "table_rate_relative_sigma"
         ),
         latitude=latitude_of(request),
     )
@@ -120,7 +120,7 @@ def _temperature(request: CalibrationRequest) -> Calibration:
         problems.append(
             Problem(
                 "the latitude is not stated",
-                "--latitude",
+                "latitude",
                 "",
                 "degrees",
                 "one position per direction holds the vertical earth rate in its bias: up to 15 "
@@ -148,9 +148,9 @@ def _temperature(request: CalibrationRequest) -> Calibration:
         predict_at=wanted,
         room=None if room is None else _room(request, str(room)),
         gravity=gravity,
-        flip_sigma=_positive(request, "flip_sigma_arcsec", "--flip-sigma-arcsec") * ARCSEC,
+        flip_sigma=_positive(request, "flip_sigma_arcsec", "flip_sigma_arcsec") * ARCSEC,
         relative_rate_sigma=_positive(
-            request, "table_rate_relative_sigma", "--table-rate-relative-sigma"
+            request, "table_rate_relative_sigma", "table_rate_relative_sigma"
         ),
     )
     return calibrate_temperature(log, options)
@@ -170,7 +170,7 @@ def _temperatures(request: CalibrationRequest, problems: list[Problem]) -> tuple
             found.append(value)
         else:
             problems.append(
-                Problem("this is no temperature", "--predict-at", part, "degrees Celsius: 0,10,25")
+                Problem("this is no temperature", "predict_at", part, "degrees Celsius: 0,10,25")
             )
     return tuple(found)
 

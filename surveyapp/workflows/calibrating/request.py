@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Final
 
 from surveyapp.core.sensors.adopted_effects import without_events
+from surveyapp.domain.advance import PartDone
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 
 MOST_ROWS: Final = 100_000
@@ -45,7 +45,7 @@ class CalibrationRequest:
     options: Mapping[str, object] = field(default_factory=dict)
     folder: Path | None = None
     today: date | None = None
-    progress: Progress | None = None
+    progress: PartDone | None = None
 
     @property
     def source(self) -> str:

@@ -34,7 +34,7 @@ def find_north(request: NorthRequest) -> NorthResult:
         found = request.method or ""
         what = "there is no such method" if found else "which method?"
         hint = nearest_names(found, METHODS) if found else ""
-        raise SurveyError(Problem(what, "--method", found, either(METHODS), hint))
+        raise SurveyError(Problem(what, "method", found, either(METHODS), hint))
     problems = declination_problems(request)
     module = importlib.import_module(f"{__name__}.{METHODS[request.method]}")
     try:

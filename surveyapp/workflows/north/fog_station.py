@@ -32,14 +32,14 @@ def find(request: NorthRequest) -> NorthResult:
     rate_sigma = request.number("rate_sigma_deg_h", problems)
     if rate_sigma is not None and not rate_sigma > 0.0:
         found = f"{rate_sigma:g}"
-        problems.append(Problem("a sigma is not positive", "--rate-sigma-deg-h", found, "above 0"))
+        problems.append(Problem("a sigma is not positive", "rate_sigma_deg_h", found, "above 0"))
     if sigma is not None and sigma < 0.0:
         found = f"{sigma:g}"
-        where = "--constant-sigma-arcsec"
+        where = "constant_sigma_arcsec"
         problems.append(Problem("a sigma is negative", where, found, "0 or more"))
     rule = request.option("reading_from_elevation")
     if rule is not None and rule not in ("increases", "decreases"):
-        where = "--reading-from-elevation"
+        where = "reading_from_elevation"
         problems.append(
             Problem("there is no such rule", where, str(rule), "increases or decreases")
         )

@@ -30,20 +30,20 @@ def find(request: NorthRequest) -> NorthResult:
     latitude = request.latitude(problems)
     axis = str(request.option("index_axis") or "z")
     if axis not in ("x", "y", "z"):
-        problems.append(Problem("this is no axis", "--index-axis", axis, "x, y or z"))
+        problems.append(Problem("this is no axis", "index_axis", axis, "x, y or z"))
     prior, sigma = _prior(request, problems)
     spread = request.number("index_sigma_deg", problems) or 0.0
     turned, fixed = request.file, None
     second = request.option("second")
     indexed = str(request.option("indexed") or "first")
     if indexed not in ("first", "second"):
-        problems.append(Problem("which unit was turned?", "--indexed", indexed, "first or second"))
+        problems.append(Problem("which unit was turned?", "indexed", indexed, "first or second"))
     try:
         if second is not None:
             other = _opened(request, str(second))
             turned, fixed = (other, request.file) if indexed == "second" else (turned, other)
         elif indexed == "second":
-            problems.append(Problem("there is no second log", "--second", "", "a FILE"))
+            problems.append(Problem("there is no second log", "second", "", "a FILE"))
         log = turned.read(Need(columns=NEEDED, varying=GYROS, optional=OPTIONAL))
         other_log = None if fixed is None else _fixed(fixed)
     except SurveyError as error:
@@ -79,7 +79,7 @@ def _prior(request: NorthRequest, problems: list[Problem]) -> tuple[Floats | Non
     if text is None and sigma is None:
         return None, 0.0
     if text is None or sigma is None:
-        missing = "--bias-prior-deg-h" if text is None else "--bias-prior-sigma-deg-h"
+        missing = "bias_prior_deg_h" if text is None else "bias_prior_sigma_deg_h"
         problems.append(Problem("a prior needs values and their sigma", missing, "", "both"))
         return None, 0.0
     parts = text if isinstance(text, list) else str(text).split(",")
@@ -91,10 +91,10 @@ def _prior(request: NorthRequest, problems: list[Problem]) -> tuple[Floats | Non
         values = values * 3
     if len(values) != 3 or not all(math.isfinite(v) for v in values):
         expected = "three numbers, deg/h, as 0.1,-0.2,0"
-        problems.append(Problem("these are no biases", "--bias-prior-deg-h", str(text), expected))
+        problems.append(Problem("these are no biases", "bias_prior_deg_h", str(text), expected))
         return None, 0.0
     if not sigma > 0.0:
-        where = "--bias-prior-sigma-deg-h"
+        where = "bias_prior_sigma_deg_h"
         problems.append(Problem("a sigma is not positive", where, f"{sigma:g}", "above 0"))
         return None, 0.0
     return np.array(values) * DEG_H, sigma * DEG_H

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 from datetime import date
 from pathlib import Path
 
+from surveyapp.domain.advance import PartDone
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem
-from surveyapp.io.sensor_logs.blocks import Progress
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.languages import said
 
@@ -41,7 +41,7 @@ class NorthRequest:
     options: Mapping[str, object] = field(default_factory=dict)
     folder: Path | None = None
     today: date | None = None
-    progress: Progress | None = None
+    progress: PartDone | None = None
 
     def read(self, need: Need) -> SensorLog:
         """Read the columns that are needed."""
@@ -96,11 +96,11 @@ class NorthRequest:
         if degrees is None:
             if required and len(problems) == before:
                 what = "the latitude is not stated"
-                problems.append(Problem(what, "--latitude", "", "degrees", _LATITUDE_HINT))
+                problems.append(Problem(what, "latitude", "", "degrees", _LATITUDE_HINT))
             return None
         if not -90.0 <= degrees <= 90.0:
             found = f"{degrees:g}"
-            problems.append(Problem("this is no latitude", "--latitude", found, "-90 to 90"))
+            problems.append(Problem("this is no latitude", "latitude", found, "-90 to 90"))
             return None
         return math.radians(degrees)
 
@@ -123,9 +123,9 @@ def declination_problems(request: NorthRequest) -> list[Problem]:
     return [
         Problem(
             "a declination belongs to a magnetic heading only",
-            "--declination",
+            "declination",
             found,
-            "--initial-reference MAGNETIC",
+            "`initial_reference` MAGNETIC",
             "a gyro finds true north: with a declination the heading would be wrong by it",
         )
     ]

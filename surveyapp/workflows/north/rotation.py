@@ -43,7 +43,7 @@ def find(request: NorthRequest) -> NorthResult:
                 "the reference of the initial heading is not stated"
                 if reference is None
                 else "there is no such reference",
-                "--initial-reference",
+                "initial_reference",
                 "" if reference is None else str(reference),
                 either(REFERENCES),
                 "a heading without its reference can be wrong by the declination",
@@ -127,7 +127,7 @@ def _declination(
         parts = []
     if not 1 <= len(parts) <= 2 or not all(math.isfinite(p) for p in parts):
         problems.append(
-            Problem("this is no declination", "--declination", str(text), "D or D,SIGMA in degrees")
+            Problem("this is no declination", "declination", str(text), "D or D,SIGMA in degrees")
         )
         return None, None
     sigma = math.radians(parts[1]) if len(parts) == 2 else None

@@ -133,7 +133,10 @@ def head_pictures(log: SensorLog, result: Calibration) -> tuple[Picture, ...]:
 
 
 def stop_pictures(result: Calibration, *, gravity: float) -> tuple[Picture, ...]:
-    """Size of gravity at every stop, before and after."""
+    """Size of gravity at every stop, before and after.
+
+    ``gravity`` [m/s2].
+    """
     stops = result.extra.get("stops", [])
     if not stops:
         return ()

@@ -112,7 +112,6 @@ def _zero_hour() -> tuple[ProgrammeStep, ...]:
     )
 
 
-_COINCIDENT: Final = "The sensitive axis coincides with the axis of the dividing head."
 _PERPENDICULAR: Final = "The sensitive axis is perpendicular to the axis of the dividing head."
 _LSB: Final = {"output": "LSB"}
 

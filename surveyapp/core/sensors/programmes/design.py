@@ -16,11 +16,11 @@ import numpy as np
 
 from surveyapp.core.sensors.rate.needed import (
     CROSS_TOLERANCE,
-    NORMAL_95,
     SCALE_TOLERANCE,
     ZERO_TOLERANCE,
     covariance_of,
 )
+from surveyapp.core.statistics.distributions import NORMAL_95
 from surveyapp.domain.programme import Known, Programme, Row
 from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2
 from surveyapp_models.arrays import Floats

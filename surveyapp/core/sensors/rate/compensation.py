@@ -187,7 +187,10 @@ def chosen_model(comparison: tuple[Compensation, ...]) -> ModelName:
 
 
 def weights_at(model: ModelName, temperature_c: Floats, at: float) -> Floats | None:
-    """How much each node value counts at a temperature, shape (n,); None for the grey model."""
+    """How much each node value counts at a temperature, shape (n,); None for the grey model.
+
+    ``at`` in degrees Celsius, as the nodes.
+    """
     if model == "grey":
         return None
     unit = np.eye(temperature_c.size)

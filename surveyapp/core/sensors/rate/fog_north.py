@@ -80,7 +80,10 @@ class FogNorth:
 
 
 def predicted(position: Position, parameters: Floats, *, latitude: float, offset: float) -> float:
-    """Output of one position; ``offset`` = elevation of this position above the common one."""
+    """Output of one position; ``offset`` = elevation of this position above the common one.
+
+    ``latitude`` and ``offset`` [rad], rates [rad/s].
+    """
     north, bias, collimation, elevation = parameters
     level, vertical = EARTH_RATE * math.cos(latitude), EARTH_RATE * math.sin(latitude)
     turn = math.pi if position.plunged else 0.0

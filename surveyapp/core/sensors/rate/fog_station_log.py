@@ -125,7 +125,7 @@ def _against_rule(log: SensorLog, rule: Rule) -> Problem:
     other = "decreases" if rule == "increases" else "increases"
     return Problem(
         "the stated rule contradicts the passes",
-        f"{log.path}, --reading-from-elevation",
+        f"{log.path}, `reading_from_elevation`",
         rule,
         other,
         "from one pass to the other the vertical circle and the elevation changed in opposite "

@@ -13,11 +13,11 @@ import numpy as np
 
 from surveyapp.core.sensors.rate.needed import (
     CROSS_TOLERANCE,
-    NORMAL_95,
     SCALE_TOLERANCE,
     ZERO_TOLERANCE,
     covariance_of,
 )
+from surveyapp.core.statistics.distributions import NORMAL_95
 from surveyapp_models.arrays import Floats
 
 LEVELS = ("bias_scale", "three_scales", "misalignment")

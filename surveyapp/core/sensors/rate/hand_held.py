@@ -16,10 +16,10 @@ import numpy as np
 
 from surveyapp.core.sensors.rate.needed import (
     CROSS_TOLERANCE,
-    NORMAL_95,
     SCALE_TOLERANCE,
     covariance_of,
 )
+from surveyapp.core.statistics.distributions import NORMAL_95
 from surveyapp_models.arrays import Floats
 from surveyapp_models.rate import quaternions
 

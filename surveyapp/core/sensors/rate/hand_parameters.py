@@ -10,9 +10,9 @@ import numpy as np
 
 from surveyapp.core.sensors.rate.hand_forces import LEVELS, PARAMETERS, ForceModel
 from surveyapp.core.sensors.rate.hand_held import RateModel
-from surveyapp.core.sensors.rate.needed import NORMAL_95, tolerance_of
+from surveyapp.core.sensors.rate.needed import tolerance_of
 from surveyapp.core.sensors.rate.parameters import DEG_H, PPM
-from surveyapp.core.statistics.distributions import student_quantile
+from surveyapp.core.statistics.distributions import NORMAL_95, student_quantile
 from surveyapp.domain.calibration import SensorParameter
 from surveyapp.languages import counted, said
 from surveyapp_models.angles import ARCSEC

@@ -42,6 +42,8 @@ def turns_between(
 
     A turn with a gap in it, or with a gyro at the end of its range, tells nothing and is left out.
     The vertical earth rate turns nothing that the accelerometers feel and stays in the turn.
+
+    ``latitude`` [rad].
     """
     rate = np.column_stack([log.columns[c] for c in GYROS])
     ups = ups_of(stops, model)
@@ -80,7 +82,10 @@ def ups_of(stops: Sequence[HeldStop], model: ForceModel) -> Floats:
 
 
 def rest_rates(stops: Sequence[HeldStop], ups: Floats, latitude: float | None) -> Floats:
-    """Mean rates at the stops, the vertical earth rate taken out where the latitude is known."""
+    """Mean rates at the stops, the vertical earth rate taken out where the latitude is known.
+
+    ``latitude`` [rad].
+    """
     means = np.array([s.rate for s in stops])
     if latitude is None:
         return means

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from surveyapp.core.sensors.rate.indexing_values import Indexed, Root, Setting, Stop
+from surveyapp.core.statistics.distributions import NORMAL_95
 from surveyapp_models.angles import wrap_pi
 from surveyapp_models.arrays import Floats
 from surveyapp_models.rate import quaternions
@@ -219,18 +220,18 @@ class _System:
         )
 
     def profile(self, root: Root) -> float:
-        """Half the 95 % interval of the heading over 1.96, everything else free [rad].
+        """Half the 95 % interval of the heading as a sigma, everything else free [rad].
 
         Used where an index axis level and east-west makes the fit blind to small turns.
         """
         ends = []
         for sign in (1.0, -1.0):
             inside, step = 0.0, math.radians(0.25)
-            while inside < math.pi and self._held(root, sign * (inside + step)) < 3.84:
+            while inside < math.pi and self._held(root, sign * (inside + step)) < NORMAL_95**2:
                 inside += step
                 step *= 1.15
             ends.append(inside + 0.5 * step)
-        return 0.5 * (ends[0] + ends[1]) / 1.96
+        return 0.5 * (ends[0] + ends[1]) / NORMAL_95
 
     def _held(self, root: Root, turn: float) -> float:
         """Increase of chi-square with the heading held at a turn from the root."""

@@ -14,6 +14,7 @@ from surveyapp.core.sensors.rate.bias_track import Tracked, track_bias
 from surveyapp.core.sensors.rate.indexing import solve_indexing
 from surveyapp.core.sensors.rate.indexing_values import Indexed, Root, Setting, Stop
 from surveyapp.core.sensors.rate.parameters import DEG_H
+from surveyapp.core.statistics.distributions import NORMAL_95
 from surveyapp.domain.calibration import SensorParameter, with_reasons
 from surveyapp.domain.north import NorthDirection, NorthResult
 from surveyapp.domain.project import ResultWarning
@@ -38,7 +39,6 @@ LEVEL_AXIS = math.radians(10.0)
 EAST_WEST = math.radians(15.0)
 ALIGNED = math.radians(5.0)
 """Within these angles a degenerate attitude is told [rad]."""
-NORMAL_95 = 1.959963984540054
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,7 +39,6 @@ from surveyapp.core.sensors.rate.held_turns import (
 )
 from surveyapp.core.sensors.rate.needed import (
     CROSS_TOLERANCE,
-    NORMAL_95,
     SCALE_TOLERANCE,
     ZERO_TOLERANCE,
 )
@@ -52,6 +51,7 @@ from surveyapp.core.sensors.rate.still import (
     runs_of,
     statistic,
 )
+from surveyapp.core.statistics.distributions import NORMAL_95
 from surveyapp.domain.calibration import (
     Calibration,
     CalibrationModel,

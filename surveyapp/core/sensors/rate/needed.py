@@ -30,7 +30,6 @@ TOLERANCES: Final = {
     "misalignment": CROSS_TOLERANCE / ARCSEC,
 }
 """Half the interval that makers leave open, by the beginning of the name [unit of the value]."""
-NORMAL_95: Final = 1.959963984540054
 _FLOOR: Final = 1e-9
 
 

@@ -19,8 +19,6 @@ from surveyapp_models.arrays import Floats
 STEP_M = 0.5
 ODOMETER_SIGMA = 0.002
 """Relative scale error of a wheel: 2 mm in a metre, a tyre's wear; told with the result."""
-HEADING_SIGMA = math.radians(0.5)
-"""Of a heading found at a stop where its own sigma is not in the log [rad]."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from typing import Any, Final, Literal
 import numpy as np
 
 from surveyapp.core.sensors.rate.parameters import DEG_H
-from surveyapp.core.statistics.distributions import student_tail
+from surveyapp.core.statistics.distributions import NORMAL_95, student_tail
 from surveyapp.domain.calibration import SensorParameter
 from surveyapp.domain.north import NorthDirection, NorthResult, Reference
 from surveyapp.domain.project import ResultWarning
@@ -43,7 +43,6 @@ WARM_UP_S = 1800.0
 TREND_LEVEL = 0.01
 ZERO_SIGMAS = 3.0
 """A tilt below this many sigmas is none."""
-NORMAL_95 = 1.959963984540054
 
 STEP_TITLES: Final = (
     (101, "take the unit: three gyros and three accelerometers"),

@@ -112,7 +112,7 @@ def _outside(levels: Floats, wanted: Sequence[float], where: str) -> list[Proble
     return [
         Problem(
             "the temperature lies outside the nodes",
-            f"{where}, --predict-at",
+            f"{where}, `predict_at`",
             f"{t:g} C",
             said("{low:g} to {high:g} C", low=low, high=high),
             "nothing is extrapolated: calibrate over the range in which the unit is used",
@@ -128,7 +128,7 @@ def _room_problems(room: AccelerometerTriad) -> list[Problem]:
     return [
         Problem(
             "the room-temperature log does not determine the accelerometers",
-            "--room",
+            "room",
             said("rank {rank} of 12", rank=room.rank),
             "six positions, each axis up and down",
         )

@@ -195,7 +195,10 @@ def series_of(nodes: Sequence[Node], name: str) -> Series | None:
 
 
 def predicted(nodes: Sequence[Node], model: ModelName, at: float) -> list[SensorParameter]:
-    """Every parameter at a temperature, its sigma with the model's own error at left-out nodes."""
+    """Every parameter at a temperature, its sigma with the model's own error at left-out nodes.
+
+    ``at`` in degrees Celsius.
+    """
     temperatures = np.array([n.temperature_c for n in nodes])
     found = []
     for parameter in nodes[0].parameters:

@@ -27,8 +27,6 @@ RUN_UP_SIGMAS = 8.0
 1e5 samples of normal noise none does."""
 TURN_SLACK = 2e-3
 """Part of a turn that a nominal rate may lack of a whole one."""
-ENCODER_AGREES = 1e-3
-"""Relative difference up to which the nominal rate stands against the encoder."""
 
 
 @dataclass(frozen=True, slots=True)

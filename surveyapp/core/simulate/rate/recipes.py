@@ -318,7 +318,7 @@ def _chosen(kind: str, programme: str | None) -> tuple[str, tuple[Recipe, tuple[
     name = next(iter(known)) if programme is None else programme
     if name not in known:
         expected = " or ".join(known) or "no programme"
-        raise SurveyError(Problem("there is no such programme", "--programme", name, expected))
+        raise SurveyError(Problem("there is no such programme", "programme", name, expected))
     return name, known[name]
 
 

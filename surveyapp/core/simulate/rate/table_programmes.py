@@ -12,7 +12,6 @@ from surveyapp.core.simulate.rate.log import SimulatedLog, joined
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
 from surveyapp_models.rate import quaternions
-from surveyapp_models.rate.attitude import sensed
 from surveyapp_models.rate.fog_station import FogOnTelescope
 from surveyapp_models.rate.triad import Triad
 from surveyapp_models.rate.turntable import POSITIONS, Table, profile, seat, trapezoid
@@ -254,42 +253,3 @@ def fog_station_log(spec: FogStationRun, rng: np.random.Generator) -> SimulatedL
 
 def _elevation(fog: FogOnTelescope, reading: float) -> float:
     return math.asin(float(fog.axis(reading)[2]))
-
-
-def fog_north_rows(
-    fog: FogOnTelescope,
-    *,
-    north: float,
-    latitude: float,
-    readings: tuple[tuple[float, float, bool], ...],
-    rng: np.random.Generator | None,
-) -> SimulatedLog:
-    """Rows of the four positions: (alidade reading, vertical reading, plunged) [rad].
-
-    The alidade's circle reads ``north`` in the direction of astronomic north.
-    """
-    rates = []
-    for alidade, vertical, _ in readings:
-        rate = fog.at_rest(reading=vertical, alidade_azimuth=alidade - north, latitude=latitude)
-        rates.append(float(fog.output(np.array([rate]), rng)[0]))
-    columns = {
-        "time_s": np.arange(len(readings)) * 120.0,
-        "gyr_x_rad_s": np.array(rates),
-        "horizontal_circle_deg": np.rad2deg([r[0] for r in readings]) % 360.0,
-        "vertical_circle_deg": np.rad2deg([r[1] for r in readings]) % 360.0,
-    }
-    faces = ["R" if r[2] else "L" for r in readings]
-    return SimulatedLog(columns, {"face": faces}, {"north_deg": math.degrees(north)})
-
-
-def at_rest_log(
-    q: Floats,
-    *,
-    gyro: Triad,
-    accelerometer: Triad,
-    latitude: float,
-    rng: np.random.Generator,
-) -> tuple[Floats, Floats]:
-    """Outputs of a unit at rest in given attitudes, shapes (n, 3)."""
-    rates, forces = sensed(q, latitude=latitude)
-    return gyro.output(rates, forces=forces, rng=rng), accelerometer.output(forces, rng=rng)

@@ -170,9 +170,9 @@ class Columns:
 def check_map(
     quantities: Quantities, columns: Mapping[str, str], units: Mapping[str, str]
 ) -> list[Problem]:
-    """Everything that is wrong with ``--map`` and ``--unit``."""
+    """Everything that is wrong with columns and units."""
     problems = []
-    for option, given in (("--map", columns), ("--unit", units)):
+    for option, given in (("columns", columns), ("units", units)):
         for name in given:
             if name not in quantities.names:
                 hint = nearest_names(name, quantities.names)
@@ -180,17 +180,17 @@ def check_map(
     missing = [name for name in quantities.required if name not in columns]
     if missing:
         expected = " ".join(f"{name}=COLUMN" for name in missing)
-        problems.append(Problem("columns are not mapped", "--map", ", ".join(missing), expected))
+        problems.append(Problem("columns are not mapped", "columns", ", ".join(missing), expected))
     for name in columns:
         allowed = _allowed(quantities, name)
         unit = units.get(name)
         if unit is None and name in quantities.angles | quantities.lengths:
             expected = said("--unit {name}= {names}", name=name, names=" | ".join(allowed))
-            problems.append(Problem("a unit is not told", "--unit", name, expected))
+            problems.append(Problem("a unit is not told", "units", name, expected))
         elif unit is not None and unit not in allowed:
             expected = " | ".join(allowed) or "no unit"
             problems.append(
-                Problem(said("{name} in an impossible unit", name=name), "--unit", unit, expected)
+                Problem(said("{name} in an impossible unit", name=name), "units", unit, expected)
             )
     return problems
 

@@ -260,6 +260,6 @@ def gathering(path: Path, options: ReadOptions) -> Gathering:
     told = options.units.get("foot")
     if told is not None and told not in kinds:
         hint = nearest_names(told, kinds)
-        raise SurveyError(Problem("there is no such foot", "--unit foot", told, "", hint))
+        raise SurveyError(Problem("there is no such foot", "`units` foot", told, "", hint))
     foot = FootChoice() if told is None else FootChoice(kinds[told], told=True)
     return Gathering(path.name, options, foot)

@@ -99,7 +99,7 @@ def check_stations(state: State) -> None:
         raise SurveyError(
             Problem(
                 "the file has no code block of this code",
-                "--station-code",
+                "station_code",
                 code,
                 said("one of the codes of the file: {codes}", codes=codes or "there is none"),
             )

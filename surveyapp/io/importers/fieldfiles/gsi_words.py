@@ -22,7 +22,6 @@ ONCE: Final = 4
 _MEASURED: Final = frozenset({"21", "22", "31", "32"})
 HEAD: Final = 7
 """Index, information and sign."""
-WIDTHS: Final = (8, 16)
 _OPENING = re.compile(r"(?<!\S)\*?(?:11|41)[\d.?]{4}[+-]")
 _HEAD = re.compile(r"\d\d[\d.?]{4}[+-]")
 _PLACES: Final = {"0": 1e-3, "6": 1e-4, "8": 1e-5}

@@ -1,0 +1,73 @@
+"""Errors of the API name its arguments; the command line puts its options in their place."""
+
+from __future__ import annotations
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+from surveyapp.cli.main import COMMANDS, parser_of
+from surveyapp.errors import Problem
+
+ROOT = Path(__file__).resolve().parents[2] / "surveyapp"
+ROOMS = ("api", "workflows", "io", "diagnosis", "core", "domain")
+OPTION = re.compile(r"(?<![\w-])--[a-z][a-z-]+")
+WHOLE = ("surveyapp ", "dask ", "diagnose --")
+"""A command that is told with its options is no speech of options."""
+
+
+def texts(node: ast.AST) -> str:
+    """Texts of a problem; those of ``said`` are translated with the options in them."""
+    if isinstance(node, ast.Call) and ast.unparse(node.func) == "said":
+        return ""
+    own = [node.value] if isinstance(node, ast.Constant) and isinstance(node.value, str) else []
+    return " ".join([*own, *map(texts, ast.iter_child_nodes(node))])
+
+
+def place_of(node: ast.Call) -> ast.AST:
+    """Where a problem is said to be: hints are in the words of who types."""
+    named = [k.value for k in node.keywords if k.arg == "where"]
+    return (*named, *node.args[1:2], ast.Constant(""))[0]
+
+
+def test_no_problem_lies_at_an_option() -> None:
+    faults = []
+    for room in ROOMS:
+        for path in sorted((ROOT / room).rglob("*.py")):
+            text = path.read_text(encoding="utf-8")
+            if not OPTION.search(text):
+                continue
+            for node in ast.walk(ast.parse(text)):
+                if isinstance(node, ast.Call) and ast.unparse(node.func) == "Problem":
+                    told = texts(place_of(node))
+                    if OPTION.search(told) and not any(word in told for word in WHOLE):
+                        faults.append(f"{path.relative_to(ROOT)}:{node.lineno}")
+    assert faults == []
+
+
+@pytest.mark.parametrize(
+    ("command", "given", "shown"),
+    [
+        ("orient", Problem("x", "session"), Problem("x", "--session")),
+        ("import", Problem("x", "columns"), Problem("x", "--map")),
+        (
+            "import",
+            Problem("x", "a", "", "`units` hz= gon"),
+            Problem("x", "a", "", "--unit hz= gon"),
+        ),
+        (
+            "import",
+            Problem("x", hint="`skip_damaged` leaves such lines out"),
+            Problem("x", hint="--skip-damaged leaves such lines out"),
+        ),
+        ("orient", Problem("x", "`units` foot"), Problem("x", "`units` foot")),
+        ("north", Problem("x", "rate_sigma_deg_h"), Problem("x", "--rate-sigma-deg-h")),
+    ],
+)
+def test_the_command_line_shows_the_option_that_gave_an_argument(
+    command: str, given: Problem, shown: Problem
+) -> None:
+    parser = parser_of(next(item for item in COMMANDS if item.name == command))
+    assert parser.as_typed(given) == shown
