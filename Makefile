@@ -5,10 +5,11 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 export PYTHONPATH := .:models
 
-.PHONY: help demo test check bench docs format clean
+.PHONY: help demo test fit check bench docs format clean
 help:
 	@echo "make demo    the measured samples: printed against computed, before and after"
 	@echo "make test    the test suite"
+	@echo "make fit     every screen in four languages and three windows: nothing is cut"
 	@echo "make check   format, lint, types, layers, generated docs"
 	@echo "make bench   speed as ratios against a peer, and the full Monte Carlo campaigns"
 	@echo "make docs    write the generated reference pages anew"
@@ -23,6 +24,9 @@ demo: $(STAMP)
 
 test: $(STAMP)
 	$(BIN)/python -m pytest -n 2 --dist loadfile
+
+fit: $(STAMP)
+	SURVEYAPP_FIT_EVERY_SIZE=1 $(BIN)/python -m pytest -n 2 tests/languages/test_screens_fit.py
 
 check: $(STAMP)
 	$(BIN)/ruff format --check .

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
+from surveyapp.core.network.collector import paused_collection
 from surveyapp.domain.closing import Filing
 from surveyapp.domain.project import Centring, Project, ResultWarning
 from surveyapp.domain.rulebook import RuleBook
@@ -92,6 +93,7 @@ def read_project(folder: Path, *, repair: bool | None = None, observing: bool = 
         raise SurveyError([*changed_after_closing(folder), *error.problems]) from None
 
 
+@paused_collection()
 def _read(folder: Path, *, repair: bool | None, observing: bool) -> Project:
     findings = Findings()
     files = ProjectFiles(folder, findings, observing=observing)

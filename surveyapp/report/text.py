@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 import unicodedata
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -36,6 +37,12 @@ _BELOW: Final = 4
 _GAP: Final = 2
 _MM_PER_COLUMN: Final = 2.0
 _MM_PER_ROW: Final = 4.0
+_CLOSING: Final = "。，、；：？！）》」』】”’"
+_PIECES: Final = re.compile(
+    rf"[\u2e80-\u9fff\uf900-\ufaff\uff00-\uffef\u3000-\u303f][{_CLOSING}]*\s*"
+    rf"|[^\s\u2e80-\u9fff\uf900-\ufaff\uff00-\uffef]+[{_CLOSING}]*\s*|\s+"
+)
+"""What a line does not break: a wide character or a word, with the marks behind it."""
 _INK: Final = {"axis": ".", "grid": " ", "data": "-", "mean": "=", "limit": "~", "bar": "|"}
 _MARK: Final = {"circle": "o", "dot": "*", "cross": "x", "square": "#"}
 
@@ -77,9 +84,7 @@ def block_text(block: Block, width: int = WIDTH) -> str:
         case Paragraph():
             mark = "! " if block.tone == "warning" else ""
             set_in = "" if block.tone == "body" else "  "
-            return textwrap.fill(
-                mark + block.text, width, subsequent_indent=set_in, break_on_hyphens=False
-            )
+            return filled(mark + block.text, width, set_in=set_in)
         case KeyValues():
             return _facts(block, width)
         case Table():
@@ -203,7 +208,8 @@ def _layout(rows: Sequence[Sequence[str]], align: str, room: int) -> tuple[list[
 
 
 def _longest_word(cell: str) -> int:
-    return max((display_width(word) for word in cell.split()), default=0)
+    words = cell.split() if display_width(cell) == len(cell) else _PIECES.findall(cell)
+    return max((display_width(word.rstrip()) for word in words), default=0)
 
 
 def _squeeze(widths: list[int], floors: Sequence[int], available: int) -> None:
@@ -218,8 +224,33 @@ def _squeeze(widths: list[int], floors: Sequence[int], available: int) -> None:
 def _wrapped(cell: str, width: int) -> list[str]:
     if display_width(cell) <= width:
         return [cell]
+    if display_width(cell) > len(cell):
+        return _wrapped_wide(cell, width)
     whole = _longest_word(cell) <= width
     return textwrap.wrap(cell, width, break_on_hyphens=not whole) or [""]
+
+
+def filled(text: str, width: int, *, set_in: str = "") -> str:
+    """A text in lines of a width [columns], all but the first set in."""
+    if display_width(text) == len(text):
+        return textwrap.fill(text, width, subsequent_indent=set_in, break_on_hyphens=False)
+    return f"\n{set_in}".join(_wrapped_wide(text, width - len(set_in)))
+
+
+def _wrapped_wide(text: str, width: int) -> list[str]:
+    """Lines of a text with wide characters, between any two of which a line may end.
+
+    What may not begin a line (closing marks) hangs over with the character before it.
+    """
+    lines, line, room = [], "", width
+    for piece in _PIECES.findall(text):
+        size = display_width(piece.rstrip())
+        if line and size > room:
+            lines.append(line.rstrip())
+            line, room = "", width
+        line += piece
+        room -= display_width(piece)
+    return [*lines, line.rstrip()] if line else lines or [""]
 
 
 def _figure(figure: Figure) -> str:

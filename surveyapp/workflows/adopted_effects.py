@@ -17,4 +17,4 @@ def not_taken_out(entry: SensorLogEntry | None) -> tuple[ResultWarning, ...]:
         "the record without, a sensor card holds parameters only",
         names=names,
     )
-    return (ResultWarning("effects_not_taken_out", text),)
+    return (ResultWarning("adopted_not_applied", text),)

@@ -13,6 +13,7 @@ import numpy as np
 
 from surveyapp.core.checks.evidence import Evidence, TraverseEvidence
 from surveyapp.core.checks.verdicts import verdicts, verdicts_of
+from surveyapp.core.network.collector import paused_collection
 from surveyapp.core.network.oriented import oriented_lines, with_shared_errors
 from surveyapp.core.network.traverse_network import network_of
 from surveyapp.core.orientation.outcome import outcome
@@ -111,6 +112,7 @@ def generator_of(project: Project) -> np.random.Generator:
     return np.random.default_rng(int(project.digest[:16] or "0", 16))
 
 
+@paused_collection()
 def oriented(
     project: Project,
     *,

@@ -238,3 +238,24 @@ def test_coordinates_in_another_unit_or_exchanged_are_told(
     folder = project(tmp_path, grid=f'crs = "{crs}"', a=f"e = {e}\nn = {n}", c=f"e = {e}\nn = {n}")
     failed = [c.rule for c in api.check(folder) if c.confirmed and c.passed is False]
     assert f"grid.{rule}" in failed
+
+
+def test_a_mine_grid_by_hand_away_from_its_origin(tmp_path: Path) -> None:
+    # C lies 500 m east and 500 m north of the origin in the mine, 593.03 m east and 385.12 m north
+    # in the world; the meridian through it converges by east tan(latitude) / N (GRS80)
+    folder = project(
+        tmp_path, grid=LOCAL + " }", known='azimuth_known = "018-00-00"', c="e = 1500.0\nn = 2500.0"
+    )
+    turn = math.radians(12.0)
+    east = 500.0 * math.cos(turn) + 500.0 * math.sin(turn)
+    north = 500.0 * math.cos(turn) - 500.0 * math.sin(turn)
+    e2, a = 0.00669438002290, 6378137.0
+    across = a / math.sqrt(1.0 - e2 * math.sin(math.radians(47.0)) ** 2)
+    along = across * (1.0 - e2) / (1.0 - e2 * math.sin(math.radians(47.0)) ** 2)
+    latitude = math.radians(47.0) + north / along
+    convergence = east * math.tan(latitude) / across * RHO_ARCSEC
+    line = api.orient(folder).to_dict()["lines"][0]
+    assert convergence == pytest.approx(20.53, abs=0.01)
+    assert line["convergence_arcsec"] == pytest.approx(43200.0 + convergence, abs=1e-3)
+    # gyro 100-00-00.1, constant -0.1: true 100-00-00, from the mine's north at C 87-59-39.47
+    assert line["grid_azimuth"]["deg"] == pytest.approx(88.0 - convergence / 3600.0, abs=1e-7)

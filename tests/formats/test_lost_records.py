@@ -49,6 +49,21 @@ def test_a_joined_line_may_have_swallowed_a_target_height(tmp_path: Path) -> Non
     assert codes[gone + 1] == "depends_on_damaged"
 
 
+def test_a_joined_line_may_have_swallowed_a_station(tmp_path: Path) -> None:
+    """What then names another station than the one before has lost it, with its height."""
+    lines = list(FILES["sdr"])
+    gone = [i for i, line in enumerate(lines) if line.startswith("02")][1]
+    lines[gone - 1] = lines[gone - 1].ljust(100) + "41737"
+    del lines[gone]
+    following = next(i for i, line in enumerate(lines) if i >= gone and line.startswith("02"))
+    folder, result = bring(tmp_path, "sdr", lines, skip_damaged=True)
+    codes = {item.line: item.code for item in result.skipped}
+    lost = [i + 1 for i, line in enumerate(lines) if gone <= i < following and line[:2] == "09"]
+    assert {codes[line] for line in lost} == {"depends_on_damaged"}
+    raw = rows(folder / "imports" / "main.raw.csv")
+    assert not {int(row["line"]) for row in raw} & set(lost)
+
+
 def test_a_sight_without_a_circle_reading(tmp_path: Path) -> None:
     lines = list(FILES["sdr"])
     place = _readings("sdr")[-1]

@@ -7,10 +7,12 @@ import pytest
 from textual.widgets import DataTable
 
 from surveyapp import api
+from surveyapp.report.blocks import Paragraph
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.confirm import ConfirmScreen
 from surveyapp.tui.screens.diagnosis import DiagnosisScreen
 from surveyapp.tui.screens.project import ProjectScreen
+from surveyapp.tui.views.diagnosis import diagnosis_blocks
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -40,9 +42,10 @@ async def test_diagnosis_is_shown_asked_for_and_adopted_once(
         expected = api.diagnose(folder, log=False)
         assert expected.diagnosis is not None
         assert row == ["run", "run-1966-05-13", expected.diagnosis.verdict.replace("_", " ")]
-        shown = screen.texts[0].plain
+        told = screen.told[0]
+        assert told == diagnosis_blocks(expected, api.open_project(folder).angle_unit)
         for sentence in expected.words:
-            assert sentence in shown
+            assert Paragraph(sentence) in told
         await pilot.press("a")
         await pilot.pause()
         assert isinstance(app.screen, ConfirmScreen)

@@ -27,7 +27,7 @@ async def settle(pilot: Pilot[int]) -> None:
 
 
 def shown(pilot: Pilot[int]) -> str:
-    return str(pilot.app.screen.query_one("#understood-file", Static).content)
+    return str(pilot.app.screen.query_one("#preview Static", Static).content)
 
 
 async def choose(pilot: Pilot[int], name: str) -> None:

@@ -17,6 +17,8 @@ from surveyapp.tui.screens.penetration import PAGES, PenetrationScreen
 from surveyapp.tui.screens.project import ProjectScreen
 from surveyapp.tui.screens.shaft import ShaftScreen
 from surveyapp.tui.views import penetration as view
+from surveyapp.tui.views import shafts as shaft_view
+from surveyapp.tui.widgets.blocks_pane import BlocksPane
 from surveyapp.tui.widgets.heading_plan import GYRO, HeadingPlan
 from surveyapp.tui.widgets.shaft_pictures import SwingPictures, TrianglePictures
 from surveyapp.tui.widgets.titlebar import TitleBar
@@ -69,8 +71,8 @@ async def test_the_number_follows_every_key(size: tuple[int, int], folder: Path)
             await pilot.press(str(key))
             await pilot.pause()
             assert screen.query_one(TabbedContent).active == page
-        table = screen.query_one("#budget DataTable", DataTable)
-        assert table.row_count == len(after.prediction.budget) + 1
+        told = screen.query_one("#budget BlocksPane", BlocksPane)
+        assert told.blocks == view.pages(after.prediction)["budget"]
         await pilot.press("escape")
         await settle(app, pilot)
         assert isinstance(app.screen, ProjectScreen)
@@ -86,8 +88,8 @@ async def test_the_shaft_shows_azimuths_swings_and_triangles(folder: Path) -> No
         await settle(app, pilot)
         screen = app.screen
         assert isinstance(screen, ShaftScreen)
-        table = screen.query_one("#azimuth DataTable", DataTable)
-        assert next(str(c) for c in table.get_row_at(2)) == texts.S_TOGETHER
+        told = screen.query_one("#azimuth BlocksPane", BlocksPane)
+        assert told.blocks == shaft_view.pages(api.shaft(folder), shaft, screen.unit)["azimuth"]
         assert shaft.combined.consistent
         await pilot.press("2")
         await settle(app, pilot)

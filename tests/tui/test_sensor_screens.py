@@ -167,7 +167,7 @@ async def test_a_log_is_added_with_its_columns_named(
         screen.query_one("#files", OptionList).highlighted = 1
         await pilot.press("enter")
         await settle(pilot)
-        assert "mx" in str(screen.query_one("#understood-log", Static).content)
+        assert "mx" in str(screen.query_one("#preview Static", Static).content)
         line = screen.query_one("#options", Input)
         line.value = "id=second kind=compass map.mag_x_uT=mx unit.mx=uT"
         line.focus()

@@ -75,13 +75,13 @@ async def test_the_tutorial_word_for_word(tmp_path: Path, monkeypatch: pytest.Mo
     async with app.run_test(size=SMALL) as pilot:
         await settle(pilot)
         for kind, text in blocks:
+            screen = shown(app) if kind == "screen" else ""
             for line in text.splitlines():
                 if kind == "keys":
                     await press(pilot, clock, line)
                 elif kind == "form":
                     fill(app, line)
                 else:
-                    screen = shown(app)
                     assert " ".join(line.split()) in screen, f"{line!r} is not on\n{screen}"
             await settle(pilot)
     assert len(blocks) > 20

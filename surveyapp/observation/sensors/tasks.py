@@ -101,16 +101,13 @@ def _calibrate(
 def _allan(
     folder: str, entry: SensorLogEntry, told: ToldOptions, progress: PartDone | None
 ) -> Examined:
-    from surveyapp.report.sections.sensor_results import warning_blocks
-    from surveyapp.report.sections.sensors import coefficients, deviations
+    from surveyapp.report.blocks import without_figures
+    from surveyapp.report.sections.sensors import allan_blocks
 
     own = cast("dict[str, Any]", dict(told.own))
     result = api.allan(folder, sensor=entry.id, log=told.log, progress=progress, **own)
-    blocks: list[Block] = []
-    for channel in result.channels:
-        blocks += [coefficients(channel), deviations(channel)]
-    blocks += warning_blocks(result.warnings)
-    return Examined("allan", tuple(blocks), api.sensor_pictures(result).pictures)
+    blocks = without_figures(allan_blocks(entry.id, result))
+    return Examined("allan", blocks, api.sensor_pictures(result).pictures)
 
 
 def _filter(

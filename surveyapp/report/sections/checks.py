@@ -49,6 +49,8 @@ COLUMNS: Final = (
 """Everything that is told of a check: a new field is one entry."""
 HEAD: Final = tuple(column.head for column in _TERMINAL)
 """Heads of ``row``."""
+ALIGN: Final = "".join(column.align for column in _TERMINAL)
+"""Alignment of ``row``."""
 
 
 def row(check: Check) -> tuple[str, ...]:
@@ -56,9 +58,15 @@ def row(check: Check) -> tuple[str, ...]:
     return tuple(column.of(check) for column in _TERMINAL)
 
 
-def details(check: Check) -> str:
+def table(checks: Iterable[Check]) -> Table:
+    """Every check in a row, what is not met first, what could not be answered last."""
+    shown = ordered(checks)
+    return Table(HEAD, tuple(row(check) for check in shown), ALIGN, strong=_strong(shown))
+
+
+def details(check: Check) -> tuple[Paragraph, ...]:
     """The running text of a check: its sentence and its clause."""
-    return joined("\n", (column.of(check) for column in COLUMNS[len(_TERMINAL) :]))
+    return tuple(Paragraph(column.of(check)) for column in COLUMNS[len(_TERMINAL) :])
 
 
 def ordered(checks: Iterable[Check]) -> list[Check]:
@@ -107,9 +115,8 @@ def _answered(checks: Sequence[Check]) -> Table:
 
 def _narrow(checks: Sequence[Check], warnings: Sequence[ResultWarning]) -> tuple[Block, ...]:
     """A row for each check, then what is not met in words, then where the limits come from."""
-    align = "".join(column.align for column in _TERMINAL)
     found: list[Block] = [
-        Table(HEAD, tuple(row(check) for check in checks), align, strong=_strong(checks))
+        Table(HEAD, tuple(row(check) for check in checks), ALIGN, strong=_strong(checks))
     ]
     loud = {(warning.code, warning.subject) for warning in warnings}
     found += [

@@ -31,21 +31,42 @@ STEPS = 48
 
 def blocks(result: Prediction) -> tuple[Block, ...]:
     """Blocks of the section."""
-    found: list[Block] = [
-        Heading(said("Breakthrough")),
-        KeyValues(_facts(result)),
-        _verdict(result),
-    ]
     figure = plan_figure(result)
-    if figure is not None:
-        found.append(figure)
-    found += [Heading(said("Budget at the meeting point"), 2), _budget(result)]
-    found.append(Paragraph(said("1 sigma; the rows add in squares to the total."), "small"))
-    if result.measured is not None:
-        found += [Heading(said("After the breakthrough"), 2), *_measured(result.measured)]
-    found += [Heading(said("The six steps of the procedure"), 2), _steps(result)]
-    found += [Paragraph(joined(": ", (w.code, w.text)), "warning") for w in result.warnings]
-    return tuple(found)
+    return (
+        *prediction(result),
+        *(() if figure is None else (figure,)),
+        *budget(result),
+        *evaluation(result),
+        Heading(said("The six steps of the procedure"), 2),
+        steps(result),
+        *warnings(result),
+    )
+
+
+def prediction(result: Prediction) -> tuple[Block, ...]:
+    """What is predicted and what is allowed."""
+    return (Heading(said("Breakthrough")), KeyValues(_facts(result)), _verdict(result))
+
+
+def budget(result: Prediction) -> tuple[Block, ...]:
+    """Every cause at the meeting point."""
+    return (
+        Heading(said("Budget at the meeting point"), 2),
+        _budget(result),
+        Paragraph(said("1 sigma; the rows add in squares to the total."), "small"),
+    )
+
+
+def evaluation(result: Prediction) -> tuple[Block, ...]:
+    """The miss that was measured against what was predicted; none before."""
+    if result.measured is None:
+        return ()
+    return (Heading(said("After the breakthrough"), 2), *_measured(result.measured))
+
+
+def warnings(result: Prediction) -> tuple[Block, ...]:
+    """What must be told beside the numbers."""
+    return tuple(Paragraph(joined(": ", (w.code, w.text)), "warning") for w in result.warnings)
 
 
 def _facts(result: Prediction) -> tuple[tuple[str, str], ...]:
@@ -155,7 +176,8 @@ def _measured(test: MissTest) -> list[Block]:
     return found
 
 
-def _steps(result: Prediction) -> Table:
+def steps(result: Prediction) -> Table:
+    """The six steps of the procedure with every entry that is recorded of them."""
     rows: list[tuple[str, ...]] = []
     for number, title in enumerate(STEP_TITLES, start=1):
         entries = [step for step in result.steps if step.id == number]

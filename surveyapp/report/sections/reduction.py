@@ -38,6 +38,7 @@ def blocks(project: Project, result: OrientationResult) -> tuple[Block, ...]:
 
 SUMMARY = said_each("session", "method", "points", "gyro north", "azimuth", '±"', 'rms "')
 """Columns of ``summary``."""
+SUMMARY_ALIGN = "llrrrrr"
 
 
 def summary(project: Project, result: OrientationResult) -> tuple[Block, ...]:
@@ -46,7 +47,7 @@ def summary(project: Project, result: OrientationResult) -> tuple[Block, ...]:
     rows = tuple(summary_row(item, unit) for item in result.sessions)
     if not rows:
         return ()
-    found: list[Block] = [Heading(said("Sessions")), Table(SUMMARY, rows, "llrrrrr")]
+    found: list[Block] = [Heading(said("Sessions")), Table(SUMMARY, rows, SUMMARY_ALIGN)]
     sights = tuple(
         (
             item.id,

@@ -8,7 +8,7 @@ from dataclasses import replace
 from itertools import chain
 
 from surveyapp.core.sensors.charts.results import slopes
-from surveyapp.domain.calibration import Calibration
+from surveyapp.domain.calibration import Calibration, SensorParameter
 from surveyapp.domain.noise import AllanChannel, AllanResult
 from surveyapp.domain.project import ResultWarning
 from surveyapp.languages import joined, said, said_each, term
@@ -33,7 +33,7 @@ def calibration_blocks(identity: str, result: Calibration) -> tuple[Block, ...]:
 
 def calibration_body(result: Calibration) -> tuple[Block, ...]:
     """The same without the heading."""
-    found: list[Block] = [_facts(result), _parameters(result)]
+    found: list[Block] = [_facts(result), parameter_table(result.parameters)]
     if result.models:
         found += [Heading(said("Models compared"), 2), _models(result)]
     if not result.met:
@@ -94,7 +94,8 @@ def _facts(result: Calibration) -> KeyValues:
     return KeyValues(tuple(pairs))
 
 
-def _parameters(result: Calibration) -> Table:
+def parameter_table(parameters: Sequence[SensorParameter]) -> Table:
+    """Parameters with their sigma, of a calibration or a card."""
     rows = tuple(
         (
             term(item.name.replace("_", " ")),
@@ -102,7 +103,7 @@ def _parameters(result: Calibration) -> Table:
             four_digits(item.sigma),
             item.unit,
         )
-        for item in result.parameters
+        for item in parameters
     )
     return Table(said_each("parameter", "value", "±", "unit"), rows, "lrrl")
 

@@ -16,21 +16,42 @@ def blocks(result: ShaftResult, *, unit: AngleUnit) -> tuple[Block, ...]:
     """Blocks of every shaft."""
     found: list[Block] = []
     for shaft in result.shafts:
-        found += [Heading(said("Shaft {id}", id=shaft.id)), _azimuths(shaft, unit)]
-        if shaft.combined.consistent is False:
-            text = said("Wires and gyro contradict each other: nothing is averaged.")
-            found.append(Paragraph(text, "warning"))
-        found += [Heading(said("Checks of the shaft"), 2), _checks(shaft)]
-        text = said(
-            "The plumb lines converge by {convergence_mm:.2f} mm over the depth.",
-            convergence_mm=shaft.convergence_mm,
-        )
-        found.append(Paragraph(text, "small"))
-        found += [Heading(said("Rest of the wires"), 2), _wires(shaft)]
-        found += [Heading(said("Error of one orientation through the shaft"), 2), _budget(shaft)]
-        found += [Heading(said("Checks of the plumbing"), 2), _plumbing(shaft)]
-    found += [Paragraph(joined(": ", (w.code, w.text)), "warning") for w in result.warnings]
-    return tuple(found)
+        found += [*orientation(shaft, unit), *wires(shaft), *budget(shaft), *plumbing(shaft)]
+    return (*found, *warnings(result))
+
+
+def orientation(shaft: ShaftOrientation, unit: AngleUnit) -> tuple[Block, ...]:
+    """The azimuth by wires, by gyro and together, and what checks it."""
+    found: list[Block] = [Heading(said("Shaft {id}", id=shaft.id)), _azimuths(shaft, unit)]
+    if shaft.combined.consistent is False:
+        text = said("Wires and gyro contradict each other: nothing is averaged.")
+        found.append(Paragraph(text, "warning"))
+    text = said(
+        "The plumb lines converge by {convergence_mm:.2f} mm over the depth.",
+        convergence_mm=shaft.convergence_mm,
+    )
+    checks = Heading(said("Checks of the shaft"), 2)
+    return (*found, checks, _checks(shaft), Paragraph(text, "small"))
+
+
+def wires(shaft: ShaftOrientation) -> tuple[Block, ...]:
+    """Where each wire comes to rest."""
+    return (Heading(said("Rest of the wires"), 2), _wires(shaft))
+
+
+def budget(shaft: ShaftOrientation) -> tuple[Block, ...]:
+    """What the error of one orientation is made of."""
+    return (Heading(said("Error of one orientation through the shaft"), 2), _budget(shaft))
+
+
+def plumbing(shaft: ShaftOrientation) -> tuple[Block, ...]:
+    """The checks of the plumbing, open ones too."""
+    return (Heading(said("Checks of the plumbing"), 2), _plumbing(shaft))
+
+
+def warnings(result: ShaftResult) -> tuple[Block, ...]:
+    """What must be told beside the numbers."""
+    return tuple(Paragraph(joined(": ", (w.code, w.text)), "warning") for w in result.warnings)
 
 
 def _azimuths(shaft: ShaftOrientation, unit: AngleUnit) -> Table:

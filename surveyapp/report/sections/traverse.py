@@ -32,26 +32,42 @@ def blocks(
     title : str
         Instead of ``Traverse NAME``.
     """
-    found: list[Block] = [
+    plan = plan_figure(result)
+    return (
         Heading(title or said("Traverse {name}", name=name)),
-        KeyValues(_facts(result)),
-    ]
+        facts(result),
+        *closures(result),
+        Heading(said("Points"), 2),
+        points(result),
+        *(() if plan is None else (plan,)),
+        *shared(result, unit),
+        Heading(said("Observations"), 2),
+        *observations(result, unit),
+        *suspicions(result),
+        *(Paragraph(joined(": ", (w.code, w.text)), "warning") for w in result.warnings),
+    )
+
+
+def facts(result: AdjustmentResult) -> KeyValues:
+    """Degrees of freedom, sigma0, the global test, and what data snooping accuses."""
+    return KeyValues(_facts(result))
+
+
+def closures(result: AdjustmentResult) -> tuple[Block, ...]:
+    """Misclosures before the adjustment; none where no route closes."""
     plane = [item for item in result.closures if item.kind != "height"]
     heights = [item for item in result.closures if item.kind == "height"]
+    found: list[Block] = []
     if plane:
         found += [Heading(said("Closures before the adjustment"), 2), _closures(plane)]
     if heights:
         found += [Heading(said("Height closures before the adjustment"), 2), _levelling(heights)]
-    found += [Heading(said("Points"), 2), _points(result)]
-    plan = plan_figure(result)
-    if plan is not None:
-        found.append(plan)
-    if result.shared:
-        found += [Heading(said("Constants and orientations"), 2), _shared(result, unit)]
-    found += [Heading(said("Observations"), 2), *_observations(result, unit)]
-    found += [*_suspects(result), *_removals(result)]
-    found += [Paragraph(joined(": ", (w.code, w.text)), "warning") for w in result.warnings]
     return tuple(found)
+
+
+def suspicions(result: AdjustmentResult) -> tuple[Block, ...]:
+    """What is suspected of a gross error, and the adjustment without it."""
+    return (*_suspects(result), *_removals(result))
 
 
 def _suspects(result: AdjustmentResult) -> tuple[Block, ...]:
@@ -235,7 +251,8 @@ def _route(stations: tuple[str, ...]) -> str:
     return f"{' - '.join(stations[:3])} - ... ({len(stations)}) - {stations[-1]}"
 
 
-def _points(result: AdjustmentResult) -> Table:
+def points(result: AdjustmentResult) -> Table:
+    """Adjusted coordinates with their sigmas and standard ellipses."""
     rows = []
     for p in result.points:
         sigmas = [None if s is None else s * MM for s in (p.sigma_e, p.sigma_n, p.sigma_h)]
@@ -255,7 +272,8 @@ def _points(result: AdjustmentResult) -> Table:
     return _filled(head, rows, "lrrrrrrr")
 
 
-def _shared(result: AdjustmentResult, unit: AngleUnit) -> Table:
+def shared(result: AdjustmentResult, unit: AngleUnit) -> tuple[Block, ...]:
+    """Constants of instruments and orientations of sets; none where there are none."""
     rows = []
     for item in result.shared:
         value = (
@@ -266,48 +284,57 @@ def _shared(result: AdjustmentResult, unit: AngleUnit) -> Table:
         rows.append(
             (term(item.kind.replace("_", " ")), item.name, value, plain(item.sigma * RHO_ARCSEC))
         )
-    return Table(said_each("kind", "name", "value", '±"'), tuple(rows), "llrr")
+    if not rows:
+        return ()
+    table = Table(said_each("kind", "name", "value", '±"'), tuple(rows), "llrr")
+    return (Heading(said("Constants and orientations"), 2), table)
 
 
-def _observations(result: AdjustmentResult, unit: AngleUnit) -> list[Block]:
+OBSERVATIONS = said_each(
+    "kind",
+    "at",
+    "to",
+    "observed",
+    "residual",
+    "v / sigma",
+    "redundancy",
+    "smallest bias",
+    "moves mm",
+)
+"""Columns of ``observation_table``."""
+
+
+def observations(result: AdjustmentResult, unit: AngleUnit) -> tuple[Block, ...]:
+    """The observations, of very many the worst, with what their columns mean."""
     shown, more = result.observations, 0
     if len(shown) > MOST_ROWS:
         more = len(shown) - MOST_ROWS
         order = sorted(shown, key=lambda o: -abs(o.standardized or 0.0))
         shown = tuple(order[:MOST_ROWS])
-    accused = {item.place for item in result.snooping.suspects[:1]}
-    rows = tuple(_observation(item, unit) for item in shown)
-    strong = frozenset(i for i, item in enumerate(shown) if item.place in accused and accused)
-    head = said_each(
-        "kind",
-        "at",
-        "to",
-        "observed",
-        "residual",
-        "v / sigma",
-        "redundancy",
-        "smallest bias",
-        "moves mm",
-    )
-    found: list[Block] = [Table(head, rows, "lllrrrrrr", strong=strong)]
+    found: list[Block] = [observation_table(result, unit, shown)]
     if more:
         text = said(
             "{more} observations with smaller residuals are not shown; adjust --json has all.",
             more=more,
         )
         found.append(Paragraph(text, "small"))
-    found.append(
-        Paragraph(
-            said(
-                "residual = adjusted - observed, arc-seconds or millimetres; redundancy: "
-                "share of an error that shows in the residual; smallest bias: what the "
-                "test finds with the stated power, and how far an undetected one moves a "
-                "point. The accused observation is bold."
-            ),
-            "small",
-        )
+    text = said(
+        "residual = adjusted - observed, arc-seconds or millimetres; redundancy: "
+        "share of an error that shows in the residual; smallest bias: what the "
+        "test finds with the stated power, and how far an undetected one moves a "
+        "point. The accused observation is bold."
     )
-    return found
+    return (*found, Paragraph(text, "small"))
+
+
+def observation_table(
+    result: AdjustmentResult, unit: AngleUnit, shown: Sequence[AdjustedObservation]
+) -> Table:
+    """A row an observation, the accused one strong."""
+    accused = {item.place for item in result.snooping.suspects[:1]}
+    rows = tuple(_observation(item, unit) for item in shown)
+    strong = frozenset(i for i, item in enumerate(shown) if item.place in accused)
+    return Table(OBSERVATIONS, rows, "lllrrrrrr", strong=strong)
 
 
 def _observation(item: AdjustedObservation, unit: AngleUnit) -> tuple[str, ...]:

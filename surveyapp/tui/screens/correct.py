@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import ClassVar
 
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
-from textual.containers import Vertical, VerticalScroll
-from textual.screen import ModalScreen, Screen
-from textual.widgets import Footer, Input, OptionList, Select, Static
+from textual.containers import Vertical
+from textual.screen import ModalScreen
+from textual.widget import Widget
+from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
 from surveyapp.errors import SurveyError
@@ -22,9 +24,10 @@ from surveyapp.observation.corrections import (
     table_names,
 )
 from surveyapp.tui import texts
-from surveyapp.tui.widgets.field import ChoiceField, TextField
+from surveyapp.tui.drafts import Draft
+from surveyapp.tui.screens.form import FormScreen
+from surveyapp.tui.widgets.field import ChoiceField, TextField, chosen, typed
 from surveyapp.tui.widgets.problems import problems_text
-from surveyapp.tui.widgets.titlebar import TitleBar
 
 
 class ChooseTableScreen(ModalScreen[None]):
@@ -66,75 +69,65 @@ class ChooseTableScreen(ModalScreen[None]):
         self.dismiss(None)
 
 
-class CorrectScreen(Screen[None]):
-    """The form of one table."""
+class CorrectScreen(FormScreen[None]):
+    """The form of one table, as it stands in project.toml."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("tab", "app.focus_next", texts.KEY_FIELD),
-        Binding("f8", "write", texts.KEY_WRITE),
-        Binding("escape", "leave", texts.KEY_LEAVE),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("f8", "make", texts.KEY_WRITE)]
+    STATE = texts.CORRECT_STATE
 
     def __init__(self, folder: str, table: TableName) -> None:
-        super().__init__()
+        kind = texts.TABLE_KINDS[table.kind]
+        super().__init__(texts.CORRECT_FORM.format(kind=kind, name=table.name), {})
         self.folder = folder
         self.table = table
         self.warned = False
-        self.trouble = ""
+        self.error: SurveyError | None = None
+        self.known: dict[CorrectionField, str] = {}
         try:
-            self.fields = fields_of(Path(folder), table)
+            self.known = dict(fields_of(Path(folder), table))
         except SurveyError as error:
-            self.fields, self.trouble = {}, problems_text(error).plain
+            self.error = error
 
-    def compose(self) -> ComposeResult:
-        """All fields below each other, as they stand in project.toml."""
-        kind = texts.TABLE_KINDS[self.table.kind]
-        yield TitleBar(texts.CORRECT_FORM.format(kind=kind, name=self.table.name))
-        with VerticalScroll(can_focus=False, classes="form"):
-            for item, text in self.fields.items():
-                label = texts.CORRECT_LABELS[item.id]
-                if item.kind == "yes":
-                    yield ChoiceField(label, item.id, texts.YES_NO)
-                else:
-                    yield TextField(label, item.id, value=text)
-        yield Static(self.trouble, id="trouble", markup=False)
-        yield Footer(show_command_palette=False)
+    def fields(self) -> Iterable[Widget]:
+        """Every value that may be corrected."""
+        for item in self.known:
+            label = texts.CORRECT_LABELS[item.id]
+            if item.kind == "yes":
+                yield ChoiceField(label, item.id, texts.YES_NO)
+            else:
+                yield TextField(label, item.id)
+
+    def filled(self) -> Draft:
+        """What stands in the file."""
+        return {
+            item.id: (YES if text else "") if item.kind == "yes" else text
+            for item, text in self.known.items()
+        }
 
     def on_mount(self) -> None:
-        """Begin at the first field."""
-        self.query_one(TitleBar).state = texts.CORRECT_STATE
-        for item, text in self.fields.items():
-            if item.kind == "yes":
-                self.query_one(f"#{item.id}", Select).value = YES if text else ""
+        """Begin at the first field, or say why there is none."""
+        if self.error is not None:
+            self.query_one("#trouble", Static).update(problems_text(self.error))
         for line in list(self.query(Input))[:1]:
             line.focus()
 
     def typed(self, item: CorrectionField) -> str:
         """What stands in a field."""
-        if item.kind == "yes":
-            value = self.query_one(f"#{item.id}", Select).value
-            return value if isinstance(value, str) else ""
-        return self.query_one(f"#{item.id}", Input).value.strip()
+        return chosen(self, item.id) if item.kind == "yes" else typed(self, item.id)
 
-    def action_write(self) -> None:
-        """Write what was changed, or say what is wrong."""
-        try:
-            changed = correct(
-                Path(self.folder), self.table, {item.id: self.typed(item) for item in self.fields}
-            )
-        except SurveyError as error:
-            self.query_one("#trouble", Static).update(problems_text(error))
-            return
+    def make(self) -> None:
+        """Write what was changed."""
+        values = {item.id: self.typed(item) for item in self.known}
+        changed = correct(Path(self.folder), self.table, values)
         names = ", ".join(texts.CORRECT_LABELS[name] for name in changed)
         told = texts.CORRECTED.format(names=names) if changed else texts.CORRECTED_NOTHING
         self.app.notify(told, markup=False)
-        self.app.pop_screen()
 
     def action_leave(self) -> None:
         """Leave; what was changed and not written is asked about once."""
-        changed = any(self.typed(item) != text for item, text in self.fields.items())
+        changed = any(self.typed(item) != text for item, text in self.known.items())
         if changed and not self.warned:
             self.warned = True
             self.query_one("#trouble", Static).update(texts.CORRECT_UNWRITTEN)
             return
-        self.app.pop_screen()
+        super().action_leave()

@@ -8,23 +8,27 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from rich.text import Text
 from textual import work
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.message import Message
 from textual.screen import Screen
-from textual.widgets import DataTable, Footer
+from textual.widgets import DataTable
 
 from surveyapp import api
 from surveyapp.errors import SurveyError
 from surveyapp.languages import shown, translated
+from surveyapp.report.blocks import Block, Paragraph
 from surveyapp.tui import texts
 from surveyapp.tui.screens.confirm import ConfirmScreen
-from surveyapp.tui.views.diagnosis import SUBJECT_COLUMNS, Diagnosed, diagnosis_view, subject_rows
-from surveyapp.tui.widgets.problems import problems_text
+from surveyapp.tui.views.diagnosis import Diagnosed, diagnosis_blocks, subject_table
+from surveyapp.tui.widgets.key_bar import KeyBar
+from surveyapp.tui.widgets.problems import problem_blocks
 from surveyapp.tui.widgets.records import Records
 from surveyapp.tui.widgets.titlebar import TitleBar
+from surveyapp_models.angles import AngleUnit
+
+DIAGNOSING = (Paragraph(texts.DIAGNOSING),)
 
 
 class DiagnosisScreen(Screen[None]):
@@ -52,19 +56,20 @@ class DiagnosisScreen(Screen[None]):
             self.row = row
             self.error = error
 
-    def __init__(self, folder: str, name: str) -> None:
+    def __init__(self, folder: str, name: str, unit: AngleUnit = AngleUnit.DMS) -> None:
         super().__init__()
         self.folder = folder
+        self.unit = unit
         self.title_text = texts.DIAGNOSIS_TITLE.format(name=name)
         self.subjects: tuple[tuple[str, str], ...] = ()
         self.found: dict[int, Diagnosed] = {}
-        self.texts: dict[int, Text] = {}
+        self.told: dict[int, tuple[Block, ...]] = {}
 
     def compose(self) -> ComposeResult:
         """Title, subjects with their verdict, the diagnosis of the chosen one, keys."""
         yield TitleBar(self.title_text)
-        yield Records(SUBJECT_COLUMNS, empty=texts.NO_SUBJECTS, details=self._details)
-        yield Footer(show_command_palette=False)
+        yield Records(empty=texts.NO_SUBJECTS, details=self._details, beside=True)
+        yield KeyBar()
 
     def on_mount(self) -> None:
         """List the subjects and diagnose the first."""
@@ -78,10 +83,7 @@ class DiagnosisScreen(Screen[None]):
             self.action_diagnose()
 
     def _list(self) -> None:
-        row = self.query_one(DataTable).cursor_row
-        self.query_one(Records).show(subject_rows(self.subjects, self.found))
-        if self.subjects:
-            self.query_one(DataTable).move_cursor(row=max(row, 0))
+        self.query_one(Records).show(subject_table(self.subjects, self.found))
 
     @property
     def row(self) -> int:
@@ -90,14 +92,14 @@ class DiagnosisScreen(Screen[None]):
 
     def on_data_table_row_highlighted(self, event: DataTable.RowHighlighted) -> None:
         """Diagnose a subject when it is looked at for the first time."""
-        if 0 <= event.cursor_row < len(self.subjects) and event.cursor_row not in self.texts:
+        if 0 <= event.cursor_row < len(self.subjects) and event.cursor_row not in self.told:
             self.action_diagnose()
 
     def action_diagnose(self) -> None:
         """Diagnose the chosen subject."""
         if self.subjects:
             row = self.row
-            self.texts[row] = Text(texts.DIAGNOSING)
+            self.told[row] = DIAGNOSING
             self.query_one(TitleBar).state = texts.COMPUTING
             self.diagnose(row, *self.subjects[row], adopt=False)
 
@@ -119,7 +121,7 @@ class DiagnosisScreen(Screen[None]):
         """Show a diagnosis."""
         self.query_one(TitleBar).state = ""
         self.found[message.row] = message.found
-        self.texts[message.row] = diagnosis_view(message.found)
+        self.told[message.row] = diagnosis_blocks(message.found, self.unit)
         self._list()
         for place in message.found.written:
             self.notify(texts.ADOPTED.format(place=place), markup=False)
@@ -129,11 +131,11 @@ class DiagnosisScreen(Screen[None]):
     def on_diagnosis_screen_failed(self, message: Failed) -> None:
         """Say in words why there is none."""
         self.query_one(TitleBar).state = ""
-        self.texts[message.row] = problems_text(message.error)
+        self.told[message.row] = problem_blocks(message.error)
         self._list()
 
-    def _details(self, row: int) -> Text:
-        return self.texts.get(row, Text(texts.DIAGNOSING))
+    def _details(self, row: int) -> tuple[Block, ...]:
+        return self.told.get(row, DIAGNOSING)
 
     def action_adopt(self) -> None:
         """Ask once, then write the named effects into the project."""

@@ -14,7 +14,7 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Vertical
 from textual.screen import Screen
-from textual.widgets import Footer, Input, OptionList, Static
+from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
 from surveyapp.domain.filing import ExportResult
@@ -24,6 +24,7 @@ from surveyapp.observation import exchange
 from surveyapp.tui import texts
 from surveyapp.tui.cells import padded
 from surveyapp.tui.widgets.field import TextField, typed
+from surveyapp.tui.widgets.key_bar import KeyBar
 from surveyapp.tui.widgets.problems import problems_text
 from surveyapp.tui.widgets.titlebar import TitleBar
 
@@ -55,7 +56,7 @@ class ExportScreen(Screen[None]):
             yield OptionList(*lines, id="formats", compact=True)
             yield TextField(texts.EXPORT_FILE, "file")
             yield Static(id="told", markup=False)
-        yield Footer(show_command_palette=False)
+        yield KeyBar()
 
     def on_mount(self) -> None:
         """Begin at the first format."""

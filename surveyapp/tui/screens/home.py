@@ -9,7 +9,7 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.message import Message
 from textual.screen import Screen
-from textual.widgets import Footer, OptionList, Static
+from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
 from surveyapp.errors import SurveyError
@@ -20,6 +20,7 @@ from surveyapp.tui.drafts import Draft
 from surveyapp.tui.screens.folder import FolderScreen
 from surveyapp.tui.screens.new_project import NewProjectScreen
 from surveyapp.tui.screens.practise import PractiseScreen
+from surveyapp.tui.widgets.key_bar import KeyBar
 from surveyapp.tui.widgets.problems import problems_text
 from surveyapp.tui.widgets.titlebar import TitleBar
 
@@ -62,7 +63,7 @@ class HomeScreen(Screen[None]):
         yield TitleBar(texts.HOME_TITLE)
         yield OptionList(id="places")
         yield Static(id="trouble", markup=False)
-        yield Footer()
+        yield KeyBar(palette=True)
 
     def on_mount(self) -> None:
         """Fill the list."""

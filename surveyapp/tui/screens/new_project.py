@@ -2,31 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import ClassVar
 
 from textual import work
-from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
-from textual.containers import VerticalScroll
 from textual.events import Key
 from textual.message import Message
-from textual.screen import Screen
-from textual.widgets import Footer, Input, OptionList, Select, Static, TextArea
+from textual.widget import Widget
+from textual.widgets import Input, OptionList, Select, Static, TextArea
 from textual.widgets.option_list import Option
 
 from surveyapp import api
 from surveyapp.core.observing.owner_values import OwnerValue, missing_values
-from surveyapp.errors import SurveyError
+from surveyapp.errors import Problem, SurveyError
 from surveyapp.observation import home as api_home
 from surveyapp.observation.home import GridChoice, NewProject, NewStation
 from surveyapp.observation.owner_entries import OwnerEntries
 from surveyapp.tui import texts
-from surveyapp.tui.drafts import Draft, keep, put_back
+from surveyapp.tui.drafts import Draft
+from surveyapp.tui.screens.form import FormScreen
 from surveyapp.tui.views.card import card_known, owner_values
 from surveyapp.tui.widgets.field import AreaField, ChoiceField, TextField, chosen, typed
-from surveyapp.tui.widgets.problems import problems_text
-from surveyapp.tui.widgets.titlebar import TitleBar
 
 OWNER_FIELDS = {
     "scale": OwnerValue.SCALE,
@@ -36,15 +34,13 @@ OWNER_FIELDS = {
 """Fields in the order of ``OwnerEntries``, and the value that the card may lack."""
 
 
-class NewProjectScreen(Screen[str | None]):
-    """Returns the new folder, or None."""
+class NewProjectScreen(FormScreen[str]):
+    """Returns the new folder, or None; ``importing`` says that one goes on with a field file."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("tab", "app.focus_next", texts.KEY_FIELD),
-        Binding("f8", "make", texts.KEY_MAKE),
         Binding("f9", "make_import", texts.KEY_MAKE_IMPORT),
-        Binding("escape", "leave", texts.KEY_LEAVE),
     ]
+    FIRST = "name"
 
     class GridsFound(Message):
         """The search for a grid has ended."""
@@ -55,45 +51,37 @@ class NewProjectScreen(Screen[str | None]):
             self.here = here
 
     def __init__(self, draft: Draft) -> None:
-        super().__init__()
-        self.draft = draft
+        super().__init__(texts.NEW_TITLE, draft)
         self.importing = False
 
-    def compose(self) -> ComposeResult:
-        """All fields below each other."""
-        yield TitleBar(texts.NEW_TITLE)
-        with VerticalScroll(can_focus=False, classes="form"):
-            yield TextField(texts.F_NAME, "name")
-            yield TextField(texts.F_FOLDER, "folder", hint=texts.F_FOLDER_HINT)
-            yield Static(id="folder-told", classes="told", markup=False)
-            yield ChoiceField(texts.F_UNIT, "unit", texts.UNITS)
-            yield ChoiceField(texts.F_TYPING, "typing", texts.TYPINGS)
-            yield AreaField(texts.F_STATIONS, "stations", hint=texts.F_STATIONS_HINT)
-            yield TextField(texts.F_GRID, "grid", hint=texts.F_GRID_HINT)
-            yield Static(id="grids-told", classes="told", markup=False)
-            yield OptionList(id="grids", compact=True)
-            yield TextField(texts.F_MINE_GRID, "mine-grid", hint=texts.F_MINE_GRID_HINT)
-            cards = {"": texts.NOT_DETERMINED, **{c.id: c.title for c in api.models()}}
-            yield ChoiceField(texts.F_INSTRUMENT, "card", cards)
-            yield Static(id="card-told", classes="told", markup=False)
-            yield TextField(texts.F_INSTRUMENT_ID, "instrument", value="G1")
-            yield TextField(texts.F_SERIAL, "serial")
-            yield TextField(texts.F_SCALE, "scale", hint=texts.F_SCALE_HINT)
-            yield TextField(texts.F_PERIODS, "periods", hint=texts.F_PERIODS_HINT)
-            yield TextField(texts.F_TORSION, "torsion", hint=texts.F_TORSION_HINT)
-            yield TextField(texts.F_CONSTANT, "constant", hint=texts.F_CONSTANT_HINT)
-            books = {"": texts.NOT_DETERMINED, **{name: name for name in api_home.rule_books()}}
-            yield ChoiceField(texts.F_RULES, "rules", books)
-        yield Static(id="trouble", markup=False)
-        yield Footer(show_command_palette=False)
+    def fields(self) -> Iterable[Widget]:
+        """What a project is made of."""
+        yield TextField(texts.F_NAME, "name")
+        yield TextField(texts.F_FOLDER, "folder", hint=texts.F_FOLDER_HINT)
+        yield Static(id="folder-told", classes="told", markup=False)
+        yield ChoiceField(texts.F_UNIT, "unit", texts.UNITS)
+        yield ChoiceField(texts.F_TYPING, "typing", texts.TYPINGS)
+        yield AreaField(texts.F_STATIONS, "stations", hint=texts.F_STATIONS_HINT)
+        yield TextField(texts.F_GRID, "grid", hint=texts.F_GRID_HINT)
+        yield Static(id="grids-told", classes="told", markup=False)
+        yield OptionList(id="grids", compact=True)
+        yield TextField(texts.F_MINE_GRID, "mine-grid", hint=texts.F_MINE_GRID_HINT)
+        cards = {"": texts.NOT_DETERMINED, **{c.id: c.title for c in api.models()}}
+        yield ChoiceField(texts.F_INSTRUMENT, "card", cards)
+        yield Static(id="card-told", classes="told", markup=False)
+        yield TextField(texts.F_INSTRUMENT_ID, "instrument", value="G1")
+        yield TextField(texts.F_SERIAL, "serial")
+        yield TextField(texts.F_SCALE, "scale", hint=texts.F_SCALE_HINT)
+        yield TextField(texts.F_PERIODS, "periods", hint=texts.F_PERIODS_HINT)
+        yield TextField(texts.F_TORSION, "torsion", hint=texts.F_TORSION_HINT)
+        yield TextField(texts.F_CONSTANT, "constant", hint=texts.F_CONSTANT_HINT)
+        books = {"": texts.NOT_DETERMINED, **{name: name for name in api_home.rule_books()}}
+        yield ChoiceField(texts.F_RULES, "rules", books)
 
     def on_mount(self) -> None:
-        """Begin at the name."""
+        """Hidden is what is asked for only where it is needed."""
         self.query_one("#grids").display = False
-        self.query_one(TitleBar).state = texts.NEW_STATE
         self.ask_owner(())
-        put_back(self, self.draft)
-        self.query_one("#name").focus()
 
     def on_input_changed(self, event: Input.Changed) -> None:
         """Search the grid while it is typed, and say where the folder will be."""
@@ -213,33 +201,19 @@ class NewProjectScreen(Screen[str | None]):
     def action_make_import(self) -> None:
         """Make the folder and begin with a field file."""
         self.importing = True
-        self.make()
+        super().action_make()
 
     def action_make(self) -> None:
-        """Make the folder, or say what is wrong."""
+        """Make the folder."""
         self.importing = False
-        self.make()
+        super().action_make()
 
-    def make(self) -> None:
-        """Make the folder, or say what is wrong; ``importing`` says how it goes on."""
-        trouble = self.query_one("#trouble", Static)
-        keep(self, self.draft)
+    def make(self) -> str:
+        """Make the folder."""
         if not typed(self, "name") and not typed(self, "folder"):
-            trouble.update(texts.MISSING_FIELD.format(field=texts.F_NAME))
             self.query_one("#name").focus()
-            return
-        try:
-            folder = api_home.create_project(self.form())
-        except SurveyError as error:
-            trouble.update(problems_text(error))
-        else:
-            self.draft.clear()
-            self.dismiss(folder)
-
-    def action_leave(self) -> None:
-        """Make nothing; what was filled in waits for the next opening."""
-        keep(self, self.draft)
-        self.dismiss(None)
+            raise SurveyError(Problem(texts.MISSING_FIELD.format(field=texts.F_NAME)))
+        return api_home.create_project(self.form())
 
 
 def grids_told(grids: tuple[GridChoice, ...], *, here: bool) -> str:

@@ -5,17 +5,14 @@ The prediction and every trial are computed in a thread on a value; nothing is w
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import ClassVar
 
-from rich.text import Text
 from textual import work
-from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
-from textual.message import Message
-from textual.screen import Screen
-from textual.widgets import DataTable, Footer, Static, TabbedContent, TabPane
+from textual.widget import Widget
+from textual.widgets import Static
 
 from surveyapp import api
 from surveyapp.api import Trial
@@ -26,10 +23,11 @@ from surveyapp.languages import shown
 from surveyapp.tui import texts
 from surveyapp.tui.drafts import Draft
 from surveyapp.tui.page_keys import page_bindings
+from surveyapp.tui.screens.paged import PagedScreen
 from surveyapp.tui.screens.record_step import RecordStepScreen
 from surveyapp.tui.views import penetration as view
+from surveyapp.tui.widgets.blocks_pane import BlocksPane
 from surveyapp.tui.widgets.heading_plan import HeadingPlan
-from surveyapp.tui.widgets.problems import Problems
 from surveyapp.tui.widgets.records import Records
 from surveyapp.tui.widgets.titlebar import TitleBar
 
@@ -49,9 +47,10 @@ TRIALS: dict[str, Callable[[Trial], Trial]] = {
 }
 
 
-class PenetrationScreen(Screen[None]):
+class PenetrationScreen(PagedScreen[Trial]):
     """Shows the breakthrough of a project."""
 
+    PAGES = PAGES
     BINDINGS: ClassVar[list[BindingType]] = [
         *page_bindings(PAGES),
         Binding("a", "try('add')", texts.KEY_ADD_SIDE, tooltip=texts.LONG_ADD_SIDE),
@@ -67,114 +66,63 @@ class PenetrationScreen(Screen[None]):
     DEFAULT_CSS = """
     HeadingPlan { width: 1fr; height: 1fr; padding: 0 1; text-wrap: nowrap; }
     #tried { height: auto; padding: 0 1; }
-    #budget DataTable { max-height: 100%; }
     """
 
-    class Predicted(Message):
-        """A computation has ended."""
-
-        def __init__(self, trial: Trial) -> None:
-            super().__init__()
-            self.trial = trial
-
-    class Failed(Message):
-        """The breakthrough cannot be predicted."""
-
-        def __init__(self, error: SurveyError) -> None:
-            super().__init__()
-            self.error = error
-
     def __init__(self, folder: str) -> None:
-        super().__init__()
+        super().__init__(texts.PENETRATION_TITLE.format(name=Path(folder).resolve().name))
         self.folder = folder
         self.trial: Trial | None = None
         self.before: Prediction | None = None
         self.draft: Draft = {}
 
-    def compose(self) -> ComposeResult:
-        """Title, pages, keys."""
-        yield TitleBar(texts.PENETRATION_TITLE.format(name=Path(self.folder).resolve().name))
+    def above(self) -> Iterable[Widget]:
+        """What is tried."""
         yield Static(id="tried", markup=False)
-        with TabbedContent():
-            with TabPane(texts.TAB_HEADINGS, id="headings"):
-                yield HeadingPlan()
-            with TabPane(texts.TAB_BUDGET, id="budget"):
-                yield Records(view.BUDGET_COLUMNS, empty=texts.P_EMPTY)
-            with TabPane(texts.TAB_EVALUATION, id="evaluation"):
-                yield Records(
-                    view.EVALUATION_COLUMNS, empty=texts.P_NOT_MEASURED, details=self._evaluation
-                )
-            with TabPane(texts.TAB_STEPS, id="steps"):
-                yield Records(view.STEP_COLUMNS, empty=texts.P_EMPTY, details=self._step)
-        yield Footer(show_command_palette=False)
 
-    def on_mount(self) -> None:
-        """Begin to compute."""
-        self.action_reload()
+    def page(self, name: str) -> Iterable[Widget]:
+        """The plan, a text, or the steps."""
+        if name == "headings":
+            yield HeadingPlan()
+        elif name == "steps":
+            yield Records(empty=texts.P_EMPTY)
+        else:
+            yield BlocksPane(empty=texts.P_NOT_MEASURED)
 
     def action_reload(self) -> None:
         """Predict anew, from the folder as it is now."""
         self.trial = self.before = None
-        self.query_one(TitleBar).state = texts.COMPUTING
-        self.compute()
+        super().action_reload()
 
-    @work(thread=True, exclusive=True)
-    def compute(self) -> None:
-        """Predict in a thread; the result comes as a message."""
-        try:
-            self.post_message(self.Predicted(api.trial(self.folder)))
-        except SurveyError as error:
-            self.post_message(self.Failed(error))
+    def read(self) -> Trial:
+        """Predict from the folder as it is now."""
+        return api.trial(self.folder)
 
     @work(thread=True, exclusive=True)
     def compute_trial(self, trial: Trial, change: str) -> None:
         """Try something in a thread."""
-        self.post_message(self.Predicted(TRIALS[change](trial)))
+        self.post_message(self.Done(TRIALS[change](trial)))
 
     def action_try(self, change: str) -> None:
         """Change one thing; the number follows."""
         if self.trial is not None:
             self.compute_trial(self.trial, change)
 
-    async def on_penetration_screen_predicted(self, message: Predicted) -> None:
+    def fill(self, found: Trial) -> None:
         """Fill the pages."""
-        await self.query(Problems).remove()
-        self.query_one(TabbedContent).display = True
-        self.trial = message.trial
-        result = message.trial.prediction
+        self.trial = found
+        result = found.prediction
         if self.before is None:
             self.before = result
         self.query_one(TitleBar).state = view.state_text(result)
-        self.query_one("#tried", Static).update(view.tried_text(message.trial, self.before))
+        self.query_one("#tried", Static).update(view.tried_text(found, self.before))
         self.query_one(HeadingPlan).show(result)
-        for page, rows in (
-            ("budget", view.budget_rows(result)),
-            ("evaluation", view.evaluation_rows(result)),
-            ("steps", view.step_rows(result)),
-        ):
-            self.query_one(f"#{page} Records", Records).show(rows)
-
-    async def on_penetration_screen_failed(self, message: Failed) -> None:
-        """Say in words what is wrong."""
-        await self.query(Problems).remove()
-        self.query_one(TitleBar).state = ""
-        self.query_one(TabbedContent).display = False
-        await self.mount(Problems(message.error), before=self.query_one(Footer))
-
-    def action_page(self, name: str) -> None:
-        """Show one page."""
-        pages = self.query_one(TabbedContent)
-        if pages.display:
-            pages.active = name
-            for table in self.query(f"#{name} DataTable").results(DataTable):
-                table.focus()
+        self.show_pages(view.pages(result))
 
     def action_done(self) -> None:
         """Record the step under the cursor."""
-        if self.trial is None or self.query_one(TabbedContent).active != "steps":
+        if self.trial is None or self.active != "steps":
             return
-        row = self.query_one("#steps DataTable", DataTable).cursor_row
-        step = view.step_of_row(self.trial.prediction, row)
+        step = view.step_of_row(self.trial.prediction, self.row_of("steps"))
         self.app.push_screen(RecordStepScreen(step, self.draft), self._recorded)
 
     def _recorded(self, entry: ProcedureStep | None) -> None:
@@ -194,17 +142,7 @@ class PenetrationScreen(Screen[None]):
                 centre_line_mm=entry.centre_line_mm,
                 waist_line_mm=entry.waist_line_mm,
             )
-            self.post_message(self.Predicted(api.trial(self.folder)))
+            self.post_message(self.Done(api.trial(self.folder)))
         except SurveyError as error:
             words = "; ".join(shown(problem.text) for problem in error.problems)
             self.app.call_from_thread(self.notify, words, severity="error", markup=False)
-
-    def action_leave(self) -> None:
-        """Back to the project."""
-        self.dismiss(None)
-
-    def _evaluation(self, _: int) -> Text:
-        return Text() if self.trial is None else Text(view.evaluation_text(self.trial.prediction))
-
-    def _step(self, row: int) -> Text:
-        return Text() if self.trial is None else Text(view.step_notes(self.trial.prediction)[row])

@@ -15,7 +15,7 @@ from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, VerticalScroll
 from textual.message import Message
 from textual.screen import Screen
-from textual.widgets import Footer, Input, OptionList, Static
+from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
 from surveyapp import api
@@ -27,6 +27,7 @@ from surveyapp.observation.sensors.tasks import Examined
 from surveyapp.tui import texts
 from surveyapp.tui.views import programmes as view
 from surveyapp.tui.widgets.field import TextField
+from surveyapp.tui.widgets.key_bar import KeyBar
 from surveyapp.tui.widgets.titlebar import TitleBar
 
 LOOK_EVERY_S = 5.0
@@ -84,15 +85,14 @@ class ProgrammeScreen(Screen[None]):
 
     def compose(self) -> ComposeResult:
         """Title, steps and guide, the line, keys."""
-        title = self.desk.programme.title
-        yield TitleBar(texts.PROGRAMME_TITLE.format(run=self.desk.identity, title=title))
+        yield TitleBar(self.desk.programme.title)
         with Horizontal(id="programme"):
             yield OptionList(id="steps", compact=True)
             with VerticalScroll(id="guide", can_focus=False):
                 yield Static(id="guidance", markup=False)
         yield Static(id="said", markup=False)
         yield TextField(texts.PROGRAMME_LINE, "line")
-        yield Footer(show_command_palette=False)
+        yield KeyBar()
 
     def on_mount(self) -> None:
         """Show where the run stands, and follow it."""

@@ -6,17 +6,15 @@ result comes back as a message.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import partial
 from pathlib import Path
 from typing import ClassVar, cast
 
-from rich.text import Text
-from textual import work
-from textual.app import App, ComposeResult
+from textual.app import App
 from textual.binding import Binding, BindingType
 from textual.message import Message
-from textual.screen import Screen
-from textual.widgets import DataTable, Footer, TabbedContent, TabPane
+from textual.widget import Widget
 
 from surveyapp import api
 from surveyapp.domain.project import Project
@@ -24,20 +22,20 @@ from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import SurveyError
 from surveyapp.observation import session as api_session
 from surveyapp.observation.by_hand import PROJECT_FILE, file_of
+from surveyapp.report.blocks import Block
 from surveyapp.tui import texts
 from surveyapp.tui.drafts import Draft
 from surveyapp.tui.hand_editor import edit_by_hand, first_problem
 from surveyapp.tui.page_keys import page_bindings
 from surveyapp.tui.screens.new_session import NewSessionScreen
+from surveyapp.tui.screens.paged import PagedScreen
 from surveyapp.tui.views.checks import summary
-from surveyapp.tui.views.project import LISTS, details_of, page_rows
+from surveyapp.tui.views.project import EMPTY, details_of, page_tables
 from surveyapp.tui.widgets.constants import ConstantsPage
-from surveyapp.tui.widgets.problems import Problems
 from surveyapp.tui.widgets.records import Records
 from surveyapp.tui.widgets.titlebar import TitleBar
+from surveyapp_models.angles import AngleUnit
 
-SIDES = 6
-"""Columns beside the details: padding and scroll bar."""
 PAGES = {
     "sessions": texts.TAB_SESSIONS,
     "lines": texts.TAB_LINES,
@@ -47,8 +45,11 @@ PAGES = {
 }
 
 
-class ProjectScreen(Screen[None]):
+class ProjectScreen(PagedScreen[tuple[Project, OrientationResult]]):
     """Shows one project folder."""
+
+    PAGES = PAGES
+    READS_AGAIN = True
 
     BINDINGS: ClassVar[list[BindingType]] = [
         *page_bindings(PAGES),
@@ -79,106 +80,44 @@ class ProjectScreen(Screen[None]):
             super().__init__()
             self.session = session
 
-    class Oriented(Message):
-        """The computation has ended."""
-
-        def __init__(self, project: Project, result: OrientationResult) -> None:
-            super().__init__()
-            self.project = project
-            self.result = result
-
-    class Failed(Message):
-        """The project cannot be used."""
-
-        def __init__(self, error: SurveyError) -> None:
-            super().__init__()
-            self.error = error
-
     def __init__(self, folder: str, name: str) -> None:
-        super().__init__()
+        super().__init__(texts.PROJECT_TITLE.format(name=name))
         self.folder = folder
-        self.title_text = texts.PROJECT_TITLE.format(name=name)
         self.project: Project | None = None
-        self.left = False
         self.result: OrientationResult | None = None
         self.error: SurveyError | None = None
         self.resumed = False
         self.draft: Draft = {}
 
-    def compose(self) -> ComposeResult:
-        """Title, pages, keys."""
-        yield TitleBar(self.title_text)
-        with TabbedContent():
-            for page, title in PAGES.items():
-                with TabPane(title, id=page):
-                    if page == "constants":
-                        yield ConstantsPage()
-                    else:
-                        columns, empty = LISTS[page]
-                        details = partial(self.details, page)
-                        yield Records(columns, empty=empty, details=details)
-        yield Footer(show_command_palette=False, compact=True)
+    def page(self, name: str) -> Iterable[Widget]:
+        """A list with its details; the constants are drawn as well."""
+        if name == "constants":
+            yield ConstantsPage()
+        else:
+            details = partial(self.details, name)
+            yield Records(empty=EMPTY[name], details=details, beside=name == "warnings")
 
-    def on_mount(self) -> None:
-        """Begin to compute."""
-        self.action_reload()
+    def read(self) -> tuple[Project, OrientationResult]:
+        """Orient the folder as it is now."""
+        project = api.open_project(self.folder)
+        return project, api_session.orient_observed(project)
 
-    def on_screen_suspend(self) -> None:
-        """Another screen stands before this one: what it does may change the folder."""
-        self.left = True
-
-    def on_screen_resume(self) -> None:
-        """Back from another screen, whichever way it was left."""
-        if self.left:
-            self.left = False
-            self.action_reload()
-
-    def action_reload(self) -> None:
-        """Read the folder again."""
-        self.query_one(TitleBar).state = texts.COMPUTING
-        self.compute()
-
-    @work(thread=True, exclusive=True)
-    def compute(self) -> None:
-        """Orient in a thread; the result comes as a message."""
-        try:
-            project = api.open_project(self.folder)
-            result = api_session.orient_observed(project)
-            self.post_message(self.Oriented(project, result))
-        except SurveyError as error:
-            self.post_message(self.Failed(error))
-
-    def on_project_screen_oriented(self, message: Oriented) -> None:
-        """Fill the pages."""
-        self.query(Problems).remove()
-        self.query_one(TabbedContent).display = True
-        self.project, self.result, self.error = message.project, message.result, None
-        result = message.result
-        self.query_one(TitleBar).state = summary(result)
-        for page, rows in page_rows(message.project, result).items():
-            self.query_one(f"#{page} Records", Records).show(rows)
-        self.query_one(ConstantsPage).show(result)
-        self.action_page(self.query_one(TabbedContent).active)
+    def fill(self, found: tuple[Project, OrientationResult]) -> None:
+        """Fill the pages; an observation that was not ended is gone on with."""
+        self.project, self.result = found
+        self.error = None
+        self.query_one(TitleBar).state = summary(self.result)
+        self.show_pages({k: (table,) for k, table in page_tables(*found).items()})
+        self.query_one(ConstantsPage).show(self.result)
         if not self.resumed:
             self.resumed = True
-            unfinished = api_session.unfinished_session(message.project)
+            unfinished = api_session.unfinished_session(self.project)
             if unfinished is not None:
                 self.post_message(self.SessionChosen(unfinished))
 
-    async def on_project_screen_failed(self, message: Failed) -> None:
-        """Say in words what is wrong."""
-        self.error = message.error
-        await self.query(Problems).remove()
-        self.query_one(TitleBar).state = ""
-        self.query_one(TabbedContent).display = False
-        await self.mount(Problems(message.error), before=self.query_one(Footer))
-
-    def action_page(self, name: str) -> None:
-        """Show one page."""
-        pages = self.query_one(TabbedContent)
-        if pages.display:
-            pages.active = name
-            self.query_one(f"#{name} DataTable", DataTable).focus()
+    def refused(self, error: SurveyError) -> None:
+        """What is wrong tells which file is edited by hand."""
+        self.error = error
 
     def on_data_table_row_selected(self) -> None:
         """Enter on a session opens it."""
@@ -192,11 +131,9 @@ class ProjectScreen(Screen[None]):
 
     def chosen_session(self) -> str | None:
         """Id of the session under the cursor, None on the other pages."""
-        row = self.query_one("#sessions DataTable", DataTable).cursor_row
-        on_sessions = self.query_one(TabbedContent).active == "sessions"
-        if not on_sessions or self.project is None or not self.project.sessions:
+        if self.active != "sessions" or self.project is None or not self.project.sessions:
             return None
-        return self.project.sessions[row].id
+        return self.project.sessions[self.row_of("sessions")].id
 
     def action_edit(self, which: str = "") -> None:
         """Edit the book under the cursor, what a problem names, or the project file by hand."""
@@ -228,7 +165,8 @@ class ProjectScreen(Screen[None]):
         from surveyapp.tui.screens.diagnosis import DiagnosisScreen  # half of all there is to load
 
         name = Path(self.folder).resolve().name
-        self.app.push_screen(DiagnosisScreen(self.folder, name), self._diagnosed)
+        unit = AngleUnit.DMS if self.project is None else self.project.angle_unit
+        self.app.push_screen(DiagnosisScreen(self.folder, name, unit))
 
     def action_traverses(self) -> None:
         """Show the adjusted traverses, if there are any."""
@@ -283,9 +221,6 @@ class ProjectScreen(Screen[None]):
         if self.project is not None:
             self.app.push_screen(SensorsScreen(self.folder))
 
-    def _diagnosed(self, _: None) -> None:
-        self.action_reload()
-
     def _made(self, session: str | None) -> None:
         if session is not None:
             self.post_message(self.SessionChosen(session))
@@ -294,9 +229,8 @@ class ProjectScreen(Screen[None]):
         """Leave the project; nothing is unsaved here."""
         await self.app.run_action("leave")
 
-    def details(self, page: str, row: int) -> Text:
+    def details(self, page: str, row: int) -> tuple[Block, ...]:
         """What is known of a row of a page."""
         if self.result is None or self.project is None:
-            return Text()
-        width = self.size.width - SIDES
-        return details_of(self.project, self.result, page, row, width=width)
+            return ()
+        return details_of(self.project, self.result, page, row)

@@ -11,7 +11,7 @@ from textual.binding import Binding, BindingType
 from textual.containers import VerticalScroll
 from textual.message import Message
 from textual.screen import Screen
-from textual.widgets import Footer, Static
+from textual.widgets import Static
 
 from surveyapp import api
 from surveyapp.api.office import undrawn_text
@@ -27,6 +27,7 @@ from surveyapp.tui.entry_desk import problem_text
 from surveyapp.tui.screens.signature import SignatureScreen
 from surveyapp.tui.views.checks import summary
 from surveyapp.tui.views.result import result_headline, result_text, truth_text
+from surveyapp.tui.widgets.key_bar import KeyBar
 from surveyapp.tui.widgets.problems import problems_text
 from surveyapp.tui.widgets.titlebar import TitleBar
 
@@ -89,7 +90,7 @@ class ResultScreen(Screen[None]):
         with VerticalScroll():
             yield Static(id="sections", markup=False)
         yield told
-        yield Footer(show_command_palette=False)
+        yield KeyBar()
 
     def on_mount(self) -> None:
         """Begin to compute."""

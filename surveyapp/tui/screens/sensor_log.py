@@ -17,7 +17,7 @@ from textual.binding import Binding, BindingType
 from textual.containers import VerticalScroll
 from textual.message import Message
 from textual.screen import Screen
-from textual.widgets import Footer, Input, Static, TabbedContent, TabPane
+from textual.widgets import Input, Static, TabbedContent, TabPane
 from textual.worker import Worker, get_current_worker
 
 from surveyapp.domain.sensor_entry import SensorLogEntry
@@ -35,6 +35,7 @@ from surveyapp.tui.page_keys import page_bindings
 from surveyapp.tui.screens.confirm import ConfirmScreen
 from surveyapp.tui.widgets.chart import ChartPane
 from surveyapp.tui.widgets.field import TextField, typed
+from surveyapp.tui.widgets.key_bar import KeyBar
 from surveyapp.tui.widgets.problems import problems_text
 from surveyapp.tui.widgets.titlebar import TitleBar
 
@@ -114,7 +115,7 @@ class SensorLogScreen(Screen[None]):
             with TabPane(texts.TAB_PICTURES, id="pictures"):
                 yield ChartPane()
         yield TextField(texts.LOG_OPTIONS, "options", hint=texts.LOG_OPTIONS_HINT)
-        yield Footer(show_command_palette=False)
+        yield KeyBar()
 
     def on_mount(self) -> None:
         """The keys of the tasks work at once."""

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from datetime import datetime
 from functools import partial
 from pathlib import Path
 from typing import ClassVar, cast
 
-from rich.text import Text
-from textual import work
-from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
-from textual.message import Message
-from textual.screen import Screen
-from textual.widgets import DataTable, Footer, TabbedContent, TabPane
+from textual.widget import Widget
 
 from surveyapp import api
 from surveyapp.core.sensors.programmes.catalogue import PROGRAMMES
@@ -26,23 +22,28 @@ from surveyapp.observation.sensors.programmes import (
     free_id,
     runs_of,
 )
+from surveyapp.report.blocks import Block
 from surveyapp.tui import texts
 from surveyapp.tui.page_keys import page_bindings
+from surveyapp.tui.screens.paged import PagedScreen
 from surveyapp.tui.views import programmes as run_view
 from surveyapp.tui.views import sensors as view
-from surveyapp.tui.widgets.problems import Problems
 from surveyapp.tui.widgets.records import Records
-from surveyapp.tui.widgets.titlebar import TitleBar
 
 PAGES = {
     "logs": texts.TAB_LOGS,
     "cards": texts.TAB_CARDS,
     "programmes": texts.TAB_PROGRAMMES,
 }
+EMPTY = {"logs": texts.SENSOR_NO_LOGS, "cards": texts.SENSOR_NO_CARDS, "programmes": ""}
+"""What each page says without rows."""
 
 
-class SensorsScreen(Screen[None]):
+class SensorsScreen(PagedScreen[tuple[SensorDesk, tuple[RunShown, ...]]]):
     """Lists what a project has of sensors."""
+
+    PAGES = PAGES
+    READS_AGAIN = True
 
     BINDINGS: ClassVar[list[BindingType]] = [
         *page_bindings(PAGES),
@@ -52,100 +53,34 @@ class SensorsScreen(Screen[None]):
         Binding("escape", "leave", texts.KEY_BACK, tooltip=texts.LONG_BACK),
     ]
 
-    class Read(Message):
-        """The folder was read."""
-
-        def __init__(self, desk: SensorDesk, runs: tuple[RunShown, ...]) -> None:
-            super().__init__()
-            self.desk = desk
-            self.runs = runs
-
-    class Failed(Message):
-        """The folder cannot be used."""
-
-        def __init__(self, error: SurveyError) -> None:
-            super().__init__()
-            self.error = error
-
     def __init__(self, folder: str) -> None:
-        super().__init__()
+        super().__init__(texts.SENSORS_TITLE.format(name=Path(folder).resolve().name))
         self.folder = folder
         self.desk: SensorDesk | None = None
         self.runs: tuple[RunShown, ...] = ()
-        self.left = False
 
-    def compose(self) -> ComposeResult:
-        """Title, pages, keys."""
-        yield TitleBar(texts.SENSORS_TITLE.format(name=Path(self.folder).resolve().name))
-        with TabbedContent():
-            with TabPane(texts.TAB_LOGS, id="logs"):
-                yield Records(view.LOG_COLUMNS, empty=texts.SENSOR_NO_LOGS, details=self._log)
-            with TabPane(texts.TAB_CARDS, id="cards"):
-                yield Records(view.CARD_COLUMNS, empty=texts.SENSOR_NO_CARDS, details=self._card)
-            with TabPane(texts.TAB_PROGRAMMES, id="programmes"):
-                yield Records(run_view.RUN_COLUMNS, empty="", details=self._programme)
-        yield Footer(show_command_palette=False)
+    def page(self, name: str) -> Iterable[Widget]:
+        """A list with its details."""
+        yield Records(empty=EMPTY[name], details=partial(self.details, name), beside=True)
 
-    def on_mount(self) -> None:
-        """Read the folder."""
-        self.action_reload()
+    def read(self) -> tuple[SensorDesk, tuple[RunShown, ...]]:
+        """Logs, cards and runs, as the folder holds them."""
+        runs, problems = runs_of(self.folder)
+        for problem in problems:
+            told = partial(self.notify, shown(problem.text), severity="error", markup=False)
+            self.app.call_from_thread(told)
+        return sensor_desk(self.folder, self.moment().date()), runs
 
-    def on_screen_suspend(self) -> None:
-        """Another screen stands before this one: what it does may change the folder."""
-        self.left = True
-
-    def on_screen_resume(self) -> None:
-        """Back from another screen."""
-        if self.left:
-            self.left = False
-            self.action_reload()
-
-    def action_reload(self) -> None:
-        """Read the folder again."""
-        self.read(self.moment())
-
-    @work(thread=True, exclusive=True)
-    def read(self, moment: datetime) -> None:
-        """Read logs and cards in a thread."""
-        try:
-            runs, problems = runs_of(self.folder)
-            self.post_message(self.Read(sensor_desk(self.folder, moment.date()), runs))
-            for problem in problems:
-                told = partial(self.notify, shown(problem.text), severity="error", markup=False)
-                self.app.call_from_thread(told)
-        except SurveyError as error:
-            self.post_message(self.Failed(error))
-
-    async def on_sensors_screen_read(self, message: Read) -> None:
+    def fill(self, found: tuple[SensorDesk, tuple[RunShown, ...]]) -> None:
         """Fill the pages."""
-        await self.query(Problems).remove()
-        self.query_one(TabbedContent).display = True
-        self.desk, self.runs = message.desk, message.runs
-        rows = {
-            "logs": view.log_rows(message.desk.logs, message.desk.cards),
-            "cards": view.card_rows(message.desk.cards),
-            "programmes": run_view.run_rows(message.runs),
-        }
-        for page, found in rows.items():
-            table = self.query_one(f"#{page} DataTable", DataTable)
-            row = table.cursor_row
-            self.query_one(f"#{page} Records", Records).show(found)
-            if found:
-                table.move_cursor(row=max(row, 0))
-        self.action_page(self.query_one(TabbedContent).active)
-
-    async def on_sensors_screen_failed(self, message: Failed) -> None:
-        """Say in words what is wrong."""
-        await self.query(Problems).remove()
-        self.query_one(TabbedContent).display = False
-        await self.mount(Problems(message.error), before=self.query_one(Footer))
-
-    def action_page(self, name: str) -> None:
-        """Show one page."""
-        pages = self.query_one(TabbedContent)
-        if pages.display:
-            pages.active = name
-            self.query_one(f"#{name} DataTable", DataTable).focus()
+        self.desk, self.runs = found
+        self.show_pages(
+            {
+                "logs": (view.log_table(self.desk.logs, self.desk.cards),),
+                "cards": (view.card_table(self.desk.cards),),
+                "programmes": (run_view.run_table(self.runs),),
+            }
+        )
 
     def on_data_table_row_selected(self) -> None:
         """Enter on a row opens it."""
@@ -153,10 +88,10 @@ class SensorsScreen(Screen[None]):
 
     def action_open(self) -> None:
         """Open the log or the programme under the cursor."""
-        page = self.query_one(TabbedContent).active
-        row = self.query_one(f"#{page} DataTable", DataTable).cursor_row
-        if self.desk is None or page == "cards":
+        page = self.active
+        if self.desk is None or page not in ("logs", "programmes"):
             return
+        row = self.row_of(page)
         if page == "programmes":
             self.open_programme(row)
         elif self.desk.logs:
@@ -194,15 +129,12 @@ class SensorsScreen(Screen[None]):
 
         self.app.push_screen(AddLogScreen(self.folder))
 
-    def action_leave(self) -> None:
-        """Back to the project."""
-        self.dismiss(None)
-
-    def _log(self, row: int) -> Text:
-        return Text() if self.desk is None else view.log_details(self.desk.logs[row])
-
-    def _programme(self, row: int) -> Text:
-        return run_view.run_details(self.runs, row)
-
-    def _card(self, row: int) -> Text:
-        return Text() if self.desk is None else view.card_details(self.desk.cards[row])
+    def details(self, page: str, row: int) -> tuple[Block, ...]:
+        """What is known of a row of a page."""
+        if self.desk is None:
+            return ()
+        if page == "programmes":
+            return run_view.run_details(self.runs, row)
+        if page == "cards":
+            return view.card_details(self.desk.cards[row])
+        return view.log_details(self.desk.logs[row])

@@ -13,7 +13,7 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
 from textual.screen import Screen
-from textual.widgets import Footer, Input
+from textual.widgets import Input
 
 from surveyapp.core.observing.steps import Step
 from surveyapp.errors import SurveyError
@@ -32,6 +32,7 @@ from surveyapp.tui.texts import help_texts
 from surveyapp.tui.views.observation import opening_warning, session_state, session_title
 from surveyapp.tui.widgets.entry import EntryLine, ReadingInput
 from surveyapp.tui.widgets.instrument import InstrumentPane
+from surveyapp.tui.widgets.key_bar import KeyBar
 from surveyapp.tui.widgets.run import RunPane
 from surveyapp.tui.widgets.steps import StepList
 from surveyapp.tui.widgets.titlebar import TitleBar
@@ -82,7 +83,7 @@ class SessionScreen(Screen[None]):
                     yield InstrumentPane(self.practice, self.desk)
             yield RunPane(self.desk)
         yield EntryLine(self.enter, ORDERED)
-        yield Footer(show_command_palette=False)
+        yield KeyBar()
 
     def on_mount(self) -> None:
         """Show where the book stands."""

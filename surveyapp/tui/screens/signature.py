@@ -2,51 +2,39 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from collections.abc import Iterable
 
-from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
-from textual.containers import Vertical
-from textual.screen import ModalScreen
-from textual.widgets import Input, Static
+from textual.widget import Widget
+from textual.widgets import Static
 
 from surveyapp.tui import texts
-from surveyapp.tui.drafts import Draft, keep, put_back
+from surveyapp.tui.drafts import Draft
+from surveyapp.tui.screens.lines import LinesScreen, heading, hint, line
 
 
-class SignatureScreen(ModalScreen[str | None]):
-    """Returns the name, or None."""
+class SignatureScreen(LinesScreen[str]):
+    """Returns the name, or None.
 
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", texts.KEY_LEAVE)]
+    Parameters
+    ----------
+    draft : dict
+    told : str
+        What must be known before signing.
+    """
 
     def __init__(self, draft: Draft, told: str = "") -> None:
-        super().__init__()
+        super().__init__(draft)
         self.told = told
-        self.draft = draft
 
-    def compose(self) -> ComposeResult:
+    def lines(self) -> Iterable[Widget]:
         """What closing means, and one line."""
-        with Vertical(id="dialog"):
-            yield Static(texts.SIGN_TITLE, classes="heading", markup=False)
-            yield Static(texts.SIGN_MEANING, markup=False)
-            if self.told:
-                yield Static(self.told, id="trouble", markup=False)
-            line = Input(placeholder=texts.SIGN_NAME, compact=True, select_on_focus=False)
-            line.cursor_blink = False
-            yield line
-            yield Static(texts.SIGN_KEYS, classes="hint", markup=False)
+        yield heading(texts.SIGN_TITLE)
+        yield Static(texts.SIGN_MEANING, markup=False)
+        if self.told:
+            yield Static(self.told, id="trouble", markup=False)
+        yield line("name", texts.SIGN_NAME)
+        yield hint(texts.SIGN_KEYS)
 
-    def on_mount(self) -> None:
-        """What was half typed stands there again."""
-        put_back(self, self.draft)
-
-    def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Sign."""
-        if event.value.strip():
-            self.draft.clear()
-            self.dismiss(event.value.strip())
-
-    def action_leave(self) -> None:
-        """Sign nothing."""
-        keep(self, self.draft)
-        self.dismiss(None)
+    def answer(self) -> str | None:
+        """The name."""
+        return self.typed() or None

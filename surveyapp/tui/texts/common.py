@@ -13,6 +13,7 @@ NOT_MET: Final = "NOT MET"
 OPEN: Final = "open"
 
 # problems
+LINE_MISSING: Final = "The line is empty."
 FOUND: Final = "found: {text}"
 EXPECTED: Final = "expected: {text}"
 
@@ -21,9 +22,6 @@ COL_NORTH: Final = "gyro north"
 COL_AZIMUTH: Final = "gyro azimuth"
 COL_GRID: Final = "grid azimuth"
 COL_VERDICT: Final = "verdict"
-COL_CHECK: Final = "check"
-COL_VALUE: Final = "value"
-COL_LIMIT: Final = "limit"
 COL_WARNING: Final = "warning"
 
 # keys; what is too short for the palette has a longer name below

@@ -236,10 +236,10 @@ triangles, and the checks of the plumbing. T shows the next shaft.
 """
 
 _TRAVERSE: Final = """\
-The traverse after the adjustment: plan with ellipses, points with
-their sigmas, observations with residual and test, closures, checks.
-1 to 5 show the pages, T the next traverse, F5 adjusts again after an
-edit by hand. Nothing is changed here.
+The traverse after the adjustment: plan with ellipses, closures and
+global test, points with their sigmas, observations with residual and
+test, checks. 1 to 5 show the pages, T the next traverse, F5 adjusts
+again after an edit by hand. Nothing is changed here.
 
    # fixed     o adjusted, ellipse enlarged     G side with a gyro
 """

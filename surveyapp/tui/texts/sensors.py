@@ -6,7 +6,7 @@ from typing import Final
 
 KEY_SENSORS: Final = "Sensors"
 LONG_SENSORS: Final = "Sensors: logs, calibrations, cards, guided programmes"
-SENSORS_TITLE: Final = "Sensors of {name}"
+SENSORS_TITLE: Final = "{name}: sensors"
 TAB_LOGS: Final = "1 Logs"
 TAB_CARDS: Final = "2 Cards"
 TAB_PROGRAMMES: Final = "3 Programmes"
@@ -25,6 +25,7 @@ SENSOR_CARD_OVER: Final = "no"
 SENSOR_CARD_BROKEN: Final = "unreadable"
 SENSOR_ANY: Final = "any"
 SENSOR_DAYS: Final = "{first} to {last}"
+SENSOR_TEMPERATURES: Final = "{low:g} to {high:g} °C"
 SENSOR_FACTS_LOG: Final = {
     "file": "file",
     "columns": "columns",
@@ -105,7 +106,6 @@ RUN_NEW: Final = "(new)"
 RUN_STEPS: Final = "{done} of {count}"
 RUN_RECORDED: Final = "from a log"
 RUN_FACTS: Final = {"standard": "follows", "begun": "begun", "file": "file", "log": "log"}
-PROGRAMME_TITLE: Final = "{run}: {title}"
 PROGRAMME_MARKS: Final = {"open": " ", "here": ">", "done": "+", "short": "!"}
 PROGRAMME_LINE: Final = "line"
 PROGRAMME_NEXT: Final = "{part}: {title}"
@@ -145,19 +145,18 @@ CHART_DEGREES: Final = "degrees"
 CHART_SHADES: Final = "blank: none   {signs}: few to many, at most {most} readings a cell"
 
 ADD_LOG_TITLE: Final = "A sensor log into {name}"
-ADD_LOG_CHOOSE: Final = """\
-Choose a file with Enter. The preview shows which column was taken for
-what, in which unit, and what is wrong. What was not understood is told
-in the line below:
-
-  map.mag_x_uT=mx     the column mx is the field along x
-  unit.mx=mG          in milligauss
-  scale.mx=0.1        the value of one count
-  rate-hz=100         where there is no time
-  id=swing kind=compass programme=... latitude=47.1 day=2026-03-01
-
-F8 takes the log: it is copied into sensors/ and entered.
-"""
+ADD_LOG_CHOOSE: Final = (
+    "Choose a file with Enter. The preview shows which column was taken for what, in which unit, "
+    "and what is wrong. What was not understood is told in the line below:"
+)
+ADD_LOG_OPTIONS: Final = {
+    "map.mag_x_uT=mx": "the column mx is the field along x",
+    "unit.mx=mG": "in milligauss",
+    "scale.mx=0.1": "the value of one count",
+    "rate-hz=100": "where there is no time",
+    "id=swing kind=compass": "name and kind of the log",
+}
+ADD_LOG_TAKE: Final = "F8 takes the log: it is copied into sensors/ and entered."
 ADD_LOG_HINT: Final = "id= kind= map.CANON=COLUMN unit.COLUMN= scale.COLUMN= rate-hz="
 ADD_LOG_HEAD: Final = "{rows} rows{rate}"
 ADD_LOG_RATE: Final = " at {rate:.4g} Hz"

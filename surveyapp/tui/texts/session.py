@@ -199,6 +199,7 @@ WAYS: Final = {"R": ">", "L": "<", "": ""}
 STRIKE_TITLE: Final = "Strike a reading: it stays in the book and no longer counts"
 STRIKE_BACK: Final = "struck: Enter lets it count again"
 STRIKE_REASON: Final = "reason"
+STRIKE_WHY: Final = "The reason is missing: the book keeps it with the row."
 STRIKE_KEYS: Final = "Up and Down choose the row, Enter strikes it, Escape leaves it"
 UNDO_REASON: Final = "undo"
 

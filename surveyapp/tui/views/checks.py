@@ -1,18 +1,9 @@
-"""Checks in half a sentence, and a value with its unit."""
+"""All checks in half a sentence."""
 
 from __future__ import annotations
 
 from surveyapp.domain.results import OrientationResult
-from surveyapp.languages import translated
 from surveyapp.tui import texts
-
-
-def quantity_text(value: float | None, unit: str) -> str:
-    """A value or limit with its unit."""
-    if value is None:
-        return texts.NOT_DETERMINED
-    mark = {"arcsec": '"'}.get(unit, f" {translated(unit)}" if unit else "")
-    return f"{value:.4g}{mark}"
 
 
 def summary(result: OrientationResult) -> str:

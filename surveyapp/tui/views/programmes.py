@@ -10,14 +10,13 @@ from rich.text import Text
 from surveyapp.core.sensors.programmes.catalogue import PROGRAMMES
 from surveyapp.domain.programme import Programme, ProgrammeState, ProgrammeStep, StepState
 from surveyapp.observation.sensors.programmes import RunShown
+from surveyapp.report.blocks import Block, KeyValues, Table
 from surveyapp.tui import texts
-from surveyapp.tui.widgets.records import pairs_text
 
-RUN_COLUMNS = (texts.COL_RUN, texts.COL_PROGRAMME, texts.COL_DONE_STEPS)
 MOST_NAMES = 12
 
 
-def run_rows(runs: Sequence[RunShown]) -> list[tuple[str, ...]]:
+def run_table(runs: Sequence[RunShown]) -> Table:
     """Runs that were begun, then every programme to begin."""
     rows: list[tuple[str, ...]] = [
         (
@@ -29,10 +28,11 @@ def run_rows(runs: Sequence[RunShown]) -> list[tuple[str, ...]]:
         )
         for shown in runs
     ]
-    return rows + [(texts.RUN_NEW, programme.title, "") for programme in PROGRAMMES]
+    rows += [(texts.RUN_NEW, programme.title, "") for programme in PROGRAMMES]
+    return Table((texts.COL_RUN, texts.COL_PROGRAMME, texts.COL_DONE_STEPS), tuple(rows))
 
 
-def run_details(runs: Sequence[RunShown], row: int) -> Text:
+def run_details(runs: Sequence[RunShown], row: int) -> tuple[Block, ...]:
     """What a programme follows, and its steps by parts."""
     begun = row < len(runs)
     programme = runs[row].programme if begun else PROGRAMMES[row - len(runs)]
@@ -42,11 +42,9 @@ def run_details(runs: Sequence[RunShown], row: int) -> Text:
         values["begun"] = f"{run.entries[0].time:%Y-%m-%d %H:%M}"
         values["file"] = run.path
         values["log"] = run.log or ""
-    text = pairs_text([(texts.RUN_FACTS[k], v) for k, v in values.items() if v])
-    text.append("\n")
-    for part, count in parts_of(programme).items():
-        text.append(f"{count:>3}  {part}\n")
-    return text
+    facts = tuple((texts.RUN_FACTS[name], value) for name, value in values.items() if value)
+    parts = tuple((str(count), part) for part, count in parts_of(programme).items())
+    return (KeyValues(facts), Table(("", ""), parts, "rl"))
 
 
 def parts_of(programme: Programme) -> dict[str, int]:
@@ -98,6 +96,7 @@ def guide_text(state: ProgrammeState, step: ProgrammeStep | None, *, width: int)
     _titled(text, texts.PROGRAMME_UNKNOWN, unknown, width)
     determined = _names(known.determined) if known.determined else texts.PROGRAMME_NOTHING
     _titled(text, texts.PROGRAMME_KNOWN, determined, width)
+    text.append(f"{texts.COL_RUN} {state.run.id}\n", style="dim")
     if state.warnings:
         _titled(text, texts.PROGRAMME_TOLD, "; ".join(state.warnings), width)
     return text

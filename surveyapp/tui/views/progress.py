@@ -10,8 +10,9 @@ from surveyapp.core.observing.passage_forecast import PassageForecast
 from surveyapp.core.observing.progress import Progress
 from surveyapp.core.observing.target import Target
 from surveyapp.observation.aim import Aim
+from surveyapp.report.numbers import plain, seconds
 from surveyapp.tui import texts
-from surveyapp.tui.views.form import arcsec_text, number_text
+from surveyapp.tui.cells import columns
 from surveyapp_models.angles import AngleUnit, format_angle
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 WIDTH = 54
 """Columns beside the steps in a terminal of 80."""
+RESIDUAL_WIDTH = 7
 NEAR_S = 10.0
 """A moment is near this long before and after it, longer where it is known less sharply."""
 
@@ -46,7 +48,7 @@ def countdown_text(progress: Progress, remaining_s: float | None) -> str:
     pattern = texts.NEXT_NOW if is_near(progress, remaining_s) else texts.NEXT_POINT
     text = pattern.format(side=forecast.side, time=_clock_text(remaining_s))
     if progress.scale and forecast.moment_half_width_s is not None:
-        text += texts.NEXT_SPREAD.format(seconds=number_text(forecast.moment_half_width_s, 0))
+        text += texts.NEXT_SPREAD.format(seconds=plain(forecast.moment_half_width_s, 0))
     return text
 
 
@@ -55,7 +57,7 @@ def _passage_text(passage: PassageForecast, remaining_s: float | None, *, near: 
     if remaining_s is None:
         return texts.PASSAGE_OVERDUE.format(way=way)
     pattern = texts.NEXT_PASSAGE_NOW if near else texts.NEXT_PASSAGE
-    spread = texts.NEXT_SPREAD.format(seconds=number_text(passage.half_width_s))
+    spread = texts.NEXT_SPREAD.format(seconds=plain(passage.half_width_s))
     return pattern.format(way=way, time=_clock_text(remaining_s)) + spread
 
 
@@ -71,15 +73,15 @@ def forecast_text(progress: Progress, unit: AngleUnit) -> str:
     if forecast is None or progress.next_reading is None:
         return ""
     if progress.scale:
-        reading = number_text(progress.next_reading, 2, sign=True)
+        reading = plain(progress.next_reading, 2, sign=True)
         pattern = texts.NEXT_READING_DIV if progress.passage is None else texts.NEXT_POINT_DIV
         text = pattern.format(side=forecast.side, reading=reading)
         if forecast.half_width is None:
             return text
-        return text + texts.NEXT_INTERVAL_DIV.format(interval=number_text(forecast.half_width, 2))
+        return text + texts.NEXT_INTERVAL_DIV.format(interval=plain(forecast.half_width, 2))
     text = texts.NEXT_READING.format(reading=format_angle(progress.next_reading, unit))
     if forecast.half_width is not None:
-        text += texts.NEXT_INTERVAL.format(interval=arcsec_text(forecast.half_width))
+        text += texts.NEXT_INTERVAL.format(interval=seconds(forecast.half_width, 1))
     return text
 
 
@@ -103,20 +105,20 @@ def north_text(progress: Progress, unit: AngleUnit, method: str) -> str:
         pattern = texts.AZIMUTH_OPEN if progress.delivered else texts.NORTH_OPEN
         return pattern.format(north=north)
     pattern = texts.AZIMUTH_NOW if progress.delivered else texts.NORTH_NOW
-    return pattern.format(north=north, interval=arcsec_text(progress.interval95))
+    return pattern.format(north=north, interval=seconds(progress.interval95, 1))
 
 
 def outlook_text(progress: Progress, aim: Aim) -> str:
     """What two more points would bring, what is wanted, and whether it is enough."""
     parts = []
     if progress.interval95_two_more is not None:
-        parts.append(texts.AFTER_TWO.format(interval=arcsec_text(progress.interval95_two_more)))
+        parts.append(texts.AFTER_TWO.format(interval=seconds(progress.interval95_two_more, 1)))
     target = aim.target
     if target is None:
         parts.append(_no_target(aim))
         return "  ".join(parts)
     pattern = texts.WANTED if target.origin == "session" else texts.RULE_TARGET
-    parts.append(pattern.format(interval=arcsec_text(target.interval95)))
+    parts.append(pattern.format(interval=seconds(target.interval95, 1)))
     if progress.enough(target.interval95):
         parts.insert(0, texts.ENOUGH)  # in sight in the narrowest window
     return "  ".join(parts)
@@ -131,7 +133,7 @@ def next_lines(actions: Sequence[ActionResult], shown: int = 2) -> list[str]:
             pattern.format(
                 action=texts.ACTIONS.get(item.action, item.text),
                 share=f"{item.separation:.0%}",
-                interval=arcsec_text(item.interval95),
+                interval=seconds(item.interval95, 1),
             )
         )
     return lines
@@ -148,7 +150,7 @@ def target_source_text(target: Target | None) -> str:
     if target is None or target.origin == "session":
         return ""
     text = texts.TARGET_SOURCE.format(
-        sigma=arcsec_text(target.sigma), book=target.book, clause=target.clause
+        sigma=seconds(target.sigma, 1), book=target.book, clause=target.clause
     )
     return text if target.confirmed else text + texts.TARGET_UNCONFIRMED
 
@@ -159,7 +161,7 @@ def schuler_text(progress: Progress, unit: AngleUnit, shown: int = 2) -> str:
     if not means:
         return ""
     if progress.scale:
-        values = "  ".join(number_text(mean, 3, sign=True) for mean in means)
+        values = "  ".join(plain(mean, 3, sign=True) for mean in means)
         return f"{texts.SCHULER_DIV}  {values}"
     values = "  ".join(format_angle(mean, unit) for mean in means)
     return f"{texts.SCHULER}  {values}"
@@ -168,19 +170,21 @@ def schuler_text(progress: Progress, unit: AngleUnit, shown: int = 2) -> str:
 def time_difference_text(progress: Progress, shown: int = 4) -> str:
     """The latest time differences east minus west."""
     latest = progress.time_differences[-shown:]
-    values = "  ".join(number_text(value, 2, sign=True) for value in latest)
+    values = "  ".join(plain(value, 2, sign=True) for value in latest)
     return texts.TIME_DIFFERENCES.format(values=values) if values else ""
 
 
-def channel_lines(progress: Progress, shown: int) -> tuple[str, ...]:
-    """Residuals in the channels of midpoint and amplitude, the latest at the end."""
+def channel_lines(progress: Progress) -> tuple[str, ...]:
+    """Residuals in the channels of midpoint and amplitude, as many as fit, the latest last."""
     if not progress.midpoint:
         return ()
     labels = (texts.CHANNEL_MIDPOINT, texts.CHANNEL_AMPLITUDE)
     if progress.scale:
         labels = (texts.CHANNEL_MIDPOINT_DIV, texts.CHANNEL_AMPLITUDE_DIV)
+    shown = min(6, (WIDTH - 1 - max(map(columns, labels))) // RESIDUAL_WIDTH)
     return tuple(
-        f"{label} " + "".join(f"{residual_text(progress, v):>7}" for v in values[-shown:])
+        f"{label} "
+        + "".join(f"{residual_text(progress, v):>{RESIDUAL_WIDTH}}" for v in values[-shown:])
         for label, values in zip(labels, (progress.midpoint, progress.amplitude), strict=True)
     )
 
@@ -188,8 +192,8 @@ def channel_lines(progress: Progress, shown: int) -> tuple[str, ...]:
 def residual_text(progress: Progress, value: float) -> str:
     """A residual in arc-seconds, on the scale in divisions."""
     if progress.scale:
-        return number_text(value, 3, sign=True)
-    return arcsec_text(value, sign=True)
+        return plain(value, 3, sign=True)
+    return seconds(value, 1, sign=True)
 
 
 def alert_text(progress: Progress, method: str) -> str:

@@ -2,47 +2,45 @@
 
 from __future__ import annotations
 
-from rich.text import Text
-
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
-from surveyapp.languages import shown
+from surveyapp.report.blocks import Block, Paragraph, Table
 from surveyapp.report.sections import azimuths, checks, reduction
 from surveyapp.tui import texts
-from surveyapp.tui.views.blocks import blocks_as_text
-from surveyapp.tui.views.session import session_rows
+from surveyapp.tui.views.session import session_table
 
-LISTS: dict[str, tuple[tuple[str, ...], str]] = {
-    "sessions": (reduction.SUMMARY, texts.NO_SESSIONS),
-    "lines": (azimuths.SUMMARY, texts.NO_LINES),
-    "checks": (checks.HEAD, texts.NO_CHECK_ROWS),
-    "warnings": ((texts.COL_WARNING,), texts.NO_WARNINGS),
+EMPTY: dict[str, str] = {
+    "sessions": texts.NO_SESSIONS,
+    "lines": texts.NO_LINES,
+    "checks": texts.NO_CHECK_ROWS,
+    "warnings": texts.NO_WARNINGS,
 }
-"""Columns of each page that is a list, and what it says without rows."""
+"""What each page that is a list says without rows."""
 
 
-def page_rows(project: Project, result: OrientationResult) -> dict[str, list[tuple[str, ...]]]:
-    """Rows of each page that is a list."""
+def page_tables(project: Project, result: OrientationResult) -> dict[str, Table]:
+    """The table of each page that is a list."""
+    codes = tuple((warning.code,) for warning in result.warnings)
     return {
-        "sessions": session_rows(project, result),
-        "lines": list(azimuths.summary(project, result).rows),
-        "checks": [checks.row(check) for check in checks.ordered(result.checks)],
-        "warnings": [(warning.code,) for warning in result.warnings],
+        "sessions": session_table(project, result),
+        "lines": azimuths.summary(project, result),
+        "checks": checks.table(result.checks),
+        "warnings": Table((texts.COL_WARNING,), codes),
     }
 
 
 def details_of(
-    project: Project, result: OrientationResult, page: str, row: int, *, width: int
-) -> Text:
+    project: Project, result: OrientationResult, page: str, row: int
+) -> tuple[Block, ...]:
     """Details of a row of the page of sessions, lines, checks or warnings."""
     if page == "sessions":
         wanted = project.sessions[row].id
         for session in result.sessions:
             if session.id == wanted:
-                return blocks_as_text(reduction.session_blocks(project, session), width)
-        return Text(texts.BEING_OBSERVED)
+                return reduction.session_blocks(project, session)
+        return (Paragraph(texts.BEING_OBSERVED),)
     if page == "lines":
-        return blocks_as_text(azimuths.line_blocks(project, result.lines[row]), width)
+        return azimuths.line_blocks(project, result.lines[row])
     if page == "checks":
-        return Text(shown(checks.details(checks.ordered(result.checks)[row])))
-    return Text(shown(result.warnings[row].text))
+        return checks.details(checks.ordered(result.checks)[row])
+    return (Paragraph(result.warnings[row].text),)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from surveyapp.core.observing.doubts import Question
+from surveyapp.report.numbers import plain, signed_angle
 from surveyapp.tui import texts
-from surveyapp.tui.views.form import number_text, small_text
 
 
 def question_text(item: Question) -> str:
@@ -17,11 +17,11 @@ def question_text(item: Question) -> str:
         )
     if item.scale:
         return texts.QUESTIONS[item.doubt].format(
-            difference=texts.DIVISIONS.format(value=number_text(item.difference, 2, sign=True)),
-            limit=texts.DIVISIONS.format(value=number_text(item.limit, 2)),
+            difference=texts.DIVISIONS.format(value=plain(item.difference, 2, sign=True)),
+            limit=texts.DIVISIONS.format(value=plain(item.limit, 2)),
         )
     return texts.QUESTIONS[item.doubt].format(
-        difference=small_text(item.difference), limit=small_text(item.limit).lstrip("+")
+        difference=signed_angle(item.difference), limit=signed_angle(item.limit).lstrip("+")
     )
 
 

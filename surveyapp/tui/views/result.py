@@ -9,11 +9,10 @@ from rich.text import Text
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import AngleResult, OrientationResult
 from surveyapp.languages import translated
-from surveyapp.report.numbers import line_name, with_sigma
+from surveyapp.report.numbers import line_name, seconds, with_sigma
 from surveyapp.report.sections import azimuths, checks, constants, reduction
 from surveyapp.tui import texts
 from surveyapp.tui.views.blocks import blocks_as_text
-from surveyapp.tui.views.form import arcsec_text
 from surveyapp.tui.widgets.constants import draw_constant
 from surveyapp_models.angles import AngleUnit, format_angle
 
@@ -73,8 +72,8 @@ def truth_text(outcome: PracticeOutcome | None, unit: AngleUnit) -> str:
     verdict = texts.PRACTICE_HOLDS if outcome.inside else texts.PRACTICE_MISSES
     truth = texts.PRACTICE_TRUTH.format(
         truth=format_angle(outcome.truth, unit),
-        error=arcsec_text(outcome.error, sign=True),
-        interval=arcsec_text(outcome.interval95),
+        error=seconds(outcome.error, 1, sign=True),
+        interval=seconds(outcome.interval95, 1),
         verdict=verdict,
     )
     hidden = texts.PRACTICE_HIDDEN.format(effect=translated(outcome.effect.replace("_", " ")))

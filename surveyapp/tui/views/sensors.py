@@ -1,25 +1,22 @@
-"""Sensor logs, cards and previews as rows and text."""
+"""Sensor logs, cards and previews as blocks."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from rich.text import Text
+from collections.abc import Mapping, Sequence
 
 from surveyapp.domain.log_preview import LogPreview, PreviewedColumn
 from surveyapp.domain.sensor_entry import SensorLogEntry
-from surveyapp.languages import shown, translated
+from surveyapp.languages import joined
 from surveyapp.observation.sensors.desk import CardShown
+from surveyapp.report.blocks import Block, Heading, KeyValues, Paragraph, Table
 from surveyapp.report.numbers import four_digits
+from surveyapp.report.sections.sensors import parameter_table
 from surveyapp.tui import texts
-from surveyapp.tui.widgets.records import pairs_text, table_text
 
-LOG_COLUMNS = (texts.COL_LOG, texts.COL_KIND, texts.COL_PROGRAMME, texts.COL_CARD, texts.COL_VALID)
-CARD_COLUMNS = (texts.COL_CARD, texts.COL_KIND, texts.COL_CALIBRATED, texts.COL_VALID)
 CELLS_SHOWN = 2
 
 
-def log_rows(logs: Sequence[SensorLogEntry], cards: Sequence[CardShown]) -> list[tuple[str, ...]]:
+def log_table(logs: Sequence[SensorLogEntry], cards: Sequence[CardShown]) -> Table:
     """A row a log, with the card that was made from it."""
     rows: list[tuple[str, ...]] = []
     for entry in logs:
@@ -33,7 +30,8 @@ def log_rows(logs: Sequence[SensorLogEntry], cards: Sequence[CardShown]) -> list
                 "" if card is None else validity(card),
             )
         )
-    return rows
+    head = (texts.COL_LOG, texts.COL_KIND, texts.COL_PROGRAMME, texts.COL_CARD, texts.COL_VALID)
+    return Table(head, tuple(rows))
 
 
 def card_of(entry: SensorLogEntry, cards: Sequence[CardShown]) -> CardShown | None:
@@ -56,9 +54,9 @@ def validity(shown: CardShown) -> str:
     return texts.SENSOR_ANY if until is None else texts.SENSOR_CARD_HOLDS.format(day=until)
 
 
-def card_rows(cards: Sequence[CardShown]) -> list[tuple[str, ...]]:
+def card_table(cards: Sequence[CardShown]) -> Table:
     """A row a card."""
-    return [
+    rows = tuple(
         (
             shown.path,
             "" if shown.card is None else shown.card.kind,
@@ -66,10 +64,11 @@ def card_rows(cards: Sequence[CardShown]) -> list[tuple[str, ...]]:
             validity(shown),
         )
         for shown in cards
-    ]
+    )
+    return Table((texts.COL_CARD, texts.COL_KIND, texts.COL_CALIBRATED, texts.COL_VALID), rows)
 
 
-def log_details(entry: SensorLogEntry) -> Text:
+def log_details(entry: SensorLogEntry) -> tuple[Block, ...]:
     """What project.toml says of a log."""
     values = {
         "file": entry.file,
@@ -83,54 +82,49 @@ def log_details(entry: SensorLogEntry) -> Text:
         "sha256": (entry.sha256 or "")[:16],
         "effects": ", ".join(effect.id.replace("_", " ") for effect in entry.effects),
     }
-    pairs = [(texts.SENSOR_FACTS_LOG[key], value) for key, value in values.items() if value]
-    return pairs_text(pairs)
+    return (_facts(texts.SENSOR_FACTS_LOG, values),)
 
 
-def card_details(shown: CardShown) -> Text:
+def _facts(names: Mapping[str, str], values: Mapping[str, str]) -> KeyValues:
+    return KeyValues(tuple((names[key], value) for key, value in values.items() if value))
+
+
+def card_details(shown: CardShown) -> tuple[Block, ...]:
     """Parameters of a card, where it is from and where it holds."""
     card = shown.card
+    refused = () if shown.holds else (Paragraph(shown.problem, "warning"),)
     if card is None:
-        return Text(shown.problem)
-    days = texts.SENSOR_DAYS.format(
-        first=card.valid_from or texts.SENSOR_ANY, last=card.valid_to or texts.SENSOR_ANY
-    )
+        return refused
+    first, last = (day or texts.SENSOR_ANY for day in (card.valid_from, card.valid_to))
     span = card.temperature_c
     values = {
         "title": card.title,
         "source": card.source,
-        "days": days,
-        "temperatures": texts.SENSOR_ANY if span is None else f"{span[0]:g} to {span[1]:g} C",
+        "days": texts.SENSOR_DAYS.format(first=first, last=last),
+        "temperatures": texts.SENSOR_ANY
+        if span is None
+        else texts.SENSOR_TEMPERATURES.format(low=span[0], high=span[1]),
         "notes": "; ".join(card.notes.values()),
     }
-    pairs = [(texts.SENSOR_FACTS_CARD[key], value) for key, value in values.items() if value]
-    text = pairs_text(pairs)
-    if not shown.holds:
-        text.append(f"{shown.problem}\n", style="bold")
-    text.append("\n")
-    rows = [
-        (
-            translated(item.name.replace("_", " ")),
-            four_digits(item.value),
-            four_digits(item.sigma),
-            item.unit,
-        )
-        for item in card.parameters
-    ]
-    return text.append_text(table_text(rows, left=(0, 3)))
+    return (_facts(texts.SENSOR_FACTS_CARD, values), *refused, parameter_table(card.parameters))
 
 
-def preview_text(preview: LogPreview) -> Text:
+def preview_blocks(preview: LogPreview) -> tuple[Block, ...]:
     """What was understood of a log: problems first, they decide whether it is taken."""
     rate = "" if preview.rate_hz is None else texts.ADD_LOG_RATE.format(rate=preview.rate_hz)
-    text = Text()
+    found: list[Block] = []
     if preview.rows:
-        text.append(texts.ADD_LOG_HEAD.format(rows=preview.rows, rate=rate) + "\n")
-    _block(text, texts.ADD_LOG_WRONG, preview.problems)
-    _block(text, texts.ADD_LOG_TOLD, [f"{w.code}: {shown(w.text)}" for w in preview.warnings])
-    text.append("\n")
-    rows = [texts.ADD_LOG_COLUMNS, *(_column_row(column) for column in preview.columns)]
-    return text.append_text(table_text(rows, left=(0, 1, 2, 5)))
+        found.append(Paragraph(texts.ADD_LOG_HEAD.format(rows=preview.rows, rate=rate)))
+    warnings = tuple(joined(": ", (w.code, w.text)) for w in preview.warnings)
+    for title, lines in (
+        (texts.ADD_LOG_WRONG, preview.problems),
+        (texts.ADD_LOG_TOLD, warnings),
+    ):
+        if lines:
+            found.append(Heading(title, 2))
+            found += [Paragraph(line, "small") for line in lines]
+    rows = tuple(_column_row(column) for column in preview.columns)
+    return (*found, Table(texts.ADD_LOG_COLUMNS, rows, "lllrrl"))
 
 
 def _column_row(column: PreviewedColumn) -> tuple[str, ...]:
@@ -147,10 +141,3 @@ def _column_row(column: PreviewedColumn) -> tuple[str, ...]:
         four_digits(column.high),
         " ".join(column.first[:CELLS_SHOWN]),
     )
-
-
-def _block(text: Text, title: str, lines: Sequence[str]) -> None:
-    if lines:
-        text.append(f"{title}\n", style="bold")
-        for line in lines:
-            text.append(f"  {line}\n")

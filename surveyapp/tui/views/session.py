@@ -1,4 +1,4 @@
-"""One session as rows of text."""
+"""The sessions of a project as a table: those of the record, and those that are not done."""
 
 from __future__ import annotations
 
@@ -6,11 +6,12 @@ from surveyapp.core.observing.steps import current_step
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
 from surveyapp.languages import translated
-from surveyapp.report.sections.reduction import summary_row
+from surveyapp.report.blocks import Table
+from surveyapp.report.sections import reduction
 from surveyapp.tui import texts
 
 
-def session_rows(project: Project, result: OrientationResult) -> list[tuple[str, ...]]:
+def session_table(project: Project, result: OrientationResult) -> Table:
     """Each session of the project in one row, also those without a result yet."""
     unit = project.angle_unit
     results = {session.id: session for session in result.sessions}
@@ -24,5 +25,5 @@ def session_rows(project: Project, result: OrientationResult) -> list[tuple[str,
             step = current_step(item.book, item.method)
             rows.append((name, translated(item.method), "", texts.STEP_NAMES[step], "", "", ""))
             continue
-        rows.append((name, *summary_row(session, unit)[1:]))
-    return rows
+        rows.append((name, *reduction.summary_row(session, unit)[1:]))
+    return Table(reduction.SUMMARY, tuple(rows), reduction.SUMMARY_ALIGN)

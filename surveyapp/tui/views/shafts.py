@@ -1,16 +1,28 @@
-"""An orientation through shafts as rows of text."""
+"""The pages of an orientation through shafts: blocks of the record."""
 
 from __future__ import annotations
 
-from surveyapp.domain.shaft import CHECK_IDS
-from surveyapp.domain.shaft_result import ShaftOrientation, SideAzimuth
-from surveyapp.languages import translated
+from surveyapp.domain.shaft_result import ShaftOrientation, ShaftResult
+from surveyapp.report.blocks import Block
+from surveyapp.report.numbers import direction, plain, seconds
+from surveyapp.report.sections import shafts as section
 from surveyapp.tui import texts
-from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, format_angle
+from surveyapp_models.angles import AngleUnit
 
-AZIMUTH_COLUMNS = (texts.COL_WHAT, texts.COL_RESULT, texts.COL_BOUND, texts.COL_VERDICT)
-PLUMBING_COLUMNS = (texts.COL_WHAT, texts.COL_DONE, texts.COL_BY, texts.COL_NOTE)
-WORDS = {True: texts.MET, False: texts.NOT_MET, None: ""}
+
+def pages(
+    result: ShaftResult, shaft: ShaftOrientation, unit: AngleUnit
+) -> dict[str, tuple[Block, ...]]:
+    """Blocks by the id of their page, of one shaft."""
+    return {
+        "azimuth": (
+            *section.orientation(shaft, unit),
+            *section.wires(shaft),
+            *section.budget(shaft),
+            *section.warnings(result),
+        ),
+        "plumbing": section.plumbing(shaft),
+    }
 
 
 def state_text(shaft: ShaftOrientation, unit: AngleUnit) -> str:
@@ -22,67 +34,9 @@ def state_text(shaft: ShaftOrientation, unit: AngleUnit) -> str:
         id=shaft.id,
         at=shaft.at,
         to=shaft.to,
-        azimuth=format_angle(best.value, unit),
-        sigma=f'{best.sigma * RHO_ARCSEC:.1f}"',
+        azimuth=direction(best.value, unit),
+        sigma=f'{seconds(best.sigma, 1)}"',
     )
-
-
-def azimuth_rows(shaft: ShaftOrientation, unit: AngleUnit) -> list[tuple[str, ...]]:
-    """Azimuths, then every check."""
-
-    def row(name: str, value: SideAzimuth | None, word: str = "") -> tuple[str, ...]:
-        if value is None:
-            return name, "-", "-", word
-        return name, format_angle(value.value, unit), f'±{value.sigma * RHO_ARCSEC:.1f}"', word
-
-    rows = [row(texts.S_WIRES, shaft.azimuth), row(texts.S_GYRO, shaft.gyro)]
-    if shaft.gyro is not None:
-        word = WORDS[shaft.combined.consistent]
-        rows.append(row(texts.S_TOGETHER, shaft.combined.azimuth, word))
-    rows += [
-        (
-            texts.S_TRIANGLE.format(station=item.station, place=item.place),
-            f"{item.f_mm:+.2f} mm",
-            f"{item.limit_mm:.2f} mm",
-            WORDS[item.passed],
-        )
-        for item in shaft.triangles
-    ]
-    if shaft.scale is not None:
-        scale = shaft.scale
-        values = (f"{scale.misclosure_mm:+.2f} mm", f"{scale.limit_mm:.2f} mm")
-        rows.append((texts.S_SCALE, *values, WORDS[scale.passed]))
-    depth = shaft.depth
-    difference = "-" if depth.difference_mm is None else f"{depth.difference_mm:.2f} mm"
-    name = texts.S_DEPTH.format(depth=f"{depth.m:.4f}")
-    rows.append((name, difference, f"{depth.limit_mm:.2f} mm", WORDS[depth.passed]))
-    rows.append((texts.S_CONVERGENCE, f"{shaft.convergence_mm:.2f} mm", "", ""))
-    return rows
-
-
-def budget_pairs(shaft: ShaftOrientation) -> list[tuple[str, str]]:
-    """The error of one orientation by the wires."""
-    return [
-        (
-            translated(line.source.replace("_", " ")),
-            f'{line.sigma * RHO_ARCSEC:.2f}"  {line.share:.0%}',
-        )
-        for line in shaft.budget
-    ]
-
-
-def plumbing_rows(shaft: ShaftOrientation) -> list[tuple[str, ...]]:
-    """The checks of the plumbing, open ones too."""
-    recorded = {check.id: check for check in shaft.checks}
-    rows: list[tuple[str, ...]] = []
-    for name in CHECK_IDS:
-        check = recorded.get(name)
-        words = translated(name.replace("_", " "))
-        if check is None:
-            rows.append((words, texts.P_OPEN, "", ""))
-        else:
-            rows.append((words, check.done_at or texts.P_OPEN, check.by, check.note))
-    return rows
 
 
 def swing_title(shaft: ShaftOrientation, wire: str, axis: str) -> str:
@@ -93,7 +47,7 @@ def swing_title(shaft: ShaftOrientation, wire: str, axis: str) -> str:
     return texts.S_SWING.format(
         wire=wire,
         axis=axis,
-        rest="-" if value is None else f"{value:.3f}",
-        sigma="-" if sigma is None else f"{sigma:.3f}",
-        period=f"{rest.period_s:.1f}",
+        rest=plain(value, 3),
+        sigma=plain(sigma, 3),
+        period=plain(rest.period_s, 1),
     )

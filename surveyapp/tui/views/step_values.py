@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from surveyapp.core.observing.step_values import StepValues
 from surveyapp.core.observing.steps import Step
+from surveyapp.report.numbers import plain, seconds
 from surveyapp.tui import texts
-from surveyapp.tui.views.form import arcsec_text, number_text
 from surveyapp_models.angles import AngleUnit, format_angle
 
 
@@ -24,20 +24,20 @@ def value_lines(values: StepValues, unit: AngleUnit) -> list[str]:
         if sight.two_c is None:
             lines.append(texts.VALUE_SIGHT_ONE.format(target=sight.target, mean=mean))
         else:
-            two_c = arcsec_text(sight.two_c, sign=True)
+            two_c = seconds(sight.two_c, 1, sign=True)
             lines.append(texts.VALUE_SIGHT.format(target=sight.target, mean=mean, two_c=two_c))
         if sight.change is not None:
-            change = arcsec_text(sight.change, sign=True)
+            change = seconds(sight.change, 1, sign=True)
             lines.append(texts.VALUE_SIGHT_CHANGE.format(target=sight.target, change=change))
     for zenith in values.zeniths:
-        index = arcsec_text(zenith.index, sign=True)
+        index = seconds(zenith.index, 1, sign=True)
         mean = format_angle(zenith.mean, unit)
         lines.append(texts.VALUE_ZENITH.format(target=zenith.target, mean=mean, index=index))
     zero = values.zero
     if zero is not None:
-        mean = number_text(zero.mean_div, 3, sign=True)
+        mean = plain(zero.mean_div, 3, sign=True)
         lines.append(texts.VALUE_ZERO.format(mean=mean, points=zero.points))
         if zero.change_div is not None:
-            change = number_text(zero.change_div, 3, sign=True)
+            change = plain(zero.change_div, 3, sign=True)
             lines.append(texts.VALUE_ZERO_CHANGE.format(change=change))
     return lines

@@ -44,14 +44,15 @@ class ConstantsPage(Vertical):
 
     def compose(self) -> ComposeResult:
         """Table and drawing."""
-        yield Records(section.SUMMARY, empty=texts.NO_CONSTANTS)
+        yield Records(empty=texts.NO_CONSTANTS, whole=False)
         yield ConstantPlot()
 
     def show(self, result: OrientationResult) -> None:
         """Show another result."""
         self.result = result
-        self.query_one(Records).show(section.summary(result).rows)
-        self.draw(0)
+        records = self.query_one(Records)
+        records.show(section.summary(result))
+        self.draw(max(records.query_one(DataTable).cursor_row, 0))
 
     def on_data_table_row_highlighted(self, event: DataTable.RowHighlighted) -> None:
         """Another instrument."""

@@ -62,7 +62,7 @@ class Forecast(Vertical):
             for line in next_lines(actions):
                 text.append(f"\n{line}")
         lines = (time_difference_text(progress), schuler_text(progress, self.unit))
-        for line in (*filter(None, lines), *channel_lines(progress, 6)):
+        for line in (*filter(None, lines), *channel_lines(progress)):
             text.append(f"\n{line}")
         self.query_one("#facts", Static).update(text)
         alert = self.query_one("#alert", Static)

@@ -1,6 +1,6 @@
 """The headings of a breakthrough in braille dots, the ellipse at the meeting point enlarged.
 
-Only places on the screen are computed here. Dots are taken for square; north is up.
+Only places on the screen are computed here.
 """
 
 from __future__ import annotations
@@ -13,8 +13,7 @@ from textual.widget import Widget
 
 from surveyapp.domain.penetration_result import MineDrawing, Prediction
 from surveyapp.tui import texts
-from surveyapp.tui.widgets.canvas import Canvas
-from surveyapp.tui.widgets.plan import STEPS, enlargement
+from surveyapp.tui.widgets.canvas import Canvas, Paper, draw_ellipse, enlargement
 
 START, GYRO = "■", "G"
 MARGIN = 6
@@ -44,27 +43,11 @@ class HeadingPlan(Widget):
         return draw_headings(self.result, drawing, width=width, height=height)
 
 
-class _Paper:
-    """From east and north to dots."""
-
-    def __init__(self, drawing: MineDrawing, canvas: Canvas) -> None:
-        every = [place for route in drawing.routes for place in route]
-        self.low = [min(p[i] for p in every) for i in (0, 1)]
-        span = [max(max(p[i] for p in every) - self.low[i], 1e-3) for i in (0, 1)]
-        room = (2 * (canvas.width - NAME_ROOM) - 2 * MARGIN - 1, 4 * canvas.height - 2 * MARGIN - 1)
-        self.scale = min(room[0] / span[0], room[1] / span[1])
-        self.shift = [MARGIN + 0.5 * (room[i] - span[i] * self.scale) for i in (0, 1)]
-        self.bottom = 4 * canvas.height - 1
-
-    def __call__(self, place: tuple[float, float]) -> tuple[float, float]:
-        x = self.shift[0] + (place[0] - self.low[0]) * self.scale
-        return x, self.bottom - self.shift[1] - (place[1] - self.low[1]) * self.scale
-
-
 def draw_headings(result: Prediction, drawing: MineDrawing, *, width: int, height: int) -> Text:
     """The plan in a field of characters, its legend in the last row."""
     canvas = Canvas(width, height - 1)
-    paper = _Paper(drawing, canvas)
+    every = (place for route in drawing.routes for place in route)
+    paper = Paper(canvas, every, margin=MARGIN, name_room=NAME_ROOM)
     for name, route in zip(drawing.names, drawing.routes, strict=True):
         for a, b in itertools.pairwise(route):
             canvas.line(paper(a), paper(b))
@@ -75,20 +58,15 @@ def draw_headings(result: Prediction, drawing: MineDrawing, *, width: int, heigh
         (x0, y0), (x1, y1) = paper(a), paper(b)
         canvas.sign(0.5 * (x0 + x1), 0.5 * (y0 + y1), GYRO)
     factor = enlargement(result.factor * result.ellipse.a_m, paper.scale)
-    _ellipse(canvas, result, paper(drawing.meeting), paper.scale * factor)
+    major, minor = (
+        result.factor * axis * factor * paper.scale
+        for axis in (result.ellipse.a_m, result.ellipse.b_m)
+    )
+    draw_ellipse(canvas, paper(drawing.meeting), a=major, b=minor, azimuth=result.ellipse.azimuth)
     limit = _corridor(canvas, result, paper(drawing.meeting), paper.scale * factor)
     legend = texts.P_LEGEND.format(start=START, factor=f"{result.factor:g}", enlarged=f"{factor:g}")
     text = legend + (texts.P_LIMIT if limit else "")
     return canvas.text().append("\n").append(text[:width], style="dim")
-
-
-def _ellipse(canvas: Canvas, result: Prediction, at: tuple[float, float], scale: float) -> None:
-    a, b = (result.factor * axis * scale for axis in (result.ellipse.a_m, result.ellipse.b_m))
-    t = result.ellipse.azimuth
-    for k in range(STEPS):
-        u, w = a * math.cos(math.tau * k / STEPS), b * math.sin(math.tau * k / STEPS)
-        east, north = u * math.sin(t) + w * math.cos(t), u * math.cos(t) - w * math.sin(t)
-        canvas.dot(at[0] + east, at[1] - north)
 
 
 def _corridor(canvas: Canvas, result: Prediction, at: tuple[float, float], scale: float) -> bool:

@@ -9,9 +9,9 @@ from textual.widgets import Static
 
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.observation.practice import Practice
+from surveyapp.report.numbers import plain
 from surveyapp.tui import texts
 from surveyapp.tui.entry_desk import Desk
-from surveyapp.tui.views.form import number_text
 from surveyapp_models.angles import AngleUnit, format_angle
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ def _readings(view: View, unit: AngleUnit, *, delivers: bool) -> list[str]:
         pattern = texts.PRACTICE_AZIMUTH if delivers else texts.PRACTICE_CIRCLE
         lines.append(pattern.format(reading=format_angle(view.circle, unit)))
     if view.scale_div is not None:
-        div = number_text(view.scale_div, 2, sign=True)
+        div = plain(view.scale_div, 2, sign=True)
         lines.append(texts.PRACTICE_SCALE.format(div=div))
     if delivers and view.swing is not None:
         lines.append(texts.PRACTICE_MEASURING)

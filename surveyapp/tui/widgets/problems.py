@@ -9,6 +9,7 @@ from textual.widgets import Static
 
 from surveyapp.errors import SurveyError
 from surveyapp.languages import shown
+from surveyapp.report.blocks import Block, Paragraph
 from surveyapp.tui import texts
 
 
@@ -23,6 +24,11 @@ class Problems(VerticalScroll):
         """The problems as text."""
         text = Text().append(f"{texts.CANNOT_USE}\n\n", style="bold")
         yield Static(text.append_text(problems_text(self.error)), markup=False)
+
+
+def problem_blocks(error: SurveyError) -> tuple[Block, ...]:
+    """Every problem as paragraphs, for a pane of blocks."""
+    return tuple(Paragraph(text) for text in problems_text(error).plain.split("\n\n"))
 
 
 def problems_text(error: SurveyError) -> Text:

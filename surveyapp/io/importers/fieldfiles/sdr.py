@@ -128,6 +128,7 @@ def _record(state: State, number: int, line: str) -> None:
         state.gathered.damaged(number, error.args[0], line)
         taken = swallowed(state, line, kind) if kind in (*KINDS, "07") else frozenset()
         lose(state, number, may_have_been(line) | {kind} | taken)
+        state.doubt = number if taken else state.doubt
 
 
 def _other(state: State, number: int, line: str) -> None:
