@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import textwrap
 import unicodedata
@@ -276,8 +277,9 @@ def _figure(figure: Figure) -> str:
             put(*item.at, _MARK[item.shape])
         elif isinstance(item, Label) and not item.upright:
             shift = {"start": 0.0, "middle": 0.5, "end": 1.0}[item.anchor] * len(item.text)
+            first = math.floor(item.at[0] / _MM_PER_COLUMN - shift + 0.5)
             for index, character in enumerate(item.text):
-                put(item.at[0] + (index - shift) * _MM_PER_COLUMN, item.at[1], character)
+                put((first + index) * _MM_PER_COLUMN, item.at[1], character)
     return "\n".join([figure.title, *("".join(row).rstrip() for row in canvas)])
 
 

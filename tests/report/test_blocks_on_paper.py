@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from surveyapp.report.blocks import Document, Heading, KeyValues, Label, Line, Table
+from surveyapp.report.blocks import Anchor, Document, Heading, KeyValues, Label, Line, Table
 from surveyapp.report.blocks import Figure as Drawing
 from surveyapp.report.numbers import plain, signed_angle
 from surveyapp.report.pdf import write_pdf
@@ -132,3 +132,10 @@ def test_a_cell_taller_than_a_page_loses_no_word() -> None:
     found = " ".join(page.extract_text() for page in reader.pages).split()
     assert [found.count(f"w{index}") for index in (0, 1234, 2999)] == [2, 2, 2]
     assert "last" in found
+
+
+@pytest.mark.parametrize("anchor", ["start", "middle", "end"])
+def test_a_label_keeps_its_letters_wherever_it_stands(anchor: Anchor) -> None:
+    for tenth in range(400, 460):
+        figure = Drawing("a figure", 120.0, 20.0, (Label((tenth / 10, 1.0), "time [s]", anchor),))
+        assert "time [s]" in block_text(figure), tenth

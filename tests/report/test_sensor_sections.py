@@ -37,7 +37,7 @@ def test_the_record_holds_every_parameter_with_its_sigma(tmp_path: Path) -> None
 def test_a_refused_calibration_says_so() -> None:
     text = " ".join(api.report_text(PROJECTS / "broad-attached-magnet").split())
     assert "no sensor card comes of this log" in text
-    assert "Not determined: hard_iron_x" in text
+    assert "the record does not determine the result: hard_iron_x" in text
 
 
 def test_the_noise_of_a_log_without_a_kind_has_a_table_and_a_plot() -> None:
