@@ -53,7 +53,7 @@ def texts_of(trees: dict[Path, ast.Module]) -> dict[Path, Found]:
 
 def has_words(text: str) -> bool:
     """Whether a text says something in English beside keys, options, units and file names."""
-    bare = re.sub(r"\[+[^\]]*\]+|\"[^\"]*\"|<[^>]*>|--?[\w-]+|\S*[_=/|.(]\S*", " ", text)
+    bare = re.sub(r"`[^`]*`|\[+[^\]]*\]+|\"[^\"]*\"|<[^>]*>|--?[\w-]+|\S*[_=/|.(]\S*", " ", text)
     return re.search(r"\b[a-z]{2,}\b", bare) is not None
 
 

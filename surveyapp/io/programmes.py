@@ -55,7 +55,10 @@ def read_run(folder: Path, identity: str) -> ProgrammeRun:
     if not path.is_file():
         raise SurveyError(Problem("there is no such run of a programme", where, identity))
     text, _ = split_tail(read_bytes(path, where=where), where=where)
-    lines = list(csv.reader(io.StringIO(text)))
+    try:
+        lines = list(csv.reader(io.StringIO(text)))
+    except csv.Error as error:
+        raise SurveyError(Problem(said("no CSV ({error})", error=error), where)) from None
     if not lines or tuple(lines[0]) != COLUMNS:
         found = ",".join(lines[0]) if lines else ""
         raise SurveyError(Problem("the header is another", where, found, ",".join(COLUMNS)))

@@ -111,8 +111,11 @@ def some(parts: Sequence[str], most: int) -> str:
 
 
 def term(text: str) -> str:
-    """A name from a table of the program (a source of error, a method) as a text."""
-    return Said(text, {})
+    """A name from a table of the program (a source of error, a method) as a text.
+
+    What is a text already stays the one that it is.
+    """
+    return text if isinstance(text, Said) else Said(text, {})
 
 
 def either(parts: Iterable[str]) -> str:

@@ -10,6 +10,7 @@ import io
 import os
 import shutil
 from collections import Counter
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
@@ -194,15 +195,9 @@ def read_stations(text: str) -> tuple[NewStation, ...]:
         try:
             stations.append(_station(cells, columns))
         except ValueError as error:
-            problems.append(
-                Problem(
-                    said("this is no station"),
-                    said("stations, line {number}", number=number),
-                    line.strip(),
-                    said("name, east, north, height"),
-                    str(error),
-                )
-            )
+            place = said("stations, line {number}", number=number)
+            expected, hint = "name, east, north, height", str(error)
+            problems.append(Problem("this is no station", place, line.strip(), expected, hint))
     counts = Counter(station.name for station in stations)
     problems += [
         Problem(said("a station stands twice"), "stations", name, said("each name once"))
@@ -216,8 +211,10 @@ def read_stations(text: str) -> tuple[NewStation, ...]:
 def _cells(line: str) -> list[str]:
     for separator in (";", "\t", ","):
         if separator in line:
-            row = next(csv.reader(io.StringIO(line.strip()), delimiter=separator), [])
-            return [cell.strip() for cell in row]
+            with suppress(csv.Error):
+                row = next(csv.reader(io.StringIO(line.strip()), delimiter=separator), [])
+                return [cell.strip() for cell in row]
+            return [line, "no number"]
     return line.split()
 
 

@@ -126,7 +126,10 @@ def _first_cells(file: LogFile) -> list[list[str]]:
     lines = decode(head[: head.rfind(b"\n") + 1] or head, where=file.request.where).splitlines()
     first = file.layout.first_row - 1
     rows = csv.reader(lines[first : first + FIRST_ROWS], delimiter=file.layout.separator)
-    return [[cell.strip() for cell in row] for row in rows]
+    try:
+        return [[cell.strip() for cell in row] for row in rows]
+    except csv.Error:  # reading the log says what is wrong with it
+        return []
 
 
 def _unstated(file: LogFile) -> tuple[ResultWarning, ...]:

@@ -49,3 +49,17 @@ def test_odometer_that_cannot_be_followed(tmp_path: Path, cell: str) -> None:
     outcome = run("motion", log, "--path", "--snap", "--json")
     assert outcome.code == 2, outcome.out
     assert "odometer_m" in outcome.out or "drives" in outcome.out
+
+
+@pytest.mark.parametrize("cell", ["0.1\r0.2", '"' + "1" * 200_000 + '"', '"0.1'])
+@pytest.mark.parametrize("command", COMMANDS, ids=lambda c: c[0])
+def test_row_that_is_no_csv(tmp_path: Path, command: tuple[str, ...], cell: str) -> None:
+    """A bare carriage return, an endless cell and an open quote are told with their line."""
+    log = noise(tmp_path)
+    lines = log.read_text(encoding="utf-8").splitlines()
+    cells = lines[20].split(",")
+    lines[20] = ",".join([cells[0], cell, *cells[2:]])
+    log.write_bytes(("\n".join(lines) + "\n").encode())
+    outcome = run(command[0], log, *command[1:], "--json")
+    assert outcome.code == 2, outcome.out
+    assert "line 21" in outcome.out

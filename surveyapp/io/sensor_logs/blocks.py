@@ -226,11 +226,14 @@ def _parse_lines(
     words: list[list[str]] = [[] for _ in texts]
     filled = 0
     width = len(layout.names)
-    reader = csv.reader(rows, delimiter=layout.separator)
-    for offset, cells in enumerate(reader):
+    for offset, cells in enumerate(_cells_of(rows, layout.separator)):
+        line = first + offset
+        if isinstance(cells, csv.Error):
+            what = said("the line is no CSV ({error})", error=cells)
+            wrong.add(line, what, rows[min(offset, len(rows) - 1)][:80], expected="numbers")
+            continue
         if not cells or not any(cell.strip() for cell in cells):
             continue
-        line = first + offset
         if len(cells) != width:
             hint = _width_hint(cells, width, layout.separator)
             wrong.add(
@@ -247,6 +250,18 @@ def _parse_lines(
             column.append(cells[index].strip())
         filled += 1
     return values[:, :filled], words
+
+
+def _cells_of(rows: list[str], separator: str) -> Iterator[list[str] | csv.Error]:
+    """Cells of every row; a row that is none (a bare carriage return, an endless cell) is told."""
+    reader = csv.reader(rows, delimiter=separator)
+    while True:
+        try:
+            yield next(reader)
+        except StopIteration:
+            return
+        except csv.Error as error:
+            yield error
 
 
 def _width_hint(cells: Sequence[str], width: int, separator: str) -> str:

@@ -111,7 +111,10 @@ def _separator(line: str) -> str:
 
 
 def _cells(line: str, separator: str) -> list[str]:
-    return next(csv.reader([line], delimiter=separator), [])
+    try:
+        return next(csv.reader([line], delimiter=separator), [])
+    except csv.Error:  # no row of a table
+        return [line]
 
 
 def _empty(cells: Sequence[str]) -> bool:

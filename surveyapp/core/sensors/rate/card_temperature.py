@@ -11,6 +11,7 @@ import numpy as np
 from surveyapp.core.sensors.rate.compensation import MODELS, ModelName, fitted
 from surveyapp.core.sensors.rate.parameters import DEG_H
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 TABLE: Final = "temperature_model"
@@ -66,7 +67,7 @@ class TemperatureModel:
                         "the temperature lies outside the nodes of the card",
                         where,
                         found,
-                        f"{low:g} to {high:g} C",
+                        said("{low:g} to {high:g} C", low=low, high=high),
                         "nothing is extrapolated: calibrate over the range in which it is used",
                     )
                 )
