@@ -96,9 +96,11 @@ FIELD: Final = Toy(
 assert '"toy_sessions": 1' in run("orient", SAMPLE, "--json")
 assert "toy sessions" in run("orient", SAMPLE)
 assert "toy sessions" in run("report", SAMPLE, "--text")
+from surveyapp.tui.views.blocks import blocks_as_text
 from surveyapp.tui.views.project import details_of
 project = api.open_project(SAMPLE)
-assert "toy sessions" in details_of(project, api.orient(project), "lines", 0, width=78).plain
+shown = details_of(project, api.orient(project), "lines", 0)
+assert "toy sessions" in blocks_as_text(shown, 78).plain
 """,
 )
 RECORD: Final = "surveyapp/report/record.py"

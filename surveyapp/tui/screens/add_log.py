@@ -9,7 +9,7 @@ from surveyapp.observation.exchange import Entry
 from surveyapp.observation.sensors import adding
 from surveyapp.report.blocks import Block, KeyValues, Paragraph
 from surveyapp.tui import texts
-from surveyapp.tui.screens.files import FilesScreen, Progress
+from surveyapp.tui.screens.files import FilesScreen, PartRead
 from surveyapp.tui.views.sensors import preview_blocks
 
 
@@ -40,7 +40,7 @@ class AddLogScreen(FilesScreen[LogPreview]):
         """Folders and files that may be logs."""
         return adding.log_entries(place)
 
-    def look(self, entry: Entry, options: str, *, preview: bool, progress: Progress) -> LogPreview:
+    def look(self, entry: Entry, options: str, *, preview: bool, progress: PartRead) -> LogPreview:
         """Read it with the columns that are named; take it into ``sensors/``."""
         del progress
         return (

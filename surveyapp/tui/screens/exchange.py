@@ -8,7 +8,7 @@ from surveyapp.domain.fieldfile import ImportResult
 from surveyapp.observation import exchange
 from surveyapp.report.blocks import Block, Paragraph
 from surveyapp.tui import texts
-from surveyapp.tui.screens.files import FilesScreen, Progress
+from surveyapp.tui.screens.files import FilesScreen, PartRead
 from surveyapp.tui.views.exchange import import_blocks
 
 
@@ -36,7 +36,7 @@ class ImportScreen(FilesScreen[ImportResult]):
         return exchange.entries(place)
 
     def look(
-        self, entry: exchange.Entry, options: str, *, preview: bool, progress: Progress
+        self, entry: exchange.Entry, options: str, *, preview: bool, progress: PartRead
     ) -> ImportResult:
         """As ``surveyapp import``."""
         return exchange.bring(entry, self.folder, options, preview=preview, progress=progress)

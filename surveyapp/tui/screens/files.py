@@ -31,7 +31,7 @@ from surveyapp.tui.widgets.titlebar import TitleBar
 
 _EVERY_PERCENT: Final = 5
 Understood = TypeVar("Understood")
-Progress = Callable[[float], None]
+PartRead = Callable[[float], None]
 
 
 class FilesScreen(Screen[None], Generic[Understood]):
@@ -75,7 +75,7 @@ class FilesScreen(Screen[None], Generic[Understood]):
         """Folders and files of a folder that may be taken."""
 
     @abstractmethod
-    def look(self, entry: Entry, options: str, *, preview: bool, progress: Progress) -> Understood:
+    def look(self, entry: Entry, options: str, *, preview: bool, progress: PartRead) -> Understood:
         """Preview or take a file, in a thread."""
 
     @abstractmethod
