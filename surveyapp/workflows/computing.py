@@ -171,6 +171,7 @@ def oriented(
     return OrientedProject(project, found, sides, constants, (*warnings, *left_out))
 
 
+@paused_collection()
 def judged(found: OrientedProject, *, software: str, session: str | None = None) -> Computed:
     """Judge an oriented project.
 
