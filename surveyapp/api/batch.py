@@ -23,11 +23,14 @@ from surveyapp.api.project import Folder
 from surveyapp.domain.filing import BATCH_COLUMNS, BatchResult, BatchRow
 from surveyapp.domain.results import LineResult, to_arcsec, to_degrees
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.guarded import ON_WINDOWS
 from surveyapp.languages import said
 from surveyapp.workflows.spreading import ATTEMPTS, is_lost
 
 CHUNK: Final = 16
 """Projects a task: a tenth of a second of work or more, against which its transport is nothing."""
+_MOST_ON_WINDOWS: Final = 61
+"""Processes that a pool may have there; ``ProcessPoolExecutor`` refuses more."""
 _AHEAD: Final = 3
 """Tasks under way for every worker."""
 
@@ -88,6 +91,7 @@ def batch_rows(
     paths = [str(folder) for folder in folders]
     chunks = (paths[i : i + CHUNK] for i in range(0, len(paths), CHUNK))
     workers = jobs if jobs is not None else (os.cpu_count() or 1)
+    workers = min(workers, _MOST_ON_WINDOWS) if ON_WINDOWS else workers
     if executor is None and (workers <= 1 or len(paths) <= 1):
         for chunk in chunks:
             yield from batch_chunk(chunk)

@@ -12,6 +12,7 @@ import errno
 import os
 import re
 import stat
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
@@ -32,8 +33,18 @@ _DRIVE: Final = re.compile(r"[A-Za-z]:")
 ON_WINDOWS: Final = os.name == "nt"
 LONGEST_WINDOWS: Final = 259
 """Letters of a path that every program on Windows can open."""
+UNSAFE_LETTERS: Final = '/\\:*?"<>|'
+"""Letters that no name of a file may hold on some system."""
 _DEVICES: Final = frozenset(
-    {"con", "prn", "aux", "nul", *(f"{name}{k}" for name in ("com", "lpt") for k in range(1, 10))}
+    {
+        "con",
+        "prn",
+        "aux",
+        "nul",
+        "conin$",
+        "conout$",
+        *(f"{name}{k}" for name in ("com", "lpt") for k in range(1, 10)),
+    }
 )
 _OUTSIDE_HINT: Final = "copy the file into the project folder and name it there"
 
@@ -68,6 +79,30 @@ def is_reserved(name: str) -> bool:
     """
     parts = [part for part in name.replace("\\", "/").split("/") if part not in ("", ".", "..")]
     return any(p.split(".")[0].strip().lower() in _DEVICES or p[-1] in ". " for p in parts)
+
+
+def can_name_file(name: str) -> bool:
+    """Whether an id can be the name of a file on every system, so that a project can be carried.
+
+    Printable letters without those of paths, no point in front, no point or blank at the end, and
+    no device of Windows.
+    """
+    usable = bool(name) and name.isprintable() and not set(name) & set(UNSAFE_LETTERS)
+    return usable and not name.startswith(".") and not is_reserved(name)
+
+
+def name_hint(name: str) -> str:
+    """Why an id that looks good cannot be the name of a file; empty where its letters tell it."""
+    if not is_reserved(name):
+        return ""
+    return said("Windows keeps this name for a device, or cuts its last letter")
+
+
+def file_name_of(text: str, *, other: str) -> str:
+    """A text as the name of a file on every system; ``other`` stands where nothing is left."""
+    name = "".join("-" if c in UNSAFE_LETTERS or not c.isprintable() else c for c in text)
+    name = name.strip(" ").rstrip(" .")
+    return name if can_name_file(name) else f"{other}-{name}".rstrip("-. ")
 
 
 def need_short_path(path: Path, *, room: int) -> None:
@@ -180,8 +215,14 @@ def _part(path: Path) -> None:
     """Give a file that has several names bytes of its own under this one."""
     from surveyapp.io.tomltext import atomic_write
 
+    atomic_write(path, _pieces(path))
+
+
+def _pieces(path: Path) -> Iterator[bytes]:
+    """Bytes of a file, which is closed behind them: Windows replaces none that is open."""
     with os.fdopen(open_regular(path, os.O_RDONLY), "rb") as stream:
-        atomic_write(path, iter(lambda: stream.read(1 << 20), b""))
+        while piece := stream.read(1 << 20):
+            yield piece
 
 
 def _refuse_irregular(path: Path, *, follow: bool) -> None:

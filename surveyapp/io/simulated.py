@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.io.tomltext import atomic_write
+from surveyapp.io.tomltext import atomic_write, replace_held
 from surveyapp.languages import said
 
 TRUTH_FILE = "truth.json"
@@ -72,7 +72,7 @@ def write_simulated(
         atomic_write(part / TRUTH_FILE, text.encode())
         if folder.exists():
             folder.rmdir()
-        part.rename(folder)
+        replace_held(part, folder)
     except OSError as error:
         reason = error.strerror or str(error)
         raise SurveyError(

@@ -26,6 +26,9 @@ _SMALLEST: Final = 1e-9
 _MOST_TABLES: Final = 150_000
 _MOST_VALUES: Final = 600_000
 """Beyond them memory and time of reading are no longer those of a few letters."""
+_MOST_LETTERS: Final = 10_000_000
+"""Twice what ten thousand sessions with everything that is told of them need."""
+_MOST_UNKNOWN: Final = 200
 _KEY: Final = re.compile(r"^[^=\n\"'#]*(?==)", re.MULTILINE)
 _DEEPEST: Final = 24
 _DEEP_KEY: Final = re.compile(r"(?<![A-Za-z0-9_-])(?:[A-Za-z0-9_-]+[ \t]*\.[ \t]*){24}")
@@ -37,6 +40,8 @@ class Findings:
 
     problems: list[Problem] = field(default_factory=list)
     warnings: list[ResultWarning] = field(default_factory=list)
+    unknown: int = 0
+    """Keys that were not known; all but the first are told together."""
 
     def absorb(self, error: SurveyError) -> None:
         """Take over the problems of an error."""
@@ -55,6 +60,16 @@ def parse_toml(text: str, *, where: str) -> dict[str, object]:
     ------
     SurveyError
     """
+    if len(text) > _MOST_LETTERS:
+        raise SurveyError(
+            Problem(
+                "this is too much text for a TOML file",
+                where,
+                said("{size} million letters", size=math.ceil(len(text) / 1e6)),
+                said("at most {size} million letters", size=_MOST_LETTERS // 1_000_000),
+                "readings and sensor logs stand in files of their own, which it names",
+            )
+        )
     try:
         if _DEEP_KEY.search(text) is not None or _is_too_much(text):
             raise RecursionError
@@ -286,6 +301,10 @@ class Table:
         known = self._asked.union(also_known)
         for key in self.data:
             if key not in known:
+                self.findings.unknown += 1
+                if self.findings.unknown > _MOST_UNKNOWN:
+                    self._warn_no_further()
+                    return
                 text = said(
                     "{where}: {key} is not known and was not used. {nearest}",
                     where=self.where,
@@ -293,6 +312,15 @@ class Table:
                     nearest=nearest_names(key, known),
                 )
                 self.findings.warnings.append(ResultWarning("unknown_key", text))
+
+    def _warn_no_further(self) -> None:
+        """Say once that more keys are unknown than anybody reads about."""
+        if self.findings.unknown == _MOST_UNKNOWN + 1:
+            text = said(
+                "{where}: further keys from here on are not known and were not used",
+                where=self.where,
+            )
+            self.findings.warnings.append(ResultWarning("unknown_key", text))
 
 
 def as_number(value: object) -> float | None:

@@ -71,7 +71,7 @@ def atomic_write(path: Path, data: bytes | Iterable[bytes]) -> None:
             os.fsync(stream.fileno())
         mode = path.stat().st_mode & 0o777 if path.exists() else 0o644
         Path(temporary).chmod(mode)
-        _replace(Path(temporary), path)
+        replace_held(Path(temporary), path)
         temporary = None
         sync_folder(path.parent)
     except OSError as error:
@@ -91,8 +91,16 @@ def atomic_write(path: Path, data: bytes | Iterable[bytes]) -> None:
             Path(temporary).unlink(missing_ok=True)
 
 
-def _replace(temporary: Path, path: Path) -> None:
-    """Replace a file, a few times where another program (a sync service, a viewer) holds it."""
+def replace_held(temporary: Path, path: Path) -> None:
+    """Put a file or folder in its place, a few times where another program holds it.
+
+    A sync service, a virus scanner or a viewer lets go after a moment.
+
+    Raises
+    ------
+    OSError
+        If it is held for longer, or the system refuses otherwise.
+    """
     for wait in (*_WAITS_S, None):
         try:
             temporary.replace(path)

@@ -20,7 +20,7 @@ from surveyapp.domain.project import Method, Purpose
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.filing.dependencies import project_data, rows_of
 from surveyapp.io.filing.lock import ProjectLock
-from surveyapp.io.guarded import is_reserved
+from surveyapp.io.guarded import can_name_file
 from surveyapp.io.settings import Settings, read_settings, write_settings
 from surveyapp.languages import said
 from surveyapp.observation.owner_entries import OwnerEntries
@@ -243,6 +243,7 @@ def create_project(form: NewProject) -> str:
         If the folder holds anything already, if the grid is none, or if a name stands twice.
     """
     from surveyapp.io.template import need_own_folder
+    from surveyapp.io.tomltext import replace_held
 
     target = Path(form.folder).expanduser().absolute()
     part = target.with_name(f".{target.name}.part")
@@ -253,7 +254,7 @@ def create_project(form: NewProject) -> str:
         _make_project(part, form)
         if target.exists():
             shutil.rmtree(target)  # holds nothing, or what a killed ``new`` has left
-        part.rename(target)
+        replace_held(part, target)
     except OSError as error:
         what = said("the folder cannot be made ({strerror})", strerror=error.strerror or error)
         raise SurveyError(Problem(what, str(target))) from None
@@ -356,9 +357,7 @@ def create_session(folder: api.Folder, form: NewSession) -> None:
 
 def _book_name(identity: str) -> str:
     """Path of the book of a session; the id names a file, so it must be able to."""
-    usable = identity.isprintable() and not set(identity) & set('/\\:*?"<>|')
-    usable = usable and not is_reserved(identity)
-    if not usable or identity.startswith(".") or len(identity.encode("utf-8")) > LONGEST_ID:
+    if not can_name_file(identity) or len(identity.encode("utf-8")) > LONGEST_ID:
         raise SurveyError(
             Problem(
                 said("this id cannot name a field book"),

@@ -29,6 +29,7 @@ from surveyapp.domain.programme import (
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.filing.lock import ProjectLock
+from surveyapp.io.guarded import can_name_file, name_hint
 from surveyapp.io.programmes import append_entry, read_run, run_path
 from surveyapp.io.project import read_project
 from surveyapp.io.sensor_logs.reading import LogRequest, Need, read_log
@@ -37,7 +38,7 @@ from surveyapp.io.tomltext import atomic_write
 from surveyapp.io.writing import append_table
 from surveyapp.languages import said
 
-_BAD_IN_ID: Final = "/\\:*?\"<>|'. "
+_BAD_IN_ID: Final = "'. "
 
 
 def begin_run(
@@ -52,9 +53,9 @@ def begin_run(
     """
     found = programme_of(programme)
     problems = []
-    if not identity or any(letter in _BAD_IN_ID for letter in identity):
+    if not can_name_file(identity) or any(letter in _BAD_IN_ID for letter in identity):
         expected = "letters, digits, - and _"
-        problems.append(Problem("this is no id", "id", identity, expected))
+        problems.append(Problem("this is no id", "id", identity, expected, name_hint(identity)))
     elif run_path(folder, identity).exists():
         problems.append(Problem("a run has this id", "id", identity, "a free id"))
     if identity in {entry.id for entry in read_project(folder).sensor_logs}:

@@ -20,6 +20,7 @@ from surveyapp.domain.sensor_log import NUMBER_COLUMNS, SensorLog
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.files import decode, shown_path
 from surveyapp.io.filing.lock import ProjectLock
+from surveyapp.io.guarded import can_name_file, name_hint
 from surveyapp.io.project import read_project
 from surveyapp.io.sensor_logs.reading import LogFile, LogRequest, Need, open_log
 from surveyapp.io.sensor_logs.tables import is_inside
@@ -31,7 +32,6 @@ FIRST_ROWS: Final = 3
 LARGEST_COPY: Final = 64 * 1024 * 1024
 """A larger log stays where it is: the project pins it by its hash."""
 _HEAD_BYTES: Final = 1 << 16
-_BAD_IN_ID: Final = "/\\:*?\"<>|'"
 
 
 @dataclass(frozen=True, slots=True)
@@ -205,8 +205,9 @@ def _wish_problems(identity: str, wish: LogEntryWish, taken: list[str]) -> list[
                 "a sensor log has this id", "id", identity, said("none of: {names}", names=names)
             )
         )
-    if any(letter in identity for letter in _BAD_IN_ID) or not identity.isprintable():
-        problems.append(Problem("this is no id", "id", identity, "letters, digits, - and _"))
+    if not can_name_file(identity) or "'" in identity:
+        expected, hint = "letters, digits, - and _", name_hint(identity)
+        problems.append(Problem("this is no id", "id", identity, expected, hint))
     if wish.kind is not None and wish.kind not in SENSOR_KINDS:
         hint = nearest_names(wish.kind, SENSOR_KINDS)
         expected = either(SENSOR_KINDS)
@@ -221,7 +222,8 @@ def _place(folder: Path, source: Path, identity: str, *, inside: bool) -> str:
     """Where the log stands in the project; copied, unless it lies there already."""
     if inside:
         return source.resolve().relative_to(folder.resolve()).as_posix()
-    target = folder / "sensors" / f"{identity}{source.suffix or '.csv'}"
+    ending = source.suffix if can_name_file(f"log{source.suffix}") else ""
+    target = folder / "sensors" / f"{identity}{ending or '.csv'}"
     name = target.relative_to(folder).as_posix()
     try:
         data = source.read_bytes()

@@ -298,6 +298,32 @@ def test_no_text_of_a_project_costs_more_than_its_length(
     assert "beyond all bounds" in json.loads(capsys.readouterr().out)["problems"][0]["what"]
 
 
+def test_a_text_that_is_too_long_is_refused_in_words(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = f'name = "{"x" * 30_000_000}"\n'
+    (folder / "project.toml").write_text(text, encoding="utf-8")
+    began = time.process_time()
+    assert main(["check", str(folder), "--json"]) == 2
+    assert time.process_time() - began < 1.0
+    (problem,) = json.loads(capsys.readouterr().out)["problems"]
+    assert problem["what"] == "this is too much text for a TOML file"
+    assert problem["found"] == "31 million letters"
+
+
+def test_of_many_unknown_keys_the_first_are_told(folder: Path) -> None:
+    before = api.open_project(folder).warnings
+    path = folder / "project.toml"
+    more = "".join(f"\n[t{i}.a]" for i in range(50_000))
+    path.write_text(path.read_text("utf-8") + more, encoding="utf-8")
+    began = time.process_time()
+    told = [w.text for w in api.open_project(folder).warnings if w not in before]
+    assert time.process_time() - began < 3.0
+    assert len(told) == 201
+    assert told[0].startswith("project.toml: t0 is not known")
+    assert "further keys" in told[-1]
+
+
 @pytest.mark.parametrize("line", ["\n", "x\n", '1,note,"\n'])
 def test_a_book_of_millions_of_lines_is_refused_at_once(
     line: str, folder: Path, capsys: pytest.CaptureFixture[str]

@@ -19,6 +19,7 @@ from surveyapp.domain.observations import CorrelatedBlock, Observation, Observat
 from surveyapp.domain.traverse import Network, NetworkPoint, Status
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.importers.gkf_document import CC, GON, KINDS, MM, NEVER_MM, Axes
+from surveyapp.io.tomltext import atomic_write
 from surveyapp.languages import said
 
 ELEMENTS = {kind: name for name, kind in KINDS.items()}
@@ -47,14 +48,7 @@ def write_gkf(network: Network, path: Path | str) -> None:
     SurveyError
         If the format has no words for something, or the file cannot be written.
     """
-    text = gkf_text(network)
-    try:
-        Path(path).write_text(text, encoding="utf-8")
-    except OSError as failure:
-        found = failure.strerror or str(failure)
-        raise SurveyError(
-            Problem("The file cannot be written", str(path), found, "a writable place")
-        ) from None
+    atomic_write(Path(path), gkf_text(network).encode("utf-8"))
 
 
 def gkf_text(network: Network) -> str:

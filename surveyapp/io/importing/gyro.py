@@ -17,6 +17,7 @@ from surveyapp.domain.project import Project, ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.fieldbook.rows import COLUMNS
 from surveyapp.io.files import shown
+from surveyapp.io.guarded import is_reserved, name_hint
 from surveyapp.io.importers.fieldfiles.catalogue import importer_of
 from surveyapp.io.importers.fieldfiles.gyrocsv import GyroReading
 from surveyapp.io.importers.fieldfiles.lines import field_digest
@@ -146,9 +147,15 @@ def _instrument(
                 )
             )
         return {}, []
-    if not instrument.strip() or not instrument.isprintable() or len(instrument) > 100:
+    if not _safe(instrument) or is_reserved(instrument) or len(instrument) > 100:
         raise SurveyError(
-            Problem("this is no id of an instrument", "instrument", shown(instrument))
+            Problem(
+                "this is no id of an instrument",
+                "instrument",
+                shown(instrument),
+                "printable characters",
+                name_hint(instrument),
+            )
         )
     known = ", ".join(item.id for item in project.instruments) or "none"
     path = f"cards/{_safe(instrument)}.toml"

@@ -21,6 +21,7 @@ from surveyapp.domain.fieldfile import FieldFile, ImportResult, KnownPoint, Redu
 from surveyapp.domain.project import Project, ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import shown
+from surveyapp.io.guarded import UNSAFE_LETTERS, can_name_file, file_name_of, name_hint
 from surveyapp.io.importers.fieldfiles.catalogue import importer_of
 from surveyapp.io.importers.fieldfiles.gathering import ReadOptions
 from surveyapp.io.importers.fieldfiles.lines import field_digest
@@ -35,7 +36,6 @@ ASSUMED_MM: Final = 2.0
 ASSUMED_PPM: Final = 2.0
 ASSUMED_CENTRING_MM: Final = 1.0
 """Common class of total stations underground; told as an assumption wherever they are written."""
-_UNSAFE: Final = '/\\:*?"<>|'
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,17 +80,13 @@ def traverse_name(options: ImportOptions, file: Path) -> str:
     """
     told = options.traverse
     if told is None:
-        name = "".join("-" if c in _UNSAFE or not c.isprintable() else c for c in file.stem)
-        return name.strip(" .")[:100] or "import"
-    if (
-        not told.strip(" .")
-        or told != told.strip()
-        or told.startswith((".", "-"))
-        or len(told) > 100
-        or any(c in _UNSAFE or not c.isprintable() for c in told)
-    ):
-        expected = said("printable characters without {unsafe}, no dot in front", unsafe=_UNSAFE)
-        raise SurveyError(Problem("this is no name", "traverse", shown(told), expected))
+        return file_name_of(file.stem.strip(" .")[:100], other="import")
+    bad = told != told.strip() or told.startswith("-") or len(told) > 100
+    if bad or not can_name_file(told):
+        letters = UNSAFE_LETTERS
+        expected = said("printable characters without {unsafe}, no dot in front", unsafe=letters)
+        what, hint = "this is no name", name_hint(told)
+        raise SurveyError(Problem(what, "traverse", shown(told), expected, hint))
     return told
 
 

@@ -14,6 +14,7 @@ from typing import Final
 
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import MAX_BYTES, shown
+from surveyapp.io.guarded import file_name_of
 from surveyapp.io.importers.fieldfiles.lines import field_digest, open_field_file
 from surveyapp.io.importers.fieldfiles.parts import parts_hint
 from surveyapp.io.tomltext import atomic_write
@@ -52,7 +53,8 @@ class Additions:
 def stored_name(folder: Path, copied: FileCopy, name: str) -> str:
     """Path below imports/ for the file itself; one that is there with the same bytes is kept."""
     file = copied.source
-    for candidate in (file.name, f"{name}-{file.name}"):
+    own = file_name_of(file.name, other="import")
+    for candidate in (own, f"{name}-{own}"):
         path = folder / "imports" / candidate
         if not path.exists() or _same_bytes(path, copied):
             return f"imports/{candidate}"
