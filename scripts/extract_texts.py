@@ -25,6 +25,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "models")]
 
 from scripts import problem_texts  # noqa: E402
 from surveyapp.languages import LANGUAGES  # noqa: E402
+from surveyapp.languages.names import OF, QUANTITIES, WORDS  # noqa: E402
 from surveyapp.languages.po_file import read_po  # noqa: E402
 from surveyapp.languages.vocabulary import VOCABULARY  # noqa: E402
 
@@ -124,6 +125,7 @@ def _tables() -> Iterator[tuple[str, str]]:
         "domain/project.py": (*get_args(Method), *get_args(Purpose)),
         "domain/shaft.py": CHECK_IDS,
         "models/effects": [text for effect in CATALOGUE for text in (effect.id, effect.title)],
+        "languages/names.py": (*QUANTITIES, *OF, *WORDS),
         "languages/vocabulary.py": VOCABULARY,
     }
     for place, names in tables.items():

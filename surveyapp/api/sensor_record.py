@@ -30,7 +30,7 @@ def sensor_sections(found: Computed) -> tuple[Extra, ...]:
             body = tuple(Paragraph(problem.text, "warning") for problem in error.problems)
             verdict = said("cannot be used: see its section")
         blocks = (Heading(title_of(entry.id)), *_note(entry), *body, *adopted_blocks(entry))
-        extras.append(Extra(f"sensor log {entry.id}", blocks, verdict))
+        extras.append(Extra(said("sensor log {identity}", identity=entry.id), blocks, verdict))
     return tuple(extras)
 
 

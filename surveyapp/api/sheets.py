@@ -8,7 +8,7 @@ from surveyapp.api.network import adjust
 from surveyapp.api.orientation import Source, compute
 from surveyapp.api.project import SOFTWARE, Folder
 from surveyapp.errors import SurveyError
-from surveyapp.languages import said
+from surveyapp.languages import in_language, said
 from surveyapp.report.written import SheetsResult
 
 
@@ -23,7 +23,7 @@ def _file_part(identity: str, taken: set[str]) -> str:
     return name
 
 
-def write_sheets(source: Source, output: Folder) -> SheetsResult:
+def write_sheets(source: Source, output: Folder, *, language: str = "en") -> SheetsResult:
     """Write the sheets of a project beside a record, as CSV and as HTML.
 
     Parameters
@@ -31,6 +31,8 @@ def write_sheets(source: Source, output: Folder) -> SheetsResult:
     source : Project, path or Computed
     output : path
         Of the record: ``record.pdf`` has ``record-gyro.csv``, ``record-traverse-main.html`` ...
+    language : str
+        Of the HTML: ``en``, ``de``, ``ru`` or ``zh``; the CSV is English in every language.
 
     Returns
     -------
@@ -60,7 +62,8 @@ def write_sheets(source: Source, output: Folder) -> SheetsResult:
     taken: set[str] = set()
     for sheet in sheets:
         name = _file_part(sheet.id, taken)
-        page = sheet_html(sheet, project=found.project.name, software=SOFTWARE)
+        with in_language(language):
+            page = sheet_html(sheet, project=found.project.name, software=SOFTWARE)
         for ending, text in ((".csv", sheet_csv(sheet)), (".html", page)):
             path = base.with_name(f"{base.stem}-{name}{ending}")
             write_output(path, text.encode("utf-8"))

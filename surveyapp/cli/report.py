@@ -62,7 +62,7 @@ def run(options: argparse.Namespace) -> int:
         print(warning.text, file=sys.stderr)
     sheets = api.SheetsResult((), ())
     if options.sheets and options.blank is None:
-        sheets = api.write_sheets(options.folder, options.output)
+        sheets = api.write_sheets(options.folder, options.output, language=language)
     if options.json:
         print_json({**written.to_dict(), **sheets.to_dict()})
     else:

@@ -19,6 +19,7 @@ from surveyapp.domain.adjustment import AdjustedObservation, AdjustedPoint, Adju
 from surveyapp.domain.angle_result import AngleResult
 from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.results import OrientationResult
+from surveyapp.languages import current, joined, said, said_each, shown, term
 from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, format_angle, wrap_pi, wrap_two_pi
 
 K = ObservationKind
@@ -151,32 +152,42 @@ def traverse_sheet(name: str, result: AdjustmentResult, unit: AngleUnit) -> Shee
         if at in points and to in points
     ]
     head = (
-        *("station", "target", "back", "angle", "sets", "zenith", "slope m", "level m"),
-        *("grid azimuth", "dE m", "dN m", "dH m", "E m", "N m", "H m", "sE mm", "sN mm", "sH mm"),
+        *said_each("station", "target", "back", "angle", "sets", "zenith", "slope m", "level m"),
+        *said_each(
+            "grid azimuth", "dE m", "dN m", "dH m", "E m", "N m", "H m", "sE mm", "sN mm", "sH mm"
+        ),
     )
-    test = result.global_test
-    verdict = {True: "met", False: "NOT MET", None: "open"}[test.passed]
-    remarks = [f"least squares, {result.dof} degrees of freedom, global test {verdict}"]
+    verdict = {True: said("met"), False: said("NOT MET"), None: said("open")}
+    remarks = [
+        said(
+            "least squares, {dof} degrees of freedom, global test {verdict}",
+            dof=result.dof,
+            verdict=verdict[result.global_test.passed],
+        )
+    ]
     remarks += [_closure(item.to_dict()) for item in result.closures]
-    remarks += [f"left out: {item.description}" for item in result.left_out]
-    remarks += [f"{item.code}: {item.text}" for item in result.warnings]
-    return Sheet(f"traverse-{name}", f"Traverse {name}", head, tuple(rows), tuple(remarks))
+    remarks += [said("left out: {what}", what=item.description) for item in result.left_out]
+    remarks += [joined(": ", (item.code, item.text)) for item in result.warnings]
+    title = said("Traverse {name}", name=name)
+    return Sheet(f"traverse-{name}", title, head, tuple(rows), tuple(remarks))
 
 
 def _closure(values: dict[str, object]) -> str:
-    parts = [f"closure {values['kind']}"]
-    for key, pattern in (
-        ("angular_arcsec", 'angular {:+.1f}"'),
-        ("linear_m", "linear {:.4f} m"),
-        ("relative_1_in", "1:{:.0f}"),
-        ("height_m", "height {:+.4f} m"),
-        ("height_mm_per_sqrt_km", "{:+.1f} mm per root km"),
-        ("height_allowed_m", "allowed {:.4f} m"),
-    ):
-        value = values[key]
-        if isinstance(value, float):
-            parts.append(pattern.format(value))
-    return ", ".join(parts)
+    found = {key: value for key, value in values.items() if isinstance(value, float)}
+    parts = [said("closure {kind}", kind=term(str(values["kind"])))]
+    if "angular_arcsec" in found:
+        parts.append(said('angular {value:+.1f}"', value=found["angular_arcsec"]))
+    if "linear_m" in found:
+        parts.append(said("linear {value:.4f} m", value=found["linear_m"]))
+    if "relative_1_in" in found:
+        parts.append(f"1:{found['relative_1_in']:.0f}")
+    if "height_m" in found:
+        parts.append(said("height {value:+.4f} m", value=found["height_m"]))
+    if "height_mm_per_sqrt_km" in found:
+        parts.append(said("{value:+.1f} mm per root km", value=found["height_mm_per_sqrt_km"]))
+    if "height_allowed_m" in found:
+        parts.append(said("allowed {value:.4f} m", value=found["height_allowed_m"]))
+    return joined(", ", parts)
 
 
 def _result(value: AngleResult | None, unit: AngleUnit) -> tuple[str, str]:
@@ -205,21 +216,24 @@ def gyro_sheet(result: OrientationResult, unit: AngleUnit) -> Sheet:
             )
         )
     head = (
-        *("station", "target", "instrument", "rounds", "gyro azimuth", 's "', 'constant "'),
-        *('deflection "', "true azimuth", 'convergence "', 'T-t "', "grid azimuth", 's "'),
+        *said_each(
+            "station", "target", "instrument", "rounds", "gyro azimuth", 's "', 'constant "'
+        ),
+        *said_each('deflection "', "true azimuth", 'convergence "', 'T-t "', "grid azimuth", 's "'),
     )
     constants = [
-        f'constant of {item.instrument}: {_seconds(item.value)}"'
+        said("constant of {instrument}", instrument=item.instrument)
+        + f': {_seconds(item.value)}"'
         + ("" if item.sigma is None else f' +-{item.sigma * RHO_ARCSEC:.1f}"')
         for item in result.constants
         if item.value is not None
     ]
-    warnings = [f"{item.code}: {item.text}" for item in result.warnings]
-    return Sheet("gyro", "Gyro orientation", head, tuple(rows), (*constants, *warnings))
+    warnings = [joined(": ", (item.code, item.text)) for item in result.warnings]
+    return Sheet("gyro", said("Gyro orientation"), head, tuple(rows), (*constants, *warnings))
 
 
 def sheet_csv(sheet: Sheet) -> str:
-    """A sheet as CSV: head, rows, an empty line, remarks."""
+    """A sheet as CSV: head, rows, an empty line, remarks; English in every language."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(sheet.head)
@@ -241,19 +255,21 @@ def _safe(cell: str) -> str:
 
 
 def sheet_html(sheet: Sheet, *, project: str, software: str) -> str:
-    """A sheet as one self-contained page of HTML."""
+    """A sheet as one self-contained page of HTML, its texts in the language in use."""
 
     def cells(tag: str, row: Sequence[str]) -> str:
-        return "<tr>" + "".join(f"<{tag}>{html.escape(cell)}</{tag}>" for cell in row) + "</tr>"
+        return (
+            "<tr>" + "".join(f"<{tag}>{html.escape(shown(cell))}</{tag}>" for cell in row) + "</tr>"
+        )
 
-    title = html.escape(f"{project}: {sheet.title}")
+    title = html.escape(f"{project}: {shown(sheet.title)}")
     lines = [
-        '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">',
+        f'<!DOCTYPE html><html lang="{current()}"><head><meta charset="utf-8">',
         f"<title>{title}</title><style>{_STYLE}</style></head><body>",
         f"<table><caption>{title}</caption><thead>{cells('th', sheet.head)}</thead><tbody>",
         *(cells("td", row) for row in sheet.rows),
         "</tbody></table>",
-        *(f"<p>{html.escape(text)}</p>" for text in sheet.remarks),
+        *(f"<p>{html.escape(shown(text))}</p>" for text in sheet.remarks),
         f"<p><small>{html.escape(software)}</small></p></body></html>",
     ]
     return "\n".join(lines) + "\n"

@@ -33,6 +33,7 @@ from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
+from surveyapp.languages.names import ids
 from surveyapp_models.arrays import Floats
 from surveyapp_models.compass.heading import DEFAULT_DIP, dip_of
 
@@ -238,8 +239,8 @@ def _result(
         kind="compass",
         source=log.id,
         parameters=parameters,
-        before=Misfit(plain.fit.rms, "uT", "size of the field"),
-        after=Misfit(None if refused else fit.rms, "uT", "distance from the ellipsoid"),
+        before=Misfit(plain.fit.rms, "uT", said("size of the field")),
+        after=Misfit(None if refused else fit.rms, "uT", said("distance from the ellipsoid")),
         geometry=Geometry(
             verdict,
             fit.condition if math.isfinite(fit.condition) else None,
@@ -248,8 +249,12 @@ def _result(
             float(np.count_nonzero(cells)) / cells.size,
         ),
         held_out=HeldOut(
-            f"contiguous blocks of {block_rows(log)} rows (about {BLOCK_S:g} s), two halves "
-            "fitted alternately",
+            said(
+                "contiguous blocks of {rows} rows (about {seconds:g} s), two halves "
+                "fitted alternately",
+                rows=block_rows(log),
+                seconds=BLOCK_S,
+            ),
             plain.held_rms,
             None if refused else trials[chosen].held_rms,
             "uT",
@@ -335,7 +340,7 @@ def _warnings(
         found.append(ResultWarning("no_iron", text))
     failed = [t.fit.model for t in trials if not t.fit.converged]
     if failed:
-        text = said("no ellipsoid could be fitted with: {names}", names=", ".join(failed))
+        text = said("no ellipsoid could be fitted with: {names}", names=ids(failed))
         found.append(ResultWarning("no_ellipsoid", text))
     if log.vector("acc") is None:
         text = "no specific force: the dip is taken as 65 degrees"
@@ -362,8 +367,8 @@ def _refused_short(log: SensorLog, points: Floats) -> Calibration:
         parameters=tuple(
             SensorParameter(n, None, None, u) for n, u in zip(NAMES, UNITS, strict=True)
         ),
-        before=Misfit(float(np.std(size)), "uT", "size of the field"),
-        after=Misfit(None, "uT", "distance from the ellipsoid"),
+        before=Misfit(float(np.std(size)), "uT", said("size of the field")),
+        after=Misfit(None, "uT", said("distance from the ellipsoid")),
         geometry=Geometry("refused", None, NAMES),
         warnings=(*log.warnings, ResultWarning("too_few_rows", text)),
         met=False,

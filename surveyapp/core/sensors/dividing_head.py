@@ -245,7 +245,7 @@ def _result(
     held = None
     if first is not None:
         held = HeldOut(
-            "each row of the static test over +-90 degrees left out in turn",
+            said("each row of the static test over +-90 degrees left out in turn"),
             rms((first.output - first.output.mean()) * first.output.size / (first.output.size - 1)),
             rms(_left_out(first)),
             unit,
@@ -255,10 +255,12 @@ def _result(
         source=log.id,
         parameters=tuple(_with_reason(item, present, first) for item in parameters),
         before=Misfit(
-            None if first is None else rms(first.output - first.output.mean()), unit, "static, +-90"
+            None if first is None else rms(first.output - first.output.mean()),
+            unit,
+            said("static, +-90"),
         ),
         after=Misfit(
-            None if first is None else first.fit.rms, unit, "static, +-90, about the line"
+            None if first is None else first.fit.rms, unit, said("static, +-90, about the line")
         ),
         geometry=Geometry(
             "refused" if undetermined else "good",

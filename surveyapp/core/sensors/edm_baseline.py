@@ -247,11 +247,11 @@ def _result(
         kind="edm",
         source=log.id,
         parameters=parameters,
-        before=Misfit(rms["as_read"] * MM, "mm", "distances as read, taken for horizontal"),
+        before=Misfit(rms["as_read"] * MM, "mm", said("distances as read, taken for horizontal")),
         after=Misfit(rms[chosen] * MM, "mm", chosen),
         geometry=Geometry("restricted" if undetermined else "good", undetermined=undetermined),
         held_out=HeldOut(
-            "the pointings of each pair of pillars from all others",
+            said("the pointings of each pair of pillars from all others"),
             _mm(held["as_read"]),
             _mm(held[chosen]),
             "mm",

@@ -139,8 +139,8 @@ def _result(
         kind="swing",
         source=log.id,
         parameters=parameters,
-        before=Misfit(plain, "deg", "known minus shown heading"),
-        after=Misfit(after, "deg", "known minus corrected heading"),
+        before=Misfit(plain, "deg", said("known minus shown heading")),
+        after=Misfit(after, "deg", said("known minus corrected heading")),
         geometry=Geometry(
             "good" if met else "refused",
             None if fit is None else fit.condition,
@@ -149,7 +149,10 @@ def _result(
             float(np.count_nonzero(cells)) / cells.size,
         ),
         held_out=HeldOut(
-            f"contiguous blocks of {block} rows, two halves fitted alternately", plain, held, "deg"
+            said("contiguous blocks of {rows} rows, two halves fitted alternately", rows=block),
+            plain,
+            held,
+            "deg",
         ),
         models=(
             CalibrationModel("none", plain, plain, not met),

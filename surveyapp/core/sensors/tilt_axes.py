@@ -196,8 +196,11 @@ def _result(
     after = rms(np.concatenate([item.fit.residual for item in fits]))
     plain = rms(np.concatenate([item.plain.residual for item in fits]))
     held = HeldOut(
-        f"contiguous blocks of {BLOCK_ROWS} rows, two halves fitted alternately; before = zero "
-        "and scale only",
+        said(
+            "contiguous blocks of {rows} rows, two halves fitted alternately; before = zero "
+            "and scale only",
+            rows=BLOCK_ROWS,
+        ),
         _finite(rms(np.array([item.held_before for item in fits]))),
         _finite(rms(np.array([item.held_after for item in fits]))),
         "arcsec",
@@ -206,8 +209,8 @@ def _result(
         kind="tilt",
         source=log.id,
         parameters=tuple(parameters),
-        before=Misfit(rms(raw), "arcsec", "reading minus reference"),
-        after=Misfit(after, "arcsec", "residuals of both axes"),
+        before=Misfit(rms(raw), "arcsec", said("reading minus reference")),
+        after=Misfit(after, "arcsec", said("residuals of both axes")),
         geometry=Geometry(
             "restricted" if undetermined else "good",
             max(item.fit.condition for item in fits),

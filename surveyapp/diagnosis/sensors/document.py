@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
 from surveyapp.diagnosis.result import CandidateVerdict
 from surveyapp.diagnosis.sensors.loop import Chosen, LoopFit, LoopResult, Trial
 from surveyapp.diagnosis.sensors.records import SensorRecord
+from surveyapp.languages import joined, said
+from surveyapp.languages.names import by_id, named
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Effect
+
+_LEFT: Final = {
+    "ar1": said("The residuals that remain resemble their neighbours."),
+    "random_walk": said("The residuals that remain wander."),
+}
 
 
 def effect_of(record: SensorRecord, identity: str) -> Effect | None:
@@ -164,25 +171,46 @@ def words_of(document: dict[str, Any]) -> list[str]:
     unit = document["unit"]
     before, after = document["before"]["rms"], document["after"]["rms"]
     told = [
-        f"{document['identity']}: the residuals of the base model are {before:.3g} {unit} (rms), "
-        f"{after:.3g} {unit} with what is named; verdict {document['verdict'].replace('_', ' ')}."
+        said(
+            "{log}: the residuals of the base model are {before:.3g} {unit} (rms), "
+            "{after:.3g} {unit} with what is named; verdict {verdict}.",
+            log=document["identity"],
+            before=before,
+            after=after,
+            unit=unit,
+            verdict=named(document["verdict"]),
+        )
     ]
     for item in document["adopted"]:
-        numbers = ", ".join(_shown(c) for c in item["coefficients"][:6])
-        told.append(f"Named: {item['effect'].replace('_', ' ')} ({numbers}).")
-    for item in document["ambiguous"]:
-        names = " or ".join(name.replace("_", " ") for name in item["any_of"])
-        told.append(f"Not told apart: {names}. It takes {item['separate_by']}.")
+        numbers = joined(", ", [_shown(c) for c in item["coefficients"][:6]])
+        effect = named(item["effect"])
+        told.append(said("Named: {effect} ({numbers}).", effect=effect, numbers=numbers))
+    told += [
+        said(
+            "Not told apart: {names}. It takes {what}.",
+            names=_or([named(name) for name in item["any_of"]]),
+            what=item["separate_by"],
+        )
+        for item in document["ambiguous"]
+    ]
     held = document["held_out"]
     if held["before"] is not None and held["after"] is not None:
-        told.append(f"Held out: {held['before']:.3g} -> {held['after']:.3g} {unit}.")
+        numbers = f"{held['before']:.3g} -> {held['after']:.3g} {unit}"
+        told.append(said("Held out: {numbers}.", numbers=numbers))
     if document["noise"]["after"] != "white":
-        noise = {"ar1": "resemble their neighbours", "random_walk": "wander"}
-        told.append(f"The residuals that remain {noise[document['noise']['after']]}.")
+        told.append(_LEFT[document["noise"]["after"]])
     return told + list(document["remedy"])
+
+
+def _or(names: list[str]) -> str:
+    """Names of which one is meant: ``a or b or c``."""
+    whole, *others = names
+    for name in others:
+        whole = said("{before} or {last}", before=whole, last=name)
+    return whole
 
 
 def _shown(coefficient: dict[str, Any]) -> str:
     value = coefficient["value"]
-    number = "never" if value is None else f"{value:.4g}"
-    return f"{coefficient['name']} {number} {coefficient['unit']}"
+    number = said("never") if value is None else f"{value:.4g}"
+    return joined(" ", (by_id(coefficient["name"]), number, coefficient["unit"]))

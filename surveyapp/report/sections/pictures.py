@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from surveyapp.domain.chart import Chart, Coverage, Picture, Series
+from surveyapp.languages import joined, said
 from surveyapp.report.blocks import (
     Block,
     Figure,
@@ -39,8 +40,8 @@ def picture_blocks(pictures: Sequence[Picture]) -> tuple[Block, ...]:
         blocks.append(figure)
         words = [legend(picture)] if isinstance(picture, Chart) else []
         if isinstance(picture, Coverage):
-            words.append("numbers: readings in a cell; crosses: none")
-        told = "; ".join(word for word in (*words, picture.note) if word)
+            words.append(said("numbers: readings in a cell; crosses: none"))
+        told = joined("; ", [word for word in (*words, picture.note) if word])
         if told:
             blocks.append(Paragraph(told, "small"))
     return tuple(blocks)
@@ -51,15 +52,20 @@ def legend(chart: Chart) -> str:
     shown = [s for s in chart.series if s.points]
     if len(shown) < 2:
         return ""
-    words = {"dot": "dots", "circle": "circles", "cross": "crosses", "square": "squares"}
+    words = {
+        "dot": said("dots"),
+        "circle": said("circles"),
+        "cross": said("crosses"),
+        "square": said("squares"),
+    }
     marks = _marks(shown)
     parts = []
     for item in shown:
         if item.style == "guide":
-            parts.append(f"dashed: {item.name}")
+            parts.append(joined(": ", (said("dashed"), item.name)))
         else:
-            parts.append(f"{words[marks[item.name]]}: {item.name}")
-    return ", ".join(dict.fromkeys(parts))
+            parts.append(joined(": ", (words[marks[item.name]], item.name)))
+    return joined(", ", dict.fromkeys(parts))
 
 
 def _marks(shown: Sequence[Series]) -> dict[str, Shape]:
@@ -82,9 +88,9 @@ def chart_figure(chart: Chart) -> Figure | None:
     frame = Frame(across, up)
     if chart.square:
         frame, x_names = _squared(frame), []
-    label = f"lg of the {chart.y_label}" if chart.log_y else chart.y_label
+    label = said("lg of the {label}", label=chart.y_label) if chart.log_y else chart.y_label
     if chart.y_names:
-        label = ", ".join(f"{i} {name}" for i, name in enumerate(chart.y_names))
+        label = joined(", ", [joined(" ", (str(i), name)) for i, name in enumerate(chart.y_names)])
     parts = frame.axes(chart.x_label, label, x_names)
     marks = _marks(shown)
     for item in shown:

@@ -16,6 +16,7 @@ from surveyapp.domain.north import NorthResult
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.languages import joined, said, said_each, term
+from surveyapp.languages.names import by_id, named
 from surveyapp.report.blocks import Block, Heading, KeyValues, Paragraph, Table
 from surveyapp.report.numbers import NOTHING, four_digits, plain
 from surveyapp.report.sections.undetermined import undetermined_blocks
@@ -42,32 +43,43 @@ def filter_blocks(result: FilterResult) -> tuple[Block, ...]:
     )
     terms = tuple(
         (
-            f"{a.symbol} {a.name.replace('_', ' ')}",
+            joined(" ", (a.symbol, named(a.name))),
             four_digits(a.value),
             four_digits(b.value),
             a.unit,
-            (b.reason or a.reason or "").replace("_", " "),
+            named(b.reason or a.reason or ""),
         )
         for a, b in zip(result.before.coefficients, result.after.coefficients, strict=True)
     )
     lags = [
-        (f"90 % of a step of {name.replace('_', ' ')}", _lag(value))
+        (said("90 % of a step of {name}", name=name.replace("_", " ")), _lag(value))
         for name, value in result.step_lag_90_samples.items()
     ]
     facts = [(said("filter"), f"{result.filter}, q {result.q:.4g}, r {result.r:.4g}"), *lags]
     if result.resamplings is not None:
-        facts.append((said("resamplings"), f"{result.resamplings} of {result.before.n} samples"))
+        facts.append(
+            (
+                said("resamplings"),
+                said("{n} of {count} samples", n=result.resamplings, count=result.before.n),
+            )
+        )
     return (
         Heading(said("Filter on {column}", column=result.column), 2),
         KeyValues(tuple(facts)),
-        Table((said("time s"), f"raw {result.unit}", "filtered", "ratio"), rows, "rrrr"),
+        Table(
+            (said("time s"), said("raw {unit}", unit=result.unit), said("filtered"), said("ratio")),
+            rows,
+            "rrrr",
+        ),
         Table(said_each("coefficient", "before", "after", "unit", "why not"), terms, "lrrll"),
         *warning_blocks(result.warnings),
     )
 
 
 def _lag(samples: float | None) -> str:
-    return "not within the test" if samples is None else f"after {samples:.0f} samples"
+    if samples is None:
+        return said("not within the test")
+    return said("after {n:.0f} samples", n=samples)
 
 
 def spectrum_blocks(result: LineSpectrum) -> tuple[Block, ...]:
@@ -84,14 +96,14 @@ def spectrum_blocks(result: LineSpectrum) -> tuple[Block, ...]:
     )
     scatter = result.scatter
     facts = [
-        (said("record"), f"{result.n} rows at {result.rate_hz:g} Hz"),
+        (said("record"), said("{n} rows at {rate:g} Hz", n=result.n, rate=result.rate_hz)),
         (said("sd of a sample"), _change(scatter.before, scatter.after, scatter.unit)),
         (said("sd of 10 s means"), _change(scatter.before_10s, scatter.after_10s, scatter.unit)),
     ]
     for i, family in enumerate(result.families, start=1):
         times = ", ".join(str(h) for h in family.harmonics)
         text = f"{times} x {family.fundamental_hz:.4f} Hz, p {family.p_family:.1e}"
-        facts.append((f"family {i}", text))
+        facts.append((said("family {number}", number=i), text))
     if result.magnetic is not None:
         m = result.magnetic
         text = (
@@ -99,7 +111,8 @@ def spectrum_blocks(result: LineSpectrum) -> tuple[Block, ...]:
             f"= {m.bias_deg_h:.4g} deg/h"
         )
         facts.append((said("magnetic bias"), text))
-    head = ("Hz", PM, f"amplitude {result.unit}", "false alarm", "family")
+    size = said("amplitude {unit}", unit=result.unit)
+    head = ("Hz", PM, size, *said_each("false alarm", "family"))
     lines: Block = Table(head, rows, "rrrrr") if rows else Paragraph(said("No line stands out."))
     return (
         Heading(said("Spectrum of {column}", column=result.column), 2),
@@ -111,7 +124,12 @@ def spectrum_blocks(result: LineSpectrum) -> tuple[Block, ...]:
 
 
 def _change(before: float | None, after: float | None, unit: str) -> str:
-    return f"{four_digits(before)} with the lines, {four_digits(after)} without {unit}"
+    return said(
+        "{before} with the lines, {after} without {unit}",
+        before=four_digits(before),
+        after=four_digits(after),
+        unit=unit,
+    )
 
 
 def _against(found: Mapping[str, Any] | None) -> tuple[Block, ...]:
@@ -132,23 +150,32 @@ def _against(found: Mapping[str, Any] | None) -> tuple[Block, ...]:
 
 def motion_blocks(result: Motion) -> tuple[Block, ...]:
     """States, the path, what was laid back over it, and the test of the gate."""
-    rows = tuple((f"{s.start_s:.2f}", f"{s.end_s:.2f}", s.state) for s in result.segments)
-    facts = [(said("record"), f"{result.n} rows at {result.rate_hz:g} Hz")]
+    rows = tuple((f"{s.start_s:.2f}", f"{s.end_s:.2f}", term(s.state)) for s in result.segments)
+    facts = [(said("record"), said("{n} rows at {rate:g} Hz", n=result.n, rate=result.rate_hz))]
     facts.append((said("false alarm of a rest"), f"{result.false_alarm:g}"))
     if result.path is not None:
         path = result.path
-        facts.append((said("path"), f"{path.mode}, {path.length_m:.2f} m"))
+        facts.append((said("path"), joined("", (term(path.mode), f", {path.length_m:.2f} m"))))
         facts.append((said("closes to"), f"{plain(path.closure_m, 3)} m"))
         sides = ", ".join(f"{side:.3f}" for side in path.sides_m)
         facts.append((said("between stops"), f"{sides or NOTHING} m"))
     for item in result.snapped:
-        span = f"{item.from_m:.1f} to {item.to_m:.1f} m"
-        facts.append((said("laid back"), f"{span}, {item.kind}, {item.heading_deg:+.3f} degrees"))
+        text = said(
+            "{begin:.1f} to {end:.1f} m, {kind}, {heading:+.3f} degrees",
+            begin=item.from_m,
+            end=item.to_m,
+            kind=term(item.kind),
+            heading=item.heading_deg,
+        )
+        facts.append((said("laid back"), text))
     if result.zero_velocity is not None:
         verdict = str(result.zero_velocity["verdict"])
         share = result.zero_velocity.get("share_exceeding")
-        told = "" if share is None else f", {share:.0%} of the innovations beyond their bound"
-        facts.append((said("gate of rest"), verdict + told))
+        told = term(verdict)
+        if share is not None:
+            beyond = said("{share:.0%} of the innovations beyond their bound", share=share)
+            told = joined(", ", (told, beyond))
+        facts.append((said("gate of rest"), told))
     return (
         Heading(said("State of motion"), 2),
         KeyValues(tuple(facts)),
@@ -160,9 +187,12 @@ def motion_blocks(result: Motion) -> tuple[Block, ...]:
 def north_blocks(result: NorthResult) -> tuple[Block, ...]:
     """North or heading with its reference, both roots where they are not told apart."""
     way = result.direction
-    facts = [(said("method"), f"{result.method}, {result.n} rows")]
-    name = "gyro north, circle reading" if result.key == "gyro_north" else "heading"
-    value = "not determined" if way.deg is None else f"{way.deg:.5f} degrees {way.reference}"
+    facts = [(said("method"), said("{kind}, {n} rows", kind=term(result.method), n=result.n))]
+    gyro = result.key == "gyro_north"
+    name = said("gyro north, circle reading") if gyro else named("heading")
+    value = said("not determined")
+    if way.deg is not None:
+        value = said("{angle:.5f} degrees {to}", angle=way.deg, to=term(way.reference))
     facts.append((name, value))
     if way.sigma_arcsec is not None:
         interval = plain(way.interval95_arcsec)
@@ -172,10 +202,10 @@ def north_blocks(result: NorthResult) -> tuple[Block, ...]:
     if third:
         blocks += _roots(third)
     rows = tuple(
-        (term(p.name.replace("_", " ")), four_digits(p.value), four_digits(p.sigma), p.unit)
+        (named(p.name), four_digits(p.value), four_digits(p.sigma), p.unit)
         for p in result.parameters
     )
-    blocks.append(Table((said("parameter"), "value", PM, "unit"), rows, "lrrl"))
+    blocks.append(Table(said_each("parameter", "value", "±", "unit"), rows, "lrrl"))
     steps = result.extra.get("steps") or ()
     if steps:
         blocks.append(_steps(steps))
@@ -192,7 +222,7 @@ def _roots(third: Mapping[str, Any]) -> list[Block]:
         (four_digits(root["heading_deg"]), four_digits(root["bias_deg_h"]))
         for root in third.get("roots", ())
     )
-    found: list[Block] = [Paragraph(f"Third axis: {third['verdict']}.")]
+    found: list[Block] = [Paragraph(said("Third axis: {verdict}.", verdict=term(third["verdict"])))]
     if rows:
         found.append(Table(said_each("heading deg", "bias of the third axis deg/h"), rows, "rr"))
     return found
@@ -221,11 +251,11 @@ def _tracking(tracking: Sequence[Mapping[str, Any]]) -> Table:
             str(i),
             _value(item.get("bias")),
             _value(item.get("sigma")),
-            "gated" if item.get("gated") else "",
+            said("gated") if item.get("gated") else "",
         )
         for i, item in enumerate(tracking, start=1)
     )
-    return Table((said("stop"), "bias deg/h", PM, ""), rows, "rrrl")
+    return Table(said_each("stop", "bias deg/h", "±", ""), rows, "rrrl")
 
 
 def plan_blocks(plan: StopPlan) -> tuple[Block, ...]:
@@ -237,13 +267,20 @@ def plan_blocks(plan: StopPlan) -> tuple[Block, ...]:
             plain(row.heading_sd_deg, 2),
             plain(row.lateral_sd_m, 2),
             plain(row.hours, 2),
-            "" if row.enough is None else "yes" if row.enough else "no",
+            "" if row.enough is None else said("yes") if row.enough else said("no"),
         )
         for row in plan.rows
     )
     table = tuple((f"{bias:g}", plain(theta, 2)) for bias, theta in plan.pointing)
     return (
-        Heading(f"Stops of a {plan.grade.title} at latitude {plan.latitude_deg:g}", 2),
+        Heading(
+            said(
+                "Stops of a {unit} at latitude {latitude:g}",
+                unit=plan.grade.title,
+                latitude=plan.latitude_deg,
+            ),
+            2,
+        ),
         Table(
             said_each("stop s", "every m", "heading deg", "lateral m", "hours", "enough"),
             rows,
@@ -258,16 +295,22 @@ def diagnosis_blocks(document: Mapping[str, Any], words: Sequence[str]) -> tuple
     """The diagnosis of a log: words, candidates, before and after on held-out data."""
     unit = str(document.get("unit", ""))
     held = document.get("held_out") or {}
-    facts = [(said("verdict"), str(document["verdict"]).replace("_", " "))]
-    for name in ("before", "after"):
+    facts = [(said("verdict"), named(str(document["verdict"])))]
+    titles = {"before": said("rms before"), "after": said("rms after")}
+    for name, title in titles.items():
         model = document.get(name) or {}
         left = held.get(name, model.get("loo_rms"))
-        text = f"{four_digits(model.get('rms'))} {unit}, left out {four_digits(left)} {unit}"
-        facts.append((f"rms {name}", text))
+        text = said(
+            "{rms} {unit}, left out {left} {unit}",
+            rms=four_digits(model.get("rms")),
+            left=four_digits(left),
+            unit=unit,
+        )
+        facts.append((title, text))
     rows = tuple(
         (
-            str(item["effect"]).replace("_", " "),
-            str(item["verdict"]).replace("_", " "),
+            named(str(item["effect"])),
+            named(str(item["verdict"])),
             _p(item.get("p_family")),
             four_digits(item.get("delta_bic")),
         )
@@ -289,8 +332,14 @@ def adopted_blocks(entry: SensorLogEntry) -> tuple[Block, ...]:
     """Effects that were adopted of a log, with their proof; none where there are none."""
     rows = tuple(
         (
-            effect.id.replace("_", " "),
-            ", ".join(f"{name} {value:.4g} {unit}" for name, value, _, unit in effect.coefficients),
+            named(effect.id),
+            joined(
+                ", ",
+                [
+                    joined("", (by_id(name), f" {value:.4g} {unit}"))
+                    for name, value, _, unit in effect.coefficients
+                ],
+            ),
             four_digits(effect.before),
             four_digits(effect.after),
             effect.adopted_at[:10],

@@ -12,6 +12,7 @@ from surveyapp.domain.calibration import Calibration, SensorParameter
 from surveyapp.domain.noise import AllanChannel, AllanResult
 from surveyapp.domain.project import ResultWarning
 from surveyapp.languages import joined, said, said_each, term
+from surveyapp.languages.names import by_id, ids, named
 from surveyapp.report.blocks import Block, Figure, Heading, KeyValues, Paragraph, Table, Tone
 from surveyapp.report.numbers import NOTHING, four_digits
 from surveyapp.report.plots import Axis, Frame
@@ -41,7 +42,7 @@ def calibration_body(result: Calibration) -> tuple[Block, ...]:
         found.append(Paragraph(text, "warning"))
     for why, names in result.empty.items():
         tone: Tone = "warning" if set(names) & set(result.geometry.undetermined) else "body"
-        text = said("No value, {why}: {names}.", why=why, names=", ".join(names))
+        text = said("No value, {why}: {names}.", why=why, names=ids(names))
         found.append(Paragraph(text, tone))
     return (*found, *_warnings(result.warnings))
 
@@ -63,7 +64,7 @@ def allan_blocks(identity: str, result: AllanResult) -> tuple[Block, ...]:
 
 def _facts(result: Calibration) -> KeyValues:
     geometry = result.geometry
-    words: list[str] = [geometry.verdict]
+    words: list[str] = [term(geometry.verdict)]
     if geometry.coverage is not None:
         words.append(said("coverage {coverage:.0%}", coverage=geometry.coverage))
     if geometry.heading_sigma_deg is not None:
@@ -76,13 +77,14 @@ def _facts(result: Calibration) -> KeyValues:
     if geometry.condition is not None:
         words.append(said("condition {condition:.3g}", condition=geometry.condition))
     pairs = [
-        (said("calibration"), said("{kind}, {n} rows", kind=result.kind, n=result.n)),
+        (said("calibration"), said("{kind}, {n} rows", kind=term(result.kind), n=result.n)),
         (said("sha256 of the log"), result.sha256[:DIGEST_SHOWN] or NOTHING),
-        (said("geometry"), ", ".join(words)),
+        (said("geometry"), joined(", ", words)),
     ]
     for name, misfit in ((said("rms before"), result.before), (said("rms after"), result.after)):
-        of = f" ({misfit.of})" if misfit.of else ""
-        pairs.append((name, f"{four_digits(misfit.rms)} {misfit.unit}{of}"))
+        size = f"{four_digits(misfit.rms)} {misfit.unit}"
+        of = joined("", (size, " (", by_id(misfit.of), ")")) if misfit.of else size
+        pairs.append((name, of))
     held = result.held_out
     if held is not None:
         values = said(
@@ -90,7 +92,7 @@ def _facts(result: Calibration) -> KeyValues:
             before=four_digits(held.before),
             after=four_digits(held.after),
         )
-        pairs.append((said("left out"), f"{values} {held.unit}: {held.scheme}"))
+        pairs.append((said("left out"), joined("", (values, f" {held.unit}: ", term(held.scheme)))))
     return KeyValues(tuple(pairs))
 
 
@@ -98,7 +100,7 @@ def parameter_table(parameters: Sequence[SensorParameter]) -> Table:
     """Parameters with their sigma, of a calibration or a card."""
     rows = tuple(
         (
-            term(item.name.replace("_", " ")),
+            named(item.name),
             four_digits(item.value),
             four_digits(item.sigma),
             item.unit,
@@ -111,7 +113,7 @@ def parameter_table(parameters: Sequence[SensorParameter]) -> Table:
 def _models(result: Calibration) -> Table:
     rows = tuple(
         (
-            term(model.id.replace("_", " ")),
+            named(model.id),
             four_digits(model.rms),
             four_digits(model.held_out_rms),
             said("chosen") if model.chosen else "",
@@ -146,11 +148,11 @@ def coefficients(channel: AllanChannel) -> Table:
     """The noise coefficients, with the reason where there is none."""
     rows = tuple(
         (
-            f"{item.symbol} {item.name.replace('_', ' ')}",
+            joined(" ", (item.symbol, named(item.name))),
             four_digits(item.value),
             four_digits(item.sigma),
             item.unit,
-            (item.reason or "").replace("_", " "),
+            named(item.reason or ""),
         )
         for item in channel.coefficients
     )

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from surveyapp.domain.calibration import SensorParameter, names_by_reason
 from surveyapp.languages import said
+from surveyapp.languages.names import ids
 from surveyapp.report.blocks import Paragraph
 
 
@@ -16,10 +17,10 @@ def undetermined_blocks(
     found, told = [], set()
     for reason, own in names_by_reason(parameters).items():
         told |= set(own)
-        text = said("No value, {why}: {names}.", why=reason, names=", ".join(own))
+        text = said("No value, {why}: {names}.", why=reason, names=ids(own))
         found.append(Paragraph(text, "warning"))
     others = [name for name in names if name not in told]
     if others:
-        text = said("Not determined: {names}.", names=", ".join(others))
+        text = said("Not determined: {names}.", names=ids(others))
         found.append(Paragraph(text, "warning"))
     return found

@@ -22,6 +22,8 @@ from textual.worker import Worker, get_current_worker
 
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.errors import SurveyError
+from surveyapp.languages import shown
+from surveyapp.languages.names import named
 from surveyapp.observation.sensors.desk import card_path, save_card
 from surveyapp.observation.sensors.tasks import (
     CancelledError,
@@ -250,7 +252,7 @@ class SensorLogScreen(Screen[None]):
         if not names:
             self.notify(texts.NOTHING_TO_ADOPT, severity="warning", markup=False)
             return
-        told = ", ".join(name.replace("_", " ") for name in names)
+        told = ", ".join(shown(named(name)) for name in names)
         self.app.push_screen(ConfirmScreen(texts.ADOPT_ASK.format(names=told)), self._adopt)
 
     def _adopt(self, confirmed: bool | None) -> None:

@@ -9,6 +9,8 @@ from rich.text import Text
 
 from surveyapp.core.sensors.programmes.catalogue import PROGRAMMES
 from surveyapp.domain.programme import Programme, ProgrammeState, ProgrammeStep, StepState
+from surveyapp.languages import translated
+from surveyapp.languages.names import named
 from surveyapp.observation.sensors.programmes import RunShown
 from surveyapp.report.blocks import Block, KeyValues, Table
 from surveyapp.tui import texts
@@ -103,7 +105,7 @@ def guide_text(state: ProgrammeState, step: ProgrammeStep | None, *, width: int)
 
 
 def _names(names: Sequence[str]) -> str:
-    shown = ", ".join(name.replace("_", " ") for name in names[:MOST_NAMES])
+    shown = ", ".join(translated(named(name)) for name in names[:MOST_NAMES])
     if len(names) <= MOST_NAMES:
         return shown
     return f"{shown} {texts.PROGRAMME_MORE.format(count=len(names) - MOST_NAMES)}"

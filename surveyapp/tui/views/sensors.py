@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from surveyapp.domain.log_preview import LogPreview, PreviewedColumn
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.languages import joined
+from surveyapp.languages.names import named
 from surveyapp.observation.sensors.desk import CardShown
 from surveyapp.report.blocks import Block, Heading, KeyValues, Paragraph, Table
 from surveyapp.report.numbers import four_digits
@@ -80,7 +81,7 @@ def log_details(entry: SensorLogEntry) -> tuple[Block, ...]:
         "latitude": "" if entry.latitude_deg is None else f"{entry.latitude_deg:g}",
         "calibrated_on": str(entry.calibrated_on or ""),
         "sha256": (entry.sha256 or "")[:16],
-        "effects": ", ".join(effect.id.replace("_", " ") for effect in entry.effects),
+        "effects": joined(", ", [named(effect.id) for effect in entry.effects]),
     }
     return (_facts(texts.SENSOR_FACTS_LOG, values),)
 

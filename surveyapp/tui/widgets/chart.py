@@ -13,6 +13,7 @@ from rich.text import Text
 from textual.widget import Widget
 
 from surveyapp.domain.chart import Chart, Coverage, Picture, Series
+from surveyapp.languages import shown
 from surveyapp.report.plots import axis
 from surveyapp.tui import texts
 from surveyapp.tui.widgets.canvas import Canvas
@@ -90,27 +91,28 @@ class _Scale:
 
 def chart_text(chart: Chart, *, width: int, height: int) -> Text:
     """A chart in a field of characters: title, curves with axes, legend."""
-    shown = [s for s in chart.series if s.points]
-    if not shown:
+    curves = [s for s in chart.series if s.points]
+    if not curves:
         return Text(texts.CHART_NONE, style="dim")
-    x = _Scale([p[0] for s in shown for p in s.points], log=chart.log_x)
-    y = _Scale([p[1] for s in shown for p in s.points], log=chart.log_y, names=len(chart.y_names))
-    names = [chart.y_names[int(t)] if chart.y_names else y.label(t) for t in y.ticks]
+    x = _Scale([p[0] for s in curves for p in s.points], log=chart.log_x)
+    y = _Scale([p[1] for s in curves for p in s.points], log=chart.log_y, names=len(chart.y_names))
+    names = [shown(chart.y_names[int(t)]) if chart.y_names else y.label(t) for t in y.ticks]
     margin = max(len(name) for name in names) + 1
-    told = _below(chart, shown, width)
+    told = _below(chart, curves, width)
     canvas = Canvas(width - margin - 1, height - 4 - len(told))
     if chart.square:
         _square(x, y, canvas)
         names = [y.label(t) for t in y.ticks]
         margin = max(margin, max(len(name) for name in names) + 1)
-    for item, mark in zip(shown, _marks(shown), strict=True):
+    for item, mark in zip(curves, _marks(curves), strict=True):
         _draw(canvas, item, (x, y), mark)
     text = Text(no_wrap=True)
-    text.append(chart.title[:width], style="bold")
-    text.append(f"   {chart.y_label}"[: max(width - len(chart.title), 0)] + "\n", style="dim")
+    title = shown(chart.title)
+    text.append(title[:width], style="bold")
+    text.append(f"   {shown(chart.y_label)}"[: max(width - len(title), 0)] + "\n", style="dim")
     _framed(text, canvas, (y, names), margin)
     text.append(_x_axis(x, canvas.width, margin) + "\n", style="dim")
-    text.append(f"{chart.x_label:>{width - 1}}"[:width] + "\n", style="dim")
+    text.append(f"{shown(chart.x_label):>{width - 1}}"[:width] + "\n", style="dim")
     for line in told:
         text.append(line + "\n")
     return text
@@ -128,12 +130,12 @@ def _square(x: _Scale, y: _Scale, canvas: Canvas) -> None:
         scale.decimals = found.decimals
 
 
-def _marks(shown: Sequence[Series]) -> list[str]:
+def _marks(curves: Sequence[Series]) -> list[str]:
     """The sign of every curve; empty for one that needs none or has too many readings."""
-    lines = sum(item.style == "line" for item in shown)
+    lines = sum(item.style == "line" for item in curves)
     found: list[str] = []
-    signs = iter(MARKS * (len(shown) // len(MARKS) + 1))
-    for item in shown:
+    signs = iter(MARKS * (len(curves) // len(MARKS) + 1))
+    for item in curves:
         few = len(item.points) <= BRAILLE_SHARE
         marked = item.style == "dots" and few
         if item.style == "bound":
@@ -196,24 +198,24 @@ def _x_axis(x: _Scale, width: int, margin: int) -> str:
     return "".join(line).rstrip()
 
 
-def _below(chart: Chart, shown: Sequence[Series], width: int) -> list[str]:
+def _below(chart: Chart, curves: Sequence[Series], width: int) -> list[str]:
     """Which sign is which curve, and the note."""
     parts = []
-    if len(shown) > 1:
-        for item, mark in zip(shown, _marks(shown), strict=True):
-            parts.append(f"{mark or SIGNS[item.style]} {item.name}")
+    if len(curves) > 1:
+        for item, mark in zip(curves, _marks(curves), strict=True):
+            parts.append(f"{mark or SIGNS[item.style]} {shown(item.name)}")
     lines = []
     if parts:
         lines.append("  ".join(dict.fromkeys(parts))[:width])
     if chart.note:
-        lines.append(chart.note[:width])
+        lines.append(shown(chart.note)[:width])
     return lines
 
 
 def coverage_text(coverage: Coverage, *, width: int) -> Text:
     """Cells of the sphere: the more readings, the darker; a blank was never visited."""
     text = Text(no_wrap=True)
-    text.append(f"{coverage.title[:width]}\n\n", style="bold")
+    text.append(f"{shown(coverage.title)[:width]}\n\n", style="bold")
     count = len(coverage.cells[0])
     cell = max((width - 8) // count, 2)
     most = max((value for row in coverage.cells for value in row), default=0)
@@ -237,7 +239,7 @@ def coverage_text(coverage: Coverage, *, width: int) -> Text:
         line[at : at + len(name)] = name
     text.append(f"{''.join(line).rstrip()} {texts.CHART_DEGREES}"[:width] + "\n", style="dim")
     told = texts.CHART_SHADES.format(signs=" ".join(SHADES), most=most)
-    for words in filter(None, (told, coverage.note)):
+    for words in filter(None, (told, shown(coverage.note))):
         text.append(words[:width] + "\n")
     return text
 

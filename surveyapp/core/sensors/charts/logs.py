@@ -13,6 +13,7 @@ from surveyapp.core.sensors.swing import shown_heading
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.chart import Chart, Coverage, Picture, Series
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.languages import said, term
 from surveyapp_models.arrays import Floats
 from surveyapp_models.compass.deviation import COEFFICIENTS, deviation_basis
 
@@ -28,17 +29,19 @@ def compass_pictures(log: SensorLog, result: Calibration) -> tuple[Picture, ...]
     """
     points = np.column_stack([log.columns[f"mag_{axis}_uT"] for axis in "xyz"])
     size = np.linalg.norm(points, axis=1)
-    curves = [Series("measured", pairs(log.columns["time_s"], size), "dots")]
+    curves = [Series(said("measured"), pairs(log.columns["time_s"], size), "dots")]
     corrected = _corrected(points, result)
     if corrected is not None:
         after = np.linalg.norm(corrected, axis=1)
-        curves.append(Series("calibrated", pairs(log.columns["time_s"], after)))
+        curves.append(Series(said("calibrated"), pairs(log.columns["time_s"], after)))
     cells = result.extra.get("coverage_cells")
     told = result.geometry.coverage
-    note = "" if told is None else f"{told:.0%} of the directions are covered"
-    found: list[Picture] = [Chart("Size of the field", TIME, "field [uT]", tuple(curves))]
+    note = "" if told is None else said("{share:.0%} of the directions are covered", share=told)
+    found: list[Picture] = [
+        Chart(said("Size of the field"), TIME, said("field [uT]"), tuple(curves))
+    ]
     if cells:
-        title = "Directions of the field in the sensor, from up to down"
+        title = said("Directions of the field in the sensor, from up to down")
         found.append(Coverage(title, _whole(np.array(cells)), note))
     return tuple(found)
 
@@ -66,19 +69,24 @@ def swing_pictures(log: SensorLog, result: Calibration) -> tuple[Picture, ...]:
     deviation = np.degrees((psi - shown + np.pi) % (2.0 * np.pi) - np.pi)
     order = np.argsort(psi % (2.0 * np.pi))
     heading = np.degrees(psi % (2.0 * np.pi))[order]
-    curves = [Series("known minus shown", pairs(heading, deviation[order]), "dots")]
+    curves = [Series(said("known minus shown"), pairs(heading, deviation[order]), "dots")]
     values = [p.value for p in result.parameters if p.name.startswith("deviation_")]
     if len(values) == len(COEFFICIENTS) and all(v is not None for v in values):
         grid = np.radians(np.arange(0.0, 361.0, 5.0))
         line = deviation_basis(grid) @ np.array(values, dtype=np.float64)
-        curves.append(Series("A to E", pairs(np.degrees(grid), line)))
+        curves.append(Series(said("A to E"), pairs(np.degrees(grid), line)))
     cells = result.extra.get("coverage_cells", [])
     found: list[Picture] = [
-        Chart("Deviation", "known magnetic heading [deg]", "deviation [deg]", tuple(curves))
+        Chart(
+            said("Deviation"),
+            said("known magnetic heading [deg]"),
+            said("deviation [deg]"),
+            tuple(curves),
+        )
     ]
     if cells:
         rows = tuple(tuple(int(value) for value in row) for row in cells)
-        found.append(Coverage("Headings of the swing, from north clockwise", rows))
+        found.append(Coverage(said("Headings of the swing, from north clockwise"), rows))
     return tuple(found)
 
 
@@ -88,7 +96,7 @@ def tilt_pictures(log: SensorLog, result: Calibration) -> tuple[Picture, ...]:
     known = {p.name: p.value for p in result.parameters}
     for axis, other in (("along", "across"), ("across", "along")):
         reading, own = log.columns[f"tilt_{axis}_arcsec"], log.columns[f"ref_{axis}_arcsec"]
-        curves = [Series("reading minus reference", pairs(own, reading - own), "dots")]
+        curves = [Series(said("reading minus reference"), pairs(own, reading - own), "dots")]
         terms = [known.get(f"{term}_{axis}") for term in ("zero", "scale", "cross")]
         if all(value is not None for value in terms):
             zero, scale, cross = (float(value or 0.0) for value in terms)
@@ -97,9 +105,11 @@ def tilt_pictures(log: SensorLog, result: Calibration) -> tuple[Picture, ...]:
             if slope is not None and temperature is not None:
                 at = result.constants.get("reference_temperature_c", 20.0)
                 model = model + slope * (temperature - at)
-            curves.append(Series("calibrated", pairs(own, reading - model), "dots"))
-        title = f"Tilt {axis}"
-        found.append(Chart(title, "reference [arcsec]", "residual [arcsec]", tuple(curves)))
+            curves.append(Series(said("calibrated"), pairs(own, reading - model), "dots"))
+        title = said("Tilt {axis}", axis=term(axis))
+        found.append(
+            Chart(title, said("reference [arcsec]"), said("residual [arcsec]"), tuple(curves))
+        )
     return tuple(found)
 
 
@@ -116,19 +126,19 @@ def head_pictures(log: SensorLog, result: Calibration) -> tuple[Picture, ...]:
             design = np.column_stack([np.ones(angle.size), np.sin(np.radians(angle))])
             line = np.linalg.lstsq(design, output, rcond=None)[0]
             rest = (output - design @ line) / (line[1] * np.ptp(design[:, 1])) * 100.0
-            series = (Series("residual", pairs(angle, rest), "dots"),)
-            title = f"Linearity over +-{span} degrees"
-            found.append(Chart(title, "commanded tilt [deg]", "residual [%FS]", series))
+            series = (Series(said("residual"), pairs(angle, rest), "dots"),)
+            title = said("Linearity over +-{span} degrees", span=span)
+            found.append(Chart(title, said("commanded tilt [deg]"), said("residual [%FS]"), series))
     zero, scale = log.columns["output"][tests == "zero"], _value(result, "sensitivity")
     if zero.size > 2 and scale:
         minutes = np.arange(zero.size, dtype=np.float64)
-        label = "row"
+        label = said("row")
         if log.has("time_s"):
             minutes = (log.columns["time_s"][tests == "zero"] - log.columns["time_s"][0]) / 60.0
-            label = "time [min]"
+            label = said("time [min]")
         drift = (zero - zero.mean()) / scale / ARCSEC
-        series = (Series("zero", pairs(minutes, drift)),)
-        found.append(Chart("Zero about its mean", label, "zero [arcsec]", series))
+        series = (Series(said("zero"), pairs(minutes, drift)),)
+        found.append(Chart(said("Zero about its mean"), label, said("zero [arcsec]"), series))
     return tuple(found)
 
 
@@ -143,14 +153,17 @@ def stop_pictures(result: Calibration, *, gravity: float) -> tuple[Picture, ...]
     number = range(1, len(stops) + 1)
     raw = [float(np.linalg.norm(s["force_m_s2"])) - gravity for s in stops]
     after = [s["gravity_m_s2"] - gravity for s in stops]
-    label = "size minus gravity [m/s2]"
+    label = said("size minus gravity [m/s2]")
     pictures: list[Picture] = [
-        Chart(f"Gravity at the stops, {word}", "stop", label, (_dots(word, number, values),))
-        for word, values in (("as measured", raw), ("calibrated", after))
+        Chart(title, said("stop"), label, (_dots(word, number, values),))
+        for title, word, values in (
+            (said("Gravity at the stops, as measured"), said("as measured"), raw),
+            (said("Gravity at the stops, calibrated"), said("calibrated"), after),
+        )
     ]
     directions = np.array([s["force_m_s2"] for s in stops])
     cells = _whole(coverage_cells(directions))
-    pictures.append(Coverage("Attitudes of the stops: where up was in the unit", cells))
+    pictures.append(Coverage(said("Attitudes of the stops: where up was in the unit"), cells))
     return tuple(pictures)
 
 

@@ -15,15 +15,21 @@ from surveyapp.domain.chart import MOST_POINTS, Chart, Picture, Series
 from surveyapp.domain.line_spectrum import LineSpectrum
 from surveyapp.domain.motion import STATES, Motion, Path
 from surveyapp.domain.noise import AllanChannel, AllanResult, FilterResult
+from surveyapp.languages import counted, joined, said, term
+from surveyapp.languages.names import by_id, named
 
-TIME: Final = "time [s]"
-TAU: Final = "averaging time [s]"
+TIME: Final = said("time [s]")
+TAU: Final = said("averaging time [s]")
 SLOPES: Final = {"Q": -1.0, "N": -0.5, "B": 0.0, "K": 0.5, "R": 1.0}
 """Slope of the Allan deviation that each coefficient makes (IEEE 952, annex C)."""
 
 PLANE_95: Final = math.sqrt(5.991464547)
 """Standard ellipse to the 95 % ellipse of a plane: chi-square of two degrees of freedom."""
 ELLIPSES: Final = 12
+_TITLES: Final = {
+    "bias": said("Bias over temperature"),
+    "scale_factor": said("Scale factor over temperature"),
+}
 
 Points = tuple[tuple[float, float], ...]
 
@@ -46,15 +52,15 @@ def allan_charts(result: AllanResult) -> tuple[Picture, ...]:
 
 def _allan_chart(channel: AllanChannel) -> Chart:
     curves = [
-        Series("deviation", pairs(channel.taus_s, channel.deviation)),
+        Series(said("deviation"), pairs(channel.taus_s, channel.deviation)),
         Series("95 %", pairs(channel.taus_s, channel.low), "bound"),
         Series("95 %", pairs(channel.taus_s, channel.high), "bound"),
     ]
     curves += slopes(channel)
     return Chart(
-        f"Allan deviation of {channel.name}",
+        said("Allan deviation of {name}", name=channel.name),
         TAU,
-        f"deviation [{channel.unit}]",
+        said("deviation [{unit}]", unit=channel.unit),
         tuple(_positive(curve) for curve in curves),
         log_x=True,
         log_y=True,
@@ -79,14 +85,14 @@ def slopes(channel: AllanChannel) -> list[Series]:
         line = tuple(
             (float(tau), float(values[place] * (tau / taus[place]) ** slope)) for tau in ends
         )
-        found.append(Series(f"slope of {item.symbol}", line, "guide"))
+        found.append(Series(said("slope of {symbol}", symbol=item.symbol), line, "guide"))
     return found
 
 
 def _named(channel: AllanChannel) -> str:
     known = [c for c in channel.coefficients if c.value is not None]
     if not known:
-        return "no coefficient is determined"
+        return said("no coefficient is determined")
     return ", ".join(f"{c.symbol} {c.value:.3g} {c.unit}" for c in known)
 
 
@@ -97,7 +103,7 @@ def _positive(curve: Series) -> Series:
 def filter_charts(results: Sequence[FilterResult]) -> tuple[Picture, ...]:
     """Raw and filtered deviation curves together, and the ratios."""
     first = results[0]
-    curves = [Series("raw", pairs(first.before.taus_s, first.before.deviation))]
+    curves = [Series(said("raw"), pairs(first.before.taus_s, first.before.deviation))]
     curves += [
         Series(result.filter, pairs(result.after.taus_s, result.after.deviation))
         for result in results
@@ -105,14 +111,14 @@ def filter_charts(results: Sequence[FilterResult]) -> tuple[Picture, ...]:
     ratios = tuple(Series(r.filter, pairs(r.before.taus_s, r.deviation_ratio)) for r in results)
     return (
         Chart(
-            f"Raw and filtered: {first.column}",
+            said("Raw and filtered: {column}", column=first.column),
             TAU,
-            f"deviation [{first.unit}]",
+            said("deviation [{unit}]", unit=first.unit),
             tuple(_positive(curve) for curve in curves),
             log_x=True,
             log_y=True,
         ),
-        Chart("Deviation, filtered to raw", TAU, "ratio", ratios, log_x=True),
+        Chart(said("Deviation, filtered to raw"), TAU, said("ratio"), ratios, log_x=True),
     )
 
 
@@ -126,7 +132,7 @@ def spectrum_charts(result: LineSpectrum) -> tuple[Picture, ...]:
     if len(density) < 2:
         return ()
     lowest, highest = min(y for _, y in density), max(y for _, y in density)
-    curves = [Series("density", pairs(*zip(*density, strict=True)))]
+    curves = [Series(said("density"), pairs(*zip(*density, strict=True)))]
     curves += [
         Series(
             f"{line.frequency_hz:.3f} Hz",
@@ -135,10 +141,11 @@ def spectrum_charts(result: LineSpectrum) -> tuple[Picture, ...]:
         )
         for line in result.lines[:20]
     ]
-    note = f"{len(result.lines)} lines" if result.lines else "no line"
-    label = f"density [dB re {result.unit}^2/Hz]"
-    title = f"Spectrum of {result.column}"
-    return (Chart(title, "frequency [Hz]", label, tuple(curves), note=note),)
+    found = counted("{count} line", "{count} lines", count=len(result.lines))
+    note = found if result.lines else said("no line")
+    label = said("density [dB re {unit}^2/Hz]", unit=result.unit)
+    title = said("Spectrum of {column}", column=result.column)
+    return (Chart(title, said("frequency [Hz]"), label, tuple(curves), note=note),)
 
 
 def motion_charts(result: Motion) -> tuple[Picture, ...]:
@@ -148,21 +155,41 @@ def motion_charts(result: Motion) -> tuple[Picture, ...]:
         level = float(STATES.index(segment.state))
         steps += [(segment.start_s, level), (segment.end_s, level)]
     found: list[Picture] = [
-        Chart("State of motion", TIME, "", (Series("state", tuple(steps)),), y_names=STATES)
+        Chart(
+            said("State of motion"),
+            TIME,
+            "",
+            (Series(said("state"), tuple(steps)),),
+            y_names=tuple(term(state) for state in STATES),
+        )
     ]
     if result.path is not None and len(result.path.points) > 1:
         path = result.path
         places = pairs((p[1] for p in path.points), (p[2] for p in path.points))
-        ends = "its end is {:.3f} m from its beginning, or from the point that was stated"
-        closes = "" if path.closure_m is None else f"; {ends.format(path.closure_m)}"
-        note = f"{path.mode}: {path.length_m:.2f} m{closes}; 95 % ellipses"
-        marks = (Series("begin", places[:1], "dots"), Series("end", places[-1:], "dots"))
-        series = (Series("path", places), *marks, *_ellipses(path))
-        found.append(Chart("Path", "east [m]", "north [m]", series, square=True, note=note))
+        told = [joined("", (term(path.mode), f": {path.length_m:.2f} m"))]
+        if path.closure_m is not None:
+            told.append(
+                said(
+                    "its end is {closure:.3f} m from its beginning, or from the point that was "
+                    "stated",
+                    closure=path.closure_m,
+                )
+            )
+        note = joined("; ", (*told, said("95 % ellipses")))
+        marks = (
+            Series(said("begin"), places[:1], "dots"),
+            Series(said("end"), places[-1:], "dots"),
+        )
+        series = (Series(said("path"), places), *marks, *_ellipses(path))
+        found.append(
+            Chart(said("Path"), said("east [m]"), said("north [m]"), series, square=True, note=note)
+        )
         sigma = [math.hypot(p[3], p[4]) for p in path.points]
         along = pairs((p[0] for p in path.points), sigma)
-        title = "Uncertainty of the place along the path"
-        found.append(Chart(title, "along [m]", "sigma [m]", (Series("sigma", along),)))
+        title = said("Uncertainty of the place along the path")
+        found.append(
+            Chart(title, said("along [m]"), said("sigma [m]"), (Series(said("sigma"), along),))
+        )
     return tuple(found)
 
 
@@ -185,9 +212,9 @@ def _ellipses(path: Path) -> tuple[Series, ...]:
 
 def plan_charts(plan: StopPlan) -> tuple[Picture, ...]:
     """What a bias leaves of the pointing."""
-    series = (Series("arctan(bias / level earth rate)", tuple(plan.pointing)),)
-    title = f"Pointing at latitude {plan.latitude_deg:g}"
-    return (Chart(title, "bias [deg/h]", "error [deg]", series, log_x=True),)
+    series = (Series(said("arctan(bias / level earth rate)"), tuple(plan.pointing)),)
+    title = said("Pointing at latitude {latitude:g}", latitude=plan.latitude_deg)
+    return (Chart(title, said("bias [deg/h]"), said("error [deg]"), series, log_x=True),)
 
 
 def table_charts(result: Calibration) -> tuple[Picture, ...]:
@@ -199,17 +226,23 @@ def table_charts(result: Calibration) -> tuple[Picture, ...]:
         values = pairs(number, (s["elevation_arcsec"] for s in sets))
         mean = float(np.mean([v for _, v in values]))
         line = ((1.0, mean), (float(len(sets)), mean))
-        repeats = (Series("elevation", values, "dots"), Series("mean", line, "guide"))
-        found.append(Chart("Elevation of the gyro axis", "set", "elevation [arcsec]", repeats))
+        repeats = (Series(said("elevation"), values, "dots"), Series(said("mean"), line, "guide"))
+        found.append(
+            Chart(
+                said("Elevation of the gyro axis"), said("set"), said("elevation [arcsec]"), repeats
+            )
+        )
     nodes: Sequence[dict[str, Any]] = result.extra.get("nodes", ())
     for name, unit in (("bias", "deg/h"), ("scale_factor", "ppm")):
         series = tuple(
-            Series(f"{name}_{axis}", _node_points(nodes, f"{name}_{axis}")) for axis in "xyz"
+            Series(by_id(f"{name}_{axis}"), _node_points(nodes, f"{name}_{axis}")) for axis in "xyz"
         )
         if any(item.points for item in series):
-            word = name.replace("_", " ")
-            title = f"{word.capitalize()} over temperature"
-            found.append(Chart(title, "temperature [C]", f"{word} [{unit}]", series))
+            word = named(name)
+            title = _TITLES[name]
+            found.append(
+                Chart(title, said("temperature [C]"), joined("", (word, f" [{unit}]")), series)
+            )
     return tuple(found)
 
 
@@ -233,6 +266,7 @@ def turns_of(result: Calibration) -> tuple[Picture, ...]:
     )
     order = [s["position"] for s in steps]
     changes = [order[0], *(b for a, b in pairwise(order) if a != b)]
-    note = "positions in order: " + " ".join(changes)
-    series = (Series("turns", marks, "dots"),)
-    return (Chart("Turns used, both senses", TIME, "turns", series, note=note),)
+    note = said("positions in order: {positions}", positions=" ".join(changes))
+    series = (Series(said("turns"), marks, "dots"),)
+    title = said("Turns used, both senses")
+    return (Chart(title, TIME, said("turns"), series, note=note),)

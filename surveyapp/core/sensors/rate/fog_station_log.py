@@ -241,12 +241,12 @@ def _calibration(
         before=Misfit(
             math.sqrt(float(np.mean(np.square(first)))) / ARCSEC,
             "arcsec",
-            "elevations, none assumed",
+            said("elevations, none assumed"),
         ),
         after=Misfit(
             None if scatter.sd is None else scatter.sd / ARCSEC,
             "arcsec",
-            "repeats about their mean",
+            said("repeats about their mean"),
         ),
         geometry=Geometry("good" if not undetermined else "restricted", None, undetermined),
         warnings=(*log.warnings, *warnings, *_warnings(sets, found, relative)),

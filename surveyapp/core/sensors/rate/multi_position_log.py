@@ -157,11 +157,13 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
         kind="multi-position",
         source=log.id,
         parameters=parameters,
-        before=Misfit(math.sqrt(float(np.mean(raw**2))), "m/s2", "size of gravity at the stops"),
-        after=Misfit(chosen.rms, "m/s2", "size of gravity at the stops"),
+        before=Misfit(
+            math.sqrt(float(np.mean(raw**2))), "m/s2", said("size of gravity at the stops")
+        ),
+        after=Misfit(chosen.rms, "m/s2", said("size of gravity at the stops")),
         geometry=Geometry("good" if not missing else "restricted", None, missing),
         held_out=HeldOut(
-            "one stop after the other", held.get("bias_scale"), held.get(chosen.level), "m/s2"
+            said("one stop after the other"), held.get("bias_scale"), held.get(chosen.level), "m/s2"
         ),
         models=tuple(
             CalibrationModel(m.level, m.rms, held[m.level], m.level == chosen.level) for m in models

@@ -166,7 +166,9 @@ def _misfits(means: Sequence[PositionMeans], triad: GyroTriad) -> tuple[Misfit, 
         ideal.append(one.column() - np.eye(3)[:, one.axis])
         fitted.append(one.column() - matrix[:, one.axis])
     return tuple(
-        Misfit(math.sqrt(float(np.mean(np.square(rest)))) * 1e6, "ppm", "output per table rate")
+        Misfit(
+            math.sqrt(float(np.mean(np.square(rest)))) * 1e6, "ppm", said("output per table rate")
+        )
         for rest in (ideal, fitted)
     )  # type: ignore[return-value]
 

@@ -55,6 +55,7 @@ from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
+from surveyapp.languages.names import by_id
 from surveyapp_models.arrays import Floats
 
 CHAMBER = "reference_temperature_c"
@@ -158,13 +159,15 @@ def _calibration(
         kind="temperature",
         source=log.id,
         parameters=parameters,
-        before=Misfit(rms.get("none"), "deg/h", "biases at left-out nodes, no compensation"),
-        after=Misfit(rms.get(model), "deg/h", f"biases at left-out nodes, {model}"),
+        before=Misfit(rms.get("none"), "deg/h", said("biases at left-out nodes, no compensation")),
+        after=Misfit(
+            rms.get(model), "deg/h", said("biases at left-out nodes, {model}", model=by_id(model))
+        ),
         geometry=Geometry(
             "good" if not missing else "restricted", condition_of(nodes[0].gyro.matrix), missing
         ),
         held_out=HeldOut(
-            "one inner node after the other", rms.get("none"), rms.get(model), "deg/h"
+            said("one inner node after the other"), rms.get("none"), rms.get(model), "deg/h"
         ),
         models=tuple(
             CalibrationModel(c.model, None, c.held_out_rms, c.model == model) for c in comparison
