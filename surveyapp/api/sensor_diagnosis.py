@@ -63,7 +63,7 @@ def diagnose_log(
     opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
     entry = opened.entry
     if entry is None and (adopt or confirm is not None):
-        where, expected = "adopt, confirm", "a project folder and --sensor"
+        where, expected = "adopt, confirm", "a project folder and `sensor`"
         raise SurveyError(Problem("a log by itself has no project", where, str(source), expected))
     second = None
     if confirm is not None:

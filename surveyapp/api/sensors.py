@@ -106,7 +106,7 @@ def open_sensor_log(
         if sensor is not None:
             found, expected = str(path), "a project folder"
             raise SurveyError(
-                Problem("--sensor names a log of a project", "sensor", found, expected)
+                Problem("`sensor` names a log of a project", "sensor", found, expected)
             )
         request = LogRequest(
             path=path,
@@ -124,8 +124,8 @@ def open_sensor_log(
         sensor = entries[0].id
     if sensor is None:
         names = ", ".join(entry.id for entry in entries) or "none"
-        hint = said("--sensor ID names it; the project has: {names}", names=names)
-        raise SurveyError(Problem("which sensor log?", os.fspath(source), "", "--sensor ID", hint))
+        hint = said("`sensor` ID names it; the project has: {names}", names=names)
+        raise SurveyError(Problem("which sensor log?", os.fspath(source), "", "`sensor` ID", hint))
     require(sensor, [entry.id for entry in entries], "sensor")
     entry = next(item for item in entries if item.id == sensor)
     override = {

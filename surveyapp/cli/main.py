@@ -12,10 +12,10 @@ import importlib
 import os
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from types import ModuleType
-from typing import Any, NoReturn
+from typing import Any, NoReturn, Self
 
 from surveyapp import __version__
 from surveyapp.cli.languages import in_wished
@@ -26,6 +26,7 @@ from surveyapp.cli.safe_output import safe_output
 from surveyapp.cli.waiting import Waiting
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.languages import either, said
+from surveyapp.languages.said import Said, Translate
 
 EXIT_GOOD, EXIT_LIMIT, EXIT_INPUT, EXIT_FAULT = 0, 1, 2, 3
 
@@ -112,6 +113,27 @@ OPTIONS = {"columns": "--map", "units": "--unit", "fixed": "--fix"}
 """Options that are called otherwise than the arguments of the API that they give."""
 
 
+class Typed(Said):
+    """A text that has its options put in after it was translated: no catalogue holds them."""
+
+    __slots__ = ("origin", "put_in")
+    origin: str
+    put_in: Callable[[str], str]
+
+    @classmethod
+    def of(cls, text: str, put_in: Callable[[str], str]) -> Self:
+        """The English of ``text`` with what is put in, and how that is done."""
+        found = cls(put_in(text), {})
+        found.origin, found.put_in = text, put_in
+        return found
+
+    def told(self, translate: Translate) -> str:
+        """The text in the language of ``translate``."""
+        if isinstance(self.origin, Said):
+            return self.put_in(self.origin.told(translate))
+        return self.put_in(translate(self.origin, None, 0))
+
+
 class Parser(argparse.ArgumentParser):
     """An argument parser whose errors are survey errors."""
 
@@ -158,7 +180,7 @@ class Parser(argparse.ArgumentParser):
         def typed(text: str) -> str:
             if "`" not in text:
                 return text
-            return ARGUMENT.sub(lambda found: option(found[1]) or found[0], text)
+            return Typed.of(text, lambda x: ARGUMENT.sub(lambda y: option(y[1]) or y[0], x))
 
         return Problem(
             what=typed(problem.what),

@@ -73,7 +73,7 @@ def filter_log(
     model_name = _known(name)
     names = noise_columns(file, column)
     if len(names) > 1:
-        hint = said("--column C, one of: {names}", names=", ".join(names))
+        hint = said("`column` C, one of: {names}", names=", ".join(names))
         raise SurveyError(Problem("which column?", file.request.where, "", "one column", hint))
     log = read_columns(file, names, progress)
     series, unit = log.columns[names[0]], log.units[names[0]]

@@ -16,34 +16,36 @@ ROOMS = ("api", "workflows", "io", "diagnosis", "core", "domain")
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z-]+")
 WHOLE = ("surveyapp ", "dask ", "diagnose --")
 """A command that is told with its options is no speech of options."""
+FIELDS = ("what", "found", "expected", "hint")
 
 
 def texts(node: ast.AST) -> str:
-    """Texts of a problem; those of ``said`` are translated with the options in them."""
-    if isinstance(node, ast.Call) and ast.unparse(node.func) == "said":
-        return ""
+    """Every text that stands in a node."""
     own = [node.value] if isinstance(node, ast.Constant) and isinstance(node.value, str) else []
     return " ".join([*own, *map(texts, ast.iter_child_nodes(node))])
 
 
-def place_of(node: ast.Call) -> ast.AST:
-    """Where a problem is said to be: hints are in the words of who types."""
-    named = [k.value for k in node.keywords if k.arg == "where"]
-    return (*named, *node.args[1:2], ast.Constant(""))[0]
+def told_in_an_error(node: ast.AST) -> bool:
+    """Whether a node is a problem, or what is put into one under its name."""
+    if isinstance(node, ast.Call):
+        return ast.unparse(node.func) == "Problem"
+    if isinstance(node, ast.Assign | ast.AugAssign | ast.AnnAssign):
+        names = node.targets if isinstance(node, ast.Assign) else [node.target]
+        return any(ast.unparse(name).lower() in FIELDS for name in names)
+    return False
 
 
-def test_no_problem_lies_at_an_option() -> None:
+def test_no_error_of_the_api_speaks_of_an_option() -> None:
     faults = []
     for room in ROOMS:
         for path in sorted((ROOT / room).rglob("*.py")):
             text = path.read_text(encoding="utf-8")
             if not OPTION.search(text):
                 continue
-            for node in ast.walk(ast.parse(text)):
-                if isinstance(node, ast.Call) and ast.unparse(node.func) == "Problem":
-                    told = texts(place_of(node))
-                    if OPTION.search(told) and not any(word in told for word in WHOLE):
-                        faults.append(f"{path.relative_to(ROOT)}:{node.lineno}")
+            for node in filter(told_in_an_error, ast.walk(ast.parse(text))):
+                told = texts(node)
+                if OPTION.search(told) and not any(word in told for word in WHOLE):
+                    faults.append(f"{path.relative_to(ROOT)}:{getattr(node, 'lineno', 0)}")
     assert faults == []
 
 

@@ -93,7 +93,7 @@ def _reason(
     if free_datum:
         hint = (
             "Fix points or an azimuth, or constrain points for a free network: of a project "
-            "coordinates and fixed = true in [[station]], of an import --fix NAME."
+            "coordinates and fixed = true in [[station]], of an import `fixed` NAME."
         )
         return Problem("The network has no datum", "network", found, "fixed points", hint)
     joined = [part for part in parts if len(part) > 1]

@@ -124,7 +124,7 @@ def refuse_mirrored(known: Floats, shown: Floats, where: str) -> None:
                 where,
                 said("x and y are exchanged, one of them is reversed, or z points down"),
                 said("x towards the mark, y to the left, z up; headings clockwise"),
-                said("exchange the columns with --map; --scale COLUMN=-1 reverses one"),
+                said("exchange the columns with `columns`; `scale` COLUMN=-1 reverses one"),
             )
         )
 
@@ -143,5 +143,5 @@ def _exchanged(where: str, left: Sequence[float], found: Arrangement) -> Problem
             fits=fits,
             left=left[1],
         ),
-        said("exchange the columns with --map; --scale COLUMN=-1 reverses one"),
+        said("exchange the columns with `columns`; `scale` COLUMN=-1 reverses one"),
     )

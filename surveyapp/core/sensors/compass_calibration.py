@@ -99,7 +99,7 @@ def _refuse_other_units(fit: Ellipsoid, where: str) -> None:
                 "scales within a factor of {most_unequal:g}: iron makes no more",
                 most_unequal=MOST_UNEQUAL,
             ),
-            "give each its own: --unit COLUMN=... or --scale COLUMN=VALUE",
+            "give each its own: `units` COLUMN=... or `scale` COLUMN=VALUE",
         )
     )
 

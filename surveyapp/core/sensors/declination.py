@@ -57,7 +57,7 @@ def model_declination(
     try:
         from pygeomag import GeoMag
     except ImportError:
-        hint = "pip install 'surveyapp[mag]', or state the declination: --declination D,SIGMA"
+        hint = "pip install 'surveyapp[mag]', or state `declination` D,SIGMA"
         what = "the World Magnetic Model is not installed"
         raise SurveyError(Problem(what, "declination", "", "the extra mag", hint)) from None
     first = dt.date(day.year, 1, 1)

@@ -51,7 +51,7 @@ def check_rows(log: SensorLog) -> None:
         for column in columns:
             values = log.columns.get(column)
             if values is None:
-                hint = said("--map {column}=COLUMN names it", column=column)
+                hint = said("`columns` {column}=COLUMN names it", column=column)
                 what = said("the test {test} needs the column {column}", test=test, column=column)
                 problems.append(Problem(what, log.path, "", column, hint))
                 continue
@@ -107,7 +107,7 @@ def _strange_angles(log: SensorLog) -> list[Problem]:
             what = said(
                 "the angles of set {code} are not those of +-{span} degrees", code=code, span=span
             )
-            found, hint = f"up to {size:g}", "are they in degrees? --unit COLUMN=rad"
+            found, hint = f"up to {size:g}", "are they in degrees? `units` COLUMN=rad"
             problems.append(Problem(what, log.path, found, said("up to {span}", span=span), hint))
     return problems
 

@@ -71,7 +71,8 @@ def refuse_swapped(acc: Floats, where: str) -> None:
                 name=name,
             ),
             "+g on the z axis, which points up; axes right-handed",
-            "exchange the columns with --map; --scale COLUMN=-1 reverses one (acc and mag alike)",
+            "exchange the columns with `columns`; `scale` COLUMN=-1 reverses one "
+            "(acc and mag alike)",
         )
     )
 

@@ -129,7 +129,7 @@ def _refuse_exchanged(log: SensorLog, fits: list[AxisFit]) -> None:
                 log.path,
                 found,
                 "readings that follow the reference of their own axis",
-                "exchange the two columns with --map",
+                "exchange the two columns with `columns`",
             )
         )
 
@@ -142,7 +142,7 @@ def _refuse_other_unit(log: SensorLog, fits: list[AxisFit]) -> None:
         if SCALES[0] <= scale <= SCALES[1]:
             continue
         hint = said(
-            "--unit COLUMN=... for tilt_{axis}_arcsec, or --scale for counts", axis=item.axis
+            "`units` COLUMN=... for tilt_{axis}_arcsec, or `scale` for counts", axis=item.axis
         )
         problems.append(
             Problem(

@@ -64,7 +64,7 @@ def stored_name(folder: Path, copied: FileCopy, name: str) -> str:
             "imports",
             shown(file.name),
             "a name that is free",
-            "rename the file, or take another --traverse",
+            "rename the file, or take another `traverse`",
         )
     )
 
@@ -103,7 +103,7 @@ def taken_files(
                     shown(name),
                     "a book or an import",
                     "a name that is free",
-                    "take another name with --traverse",
+                    "take another name with `traverse`",
                 )
             )
         if isinstance(content, bytes) and len(content) > MAX_BYTES and not _as_read(name):

@@ -191,10 +191,10 @@ def implausible(
         if unstated and whole:
             what = said("{name}_x/y/z are counts without a unit", name=name)
         units = [unit for unit, low, high in bounds.looks_like if low <= median <= high]
-        hint = "counts take --scale COLUMN=VALUE"
+        hint = "counts take `scale` COLUMN=VALUE"
         if units:
             hint = said(
-                "is it {names}? --unit COLUMN={units}; {hint}",
+                "is it {names}? `units` COLUMN={units}; {hint}",
                 names=either(units),
                 units=units[0],
                 hint=hint,
@@ -223,7 +223,7 @@ def unstated_counts(
             continue
         if _whole(values) and float(np.ptp(values)) > 0.0:
             unit = "deg/s" if name in TRIPLES["gyr"] else NUMBER_COLUMNS[name]
-            hint = said("counts take --scale COLUMN=VALUE (and --unit COLUMN={unit})", unit=unit)
+            hint = said("counts take `scale` COLUMN=VALUE (and `units` COLUMN={unit})", unit=unit)
             found = said(
                 "whole numbers from {value:g} to {value2:g}",
                 value=values.min(),
@@ -264,7 +264,7 @@ def mixed_units(columns: Mapping[str, Array], *, where: str) -> list[Problem]:
                     said("ranges {found}", found=found),
                     "one unit for the three axes",
                     said(
-                        "give each its own: --unit COLUMN=..., for {names} as well",
+                        "give each its own: `units` COLUMN=..., for {names} as well",
                         names=names[large],
                     ),
                 )

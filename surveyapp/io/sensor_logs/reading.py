@@ -175,16 +175,16 @@ class LogFile:
                 continue
             hint = ""
             if name not in need.others:
-                hint = said("--map {name}=COLUMN names it", name=name)
+                hint = said("`columns` {name}=COLUMN names it", name=name)
             if name == "time_s":
-                hint += said("; --rate-hz replaces it")
+                hint += said("; `rate_hz` replaces it")
             listing = ", ".join(shown(n) for n in self.layout.names)
             what = said("the column {name} is missing", name=name)
             problems.append(Problem(what, where, listing, name, hint))
         for name in need.unit_stated:
             if name in self.places and not self.places[name].stated:
                 column = self.places[name].name
-                hint = said("--unit {column}=LSB for counts", column=column)
+                hint = said("`units` {column}=LSB for counts", column=column)
                 expected = "a unit for this column"
                 what = said("{name} has no unit", name=name)
                 problems.append(Problem(what, where, column, expected, hint))
@@ -378,7 +378,7 @@ def _place(
         factor = 1.0
     if unit == COUNTS and scale is None and canonical in SENSOR_COLUMNS and canonical != "output":
         hint = said(
-            "--scale {name}=VALUE, the {number_columns} of one count",
+            "`scale` {name}=VALUE, the {number_columns} of one count",
             name=name,
             number_columns=NUMBER_COLUMNS[canonical],
         )

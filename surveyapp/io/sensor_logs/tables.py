@@ -160,7 +160,7 @@ def request_of(
                 f"project.toml, [[sensor_log]] {entry.id}",
                 entry.file,
                 "a path below the project folder",
-                "copy it into sensors/, or allow it with --allow-outside",
+                "copy it into sensors/, or allow it with `allow_outside`",
             )
         )
     given = override or {}

@@ -62,7 +62,7 @@ def calibrate(request: CalibrationRequest) -> Calibration:
             file.request.where,
             ", ".join(file.layout.names),
             name,
-            said("--map {name}=COLUMN names it", name=name),
+            said("`columns` {name}=COLUMN names it", name=name),
         )
         for name in missing
     ]

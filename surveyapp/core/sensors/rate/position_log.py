@@ -56,7 +56,7 @@ class Placed:
 def place_problems(log: SensorLog) -> list[Problem]:
     """Labels of positions that are none."""
     if "position" not in log.texts:
-        hint = "x+ = body x up along the table's axis; --map position=COLUMN names the column"
+        hint = "x+ = body x up along the table's axis; `columns` position=COLUMN names the column"
         return [Problem("the log does not name its positions", log.path, "", "position", hint)]
     words = sorted(set(log.texts["position"]) - set(POSITIONS) - {""})
     if not words:

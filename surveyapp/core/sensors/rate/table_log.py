@@ -43,7 +43,7 @@ def motion_of(log: SensorLog) -> TableMotion | Problem:
             log.path,
             ", ".join(log.columns),
             "table_rate_deg_s (nominal) or table_angle_deg",
-            "--map table_rate_deg_s=COLUMN names it",
+            "`columns` table_rate_deg_s=COLUMN names it",
         )
     return table_motion(log.columns["time_s"], rate_deg_s=rate, angle_deg=angle)
 

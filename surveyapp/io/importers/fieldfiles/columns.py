@@ -185,7 +185,7 @@ def check_map(
         allowed = _allowed(quantities, name)
         unit = units.get(name)
         if unit is None and name in quantities.angles | quantities.lengths:
-            expected = said("--unit {name}= {names}", name=name, names=" | ".join(allowed))
+            expected = said("`units` {name}= {names}", name=name, names=" | ".join(allowed))
             problems.append(Problem("a unit is not told", "units", name, expected))
         elif unit is not None and unit not in allowed:
             expected = " | ".join(allowed) or "no unit"

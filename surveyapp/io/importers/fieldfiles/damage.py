@@ -13,7 +13,7 @@ from typing import Final
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 
-HINT: Final = "--skip-damaged leaves such lines out and lists them"
+HINT: Final = "`skip_damaged` leaves such lines out and lists them"
 MOST_NAMED: Final = 1000
 """So many damaged lines are told with what is wrong; further ones by their numbers."""
 FLOOD: Final = 200_000

@@ -112,7 +112,7 @@ def check_stations(state: State) -> None:
                 said("code blocks: {codes}", codes=codes)
                 if codes
                 else "neither station nor code blocks",
-                "blocks 11 with 84 85 86 or 88, or code blocks 41 with --station-code N",
+                "blocks 11 with 84 85 86 or 88, or code blocks 41 with `station_code` N",
                 "Which code of your office opens a station?" if codes else "",
             )
         )

@@ -75,7 +75,7 @@ def parts_hint(parts: tuple[tuple[int, int], ...]) -> str:
     """How to take a large file over in parts."""
     listed = some([f"{first}-{last}" for first, last in parts], _SHOWN)
     return said(
-        "--lines A-B takes a part, each as a --traverse of its own; parts between set-ups: "
+        "`lines` A-B takes a part, each as a `traverse` of its own; parts between set-ups: "
         "{listed}",
         listed=listed,
     )
