@@ -10,6 +10,7 @@ import pytest
 
 from surveyapp.cli.main import COMMANDS, parser_of
 from surveyapp.errors import Problem
+from surveyapp.languages import in_language, said, shown
 
 ROOT = Path(__file__).resolve().parents[2] / "surveyapp"
 ROOMS = ("api", "workflows", "io", "diagnosis", "core", "domain")
@@ -73,3 +74,18 @@ def test_the_command_line_shows_the_option_that_gave_an_argument(
 ) -> None:
     parser = parser_of(next(item for item in COMMANDS if item.name == command))
     assert parser.as_typed(given) == shown
+
+
+@pytest.mark.parametrize("marked", [True, False])
+def test_options_are_put_into_the_words_of_every_language(marked: bool) -> None:
+    """Of a text with values, and of a literal that the catalogue knows by its place."""
+    parser = parser_of(next(item for item in COMMANDS if item.name == "import"))
+    plain = "`skip_damaged` leaves such lines out and lists them"
+    hint = said("`columns` {name}=COLUMN names it", name="mag_x_uT") if marked else plain
+    typed = parser.as_typed(Problem("x", hint=hint)).hint
+    option = "--map mag_x_uT=COLUMN" if marked else "--skip-damaged"
+    assert typed.startswith(option)
+    for language in ("de", "ru", "zh"):
+        with in_language(language):
+            told = shown(typed)
+        assert option in told and "`" not in told and told != typed
