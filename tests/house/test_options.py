@@ -88,4 +88,6 @@ def test_options_are_put_into_the_words_of_every_language(marked: bool) -> None:
     for language in ("de", "ru", "zh"):
         with in_language(language):
             told = shown(typed)
-        assert option in told and "`" not in told and told != typed
+        assert option in told
+        assert "`" not in told
+        assert told != typed
