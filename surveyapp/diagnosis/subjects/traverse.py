@@ -23,6 +23,7 @@ from surveyapp.core.network.observation_equations import equations, linearised, 
 from surveyapp.core.network.solving import solve_network
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.subjects.pointings import one_a_pointing
+from surveyapp.diagnosis.subjects.traverse_actions import Adjusted, planner_of
 from surveyapp.diagnosis.subjects.traverse_columns import gyro_sides, observation_columns
 from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.project import ResultWarning
@@ -63,6 +64,7 @@ def traverse(
     name: str = "",
     atmosphere_applied: bool | None = None,
     extra: tuple[Effect, ...] = (),
+    gyro_sigma: float | None = None,
 ) -> Case:
     """Make the problem of a network.
 
@@ -76,6 +78,8 @@ def traverse(
         Whether the instrument has corrected the distances; None = nobody says.
     extra : tuple of Effect
         The user's own; their basis is in the unit of the observations [rad] and [m].
+    gyro_sigma : float or None
+        Of a gyro azimuth of this office, for advice on a traverse without gyro sides [rad].
 
     Returns
     -------
@@ -93,7 +97,8 @@ def traverse(
     model = compile_network(network)
     values = solve_network(network, model).values
     whitener, design, right = _whitened(model, values)
-    weakest, towards = _weakest_point(network, model, design)
+    pseudo = np.asarray(np.linalg.pinv(design, rcond=RANK), dtype=np.float64)
+    weakest, towards = _weakest_point(network, model, pseudo)
     transform = _conditions(design, towards)
     if transform.shape[0] < 2:
         raise SurveyError(
@@ -132,6 +137,21 @@ def traverse(
         ),
         grid_labels={**_labels(model), **told.labels},
         warnings=(*repeated, *_warnings(atmosphere_applied, columns, weakest)),
+        planner=lambda: planner_of(
+            Adjusted(
+                network=network,
+                model=model,
+                values=values,
+                whitener=whitener,
+                design=design,
+                right=right,
+                inverse=pseudo,
+                conditions=transform[1:],
+                columns=columns,
+            ),
+            (*of_subject("traverse"), *extra),
+            gyro_sigma,
+        ),
     )
 
 
@@ -172,11 +192,10 @@ def _whitened(model: Model, values: Floats) -> tuple[Floats, Floats, Floats]:
     return whitener, design[:, :u], right
 
 
-def _weakest_point(network: Network, model: Model, design: Floats) -> tuple[str, Floats]:
+def _weakest_point(network: Network, model: Model, pseudo: Floats) -> tuple[str, Floats]:
     """Name of the least certain point, and the unit row that estimates its worst coordinate."""
-    pseudo = np.linalg.pinv(design, rcond=RANK)
     unknowns = model.unknown_of[: 3 * len(network.points)].reshape(-1, 3)
-    best: tuple[float, str, Floats] = (0.0, "", np.zeros(design.shape[0]))
+    best: tuple[float, str, Floats] = (0.0, "", np.zeros(pseudo.shape[1]))
     for point, own in zip(network.points, unknowns, strict=True):
         rows = pseudo[own[own >= 0]]
         if not len(rows):
