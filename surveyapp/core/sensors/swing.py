@@ -204,8 +204,8 @@ def _why_refused(fit: LinearFit | None, gate: tuple[float, float]) -> str:
         return said("the headings do not determine A to E: swing through the whole circle")
     return said(
         "a corrected heading would have a sigma of {sigma:.2f} degrees, more than {limit:g}: the "
-        "headings scatter by {rms:.2f} degrees about A to E over {rows} rows; swing again with more "
-        "headings, away from iron, and look for a wrong known heading",
+        "headings scatter by {rms:.2f} degrees about A to E over {rows} rows; swing again with "
+        "more headings, away from iron, and look for a wrong known heading",
         sigma=math.degrees(sigma),
         limit=math.degrees(limit),
         rms=math.degrees(fit.rms),

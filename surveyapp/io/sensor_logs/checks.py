@@ -23,7 +23,7 @@ GAP_FACTOR: Final = 2.5
 
 OFF_GRID: Final = 0.05
 FEW_MISSING: Final = 0.1
-"""Steps within so much of a whole multiple of the median one, few of them longer: an even record."""
+"""Steps within so much of whole multiples of the median one, few of them longer: an even record."""
 
 CLIPPED_ROWS: Final = 5
 CLIPPED_RATIO: Final = 3.0
