@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -94,11 +95,45 @@ def traverse(
     identity = name or network.name or "traverse"
     _refuse_many(network, identity)
     network, repeated = one_a_pointing(network)
+    adjusted, weakest = _adjusted(network, identity)
+    model, columns = adjusted.model, adjusted.columns
+    size = columns[TRANSFORM].shape[0]
+    effects = (*of_subject("traverse"), *extra)
+    base = np.zeros((size, 1))
+    base[0, 0] = 1.0
+    return Case(
+        subject="traverse",
+        title="traverse",
+        value_name=said("the place of the least certain point"),
+        observations=adjusted.transform @ adjusted.right,
+        base=base,
+        base_names=(said("place of {weakest}", weakest=weakest),),
+        value_base=np.ones(1),
+        value_weights=np.zeros(size),
+        position=np.zeros(size),
+        columns=columns,
+        effects=tuple(_in_conditions(effect) for effect in effects),
+        sigma=np.ones(size),
+        unit="sigma",
+        scale=1.0,
+        identity=identity,
+        labels=(
+            said("place of {weakest}", weakest=weakest),
+            *[said("condition {i}", i=i) for i in range(1, size)],
+        ),
+        grid_labels={**_labels(model), **adjusted.labels},
+        warnings=(*repeated, *_warnings(atmosphere_applied, columns, weakest)),
+        planner=partial(planner_of, adjusted, effects, gyro_sigma),
+    )
+
+
+def _adjusted(network: Network, identity: str) -> tuple[Adjusted, str]:
+    """The adjusted network with its conditions, and the name of its least certain point."""
     model = compile_network(network)
     values = solve_network(network, model).values
     whitener, design, right = _whitened(model, values)
-    pseudo = np.asarray(np.linalg.pinv(design, rcond=RANK), dtype=np.float64)
-    weakest, towards = _weakest_point(network, model, pseudo)
+    inverse = np.asarray(np.linalg.pinv(design, rcond=RANK), dtype=np.float64)
+    weakest, towards = _weakest_point(network, model, inverse)
     transform = _conditions(design, towards)
     if transform.shape[0] < 2:
         raise SurveyError(
@@ -109,50 +144,22 @@ def traverse(
                 "a closure, a repetition, a fixed point or gyro side more",
             )
         )
-    size = transform.shape[0]
-    base = np.zeros((size, 1))
-    base[0, 0] = 1.0
     told = observation_columns(network, model, values)
     columns = {**told.columns, TRANSFORM: transform @ whitener}
     columns["own_sigma"] = _controlled(columns)
-    return Case(
-        subject="traverse",
-        title="traverse",
-        value_name=said("the place of the least certain point"),
-        observations=transform @ right,
-        base=base,
-        base_names=(said("place of {weakest}", weakest=weakest),),
-        value_base=np.ones(1),
-        value_weights=np.zeros(size),
-        position=np.zeros(size),
+    found = Adjusted(
+        network=network,
+        model=model,
+        values=values,
+        whitener=whitener,
+        design=design,
+        right=right,
+        inverse=inverse,
+        transform=transform,
         columns=columns,
-        effects=tuple(_in_conditions(e) for e in (*of_subject("traverse"), *extra)),
-        sigma=np.ones(size),
-        unit="sigma",
-        scale=1.0,
-        identity=identity,
-        labels=(
-            said("place of {weakest}", weakest=weakest),
-            *[said("condition {i}", i=i) for i in range(1, size)],
-        ),
-        grid_labels={**_labels(model), **told.labels},
-        warnings=(*repeated, *_warnings(atmosphere_applied, columns, weakest)),
-        planner=lambda: planner_of(
-            Adjusted(
-                network=network,
-                model=model,
-                values=values,
-                whitener=whitener,
-                design=design,
-                right=right,
-                inverse=pseudo,
-                conditions=transform[1:],
-                columns=columns,
-            ),
-            (*of_subject("traverse"), *extra),
-            gyro_sigma,
-        ),
+        labels=told.labels,
     )
+    return found, weakest
 
 
 def _controlled(columns: Mapping[str, Floats]) -> Floats:

@@ -45,10 +45,12 @@ class Adjusted:
     whitener, design, right : ndarray, shape (n, n), (n, u), (n,)
     inverse : ndarray, shape (u, n)
         Of the design.
-    conditions : ndarray, shape (r, n)
-        Orthonormal base of what the unknowns leave.
+    transform : ndarray, shape (1 + r, n)
+        The row of the least certain point, and an orthonormal base of what the unknowns leave.
     columns : mapping
         Of the observations.
+    labels : mapping
+        Names behind numbered columns.
     """
 
     network: Network
@@ -58,8 +60,14 @@ class Adjusted:
     design: Floats
     right: Floats
     inverse: Floats
-    conditions: Floats
+    transform: Floats
     columns: Columns
+    labels: Mapping[str, Mapping[float, str]]
+
+    @property
+    def conditions(self) -> Floats:
+        """Orthonormal base of what the unknowns leave, shape (r, n)."""
+        return np.asarray(self.transform[1:])
 
 
 @dataclass(frozen=True, slots=True)
