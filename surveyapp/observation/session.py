@@ -27,7 +27,7 @@ from surveyapp.core.observing.target import target_of
 from surveyapp.domain.project import OrientationSession, Project
 from surveyapp.domain.readings import QUIET_KINDS, FieldBook, Reading, ReadingKind
 from surveyapp.domain.results import OrientationResult
-from surveyapp.errors import SurveyError
+from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.fieldbook import append_row, book_columns, read_field_book
 from surveyapp.io.fieldbook.clock import SessionClock, Stamp, local_now, steady_seconds
 from surveyapp.io.fieldbook.problems import edited_problem, moment_problems, read_only_problem
@@ -252,7 +252,7 @@ class SessionDesk:
                 self.path,
                 self._fitting(cells),
                 angle_unit=self.project.angle_unit,
-                also=moment_problems,
+                also=moment_problems if row.kind is ReadingKind.STRIKE else self._contradictions,
             )
         finally:
             self._mark = self._file_mark()
@@ -260,6 +260,12 @@ class SessionDesk:
         if row.kind not in QUIET_KINDS or row.note.startswith(STEP_NOTE):
             self._step = None
         return seq
+
+    def _contradictions(self, book: FieldBook, where: str) -> list[Problem]:
+        """What no command could use in this book: the row that brings it in is not written."""
+        from surveyapp.core.swing.contradictions import contradictions
+
+        return [*moment_problems(book, where), *contradictions(replace(self.session, book=book))]
 
     def _twice(self, kind: ReadingKind, moment: Stamp) -> bool:
         """Whether a turning point of this very moment stands in the book: not both are right."""

@@ -191,7 +191,7 @@ def reduce_tracking(
     points = turning_points(session)
     zero, coefficient, correction, warnings = tape_zero_of(session, card, points.rows, latitude)
     points = without_twist(without_tape_drift(points, zero, coefficient), twist)
-    fit = _fit(session, points)
+    fit = damped_fit(session, points)
     modelled = None
     if session.effects and run_model is not None:
         modelled = run_model(session, card, latitude, twist)
@@ -274,7 +274,14 @@ def _modelled_north(
     )
 
 
-def _fit(session: OrientationSession, points: RunPoints) -> DampedFit:
+def damped_fit(session: OrientationSession, points: RunPoints) -> DampedFit:
+    """Fit the damped swing.
+
+    Raises
+    ------
+    SurveyError
+        If six turning points or more do not swing about one middle.
+    """
     fit = fit_damped_swing(points.values, points.index, points.sides)
     if fit.converged or points.values.size < LEAST_SQUARES_FROM:
         return fit
