@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -252,7 +253,7 @@ class SessionDesk:
                 self.path,
                 self._fitting(cells),
                 angle_unit=self.project.angle_unit,
-                also=moment_problems if row.kind is ReadingKind.STRIKE else self._contradictions,
+                also=partial(_unusable, self.session, row.kind),
             )
         finally:
             self._mark = self._file_mark()
@@ -260,12 +261,6 @@ class SessionDesk:
         if row.kind not in QUIET_KINDS or row.note.startswith(STEP_NOTE):
             self._step = None
         return seq
-
-    def _contradictions(self, book: FieldBook, where: str) -> list[Problem]:
-        """What no command could use in this book: the row that brings it in is not written."""
-        from surveyapp.core.swing.contradictions import contradictions
-
-        return [*moment_problems(book, where), *contradictions(replace(self.session, book=book))]
 
     def _twice(self, kind: ReadingKind, moment: Stamp) -> bool:
         """Whether a turning point of this very moment stands in the book: not both are right."""
@@ -350,6 +345,16 @@ class SessionDesk:
     def close(self) -> None:
         """Give the right to write back."""
         self._lock.release()
+
+
+def _unusable(
+    session: OrientationSession, kind: ReadingKind, book: FieldBook, where: str
+) -> list[Problem]:
+    """What no command could use in a book; a strike is not asked for more than its moments."""
+    from surveyapp.core.swing.contradictions import contradictions
+
+    found = moment_problems(book, where)
+    return found if kind is ReadingKind.STRIKE else [*found, *contradictions(session, book)]
 
 
 def progress(project: Project, session: str) -> Progress:

@@ -7,27 +7,29 @@ one side only, no clamp reading yet) is none of it.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 
 from surveyapp.core.checks.blunders import refuse_wrong_faces
 from surveyapp.core.swing.automatic import rounds_of
 from surveyapp.core.swing.clamped import check_rows
 from surveyapp.core.swing.gyrofit import LEAST_SQUARES_FROM
+from surveyapp.core.swing.run_points import damped_fit, turning_points
 from surveyapp.core.swing.session import sight_targets
 from surveyapp.core.swing.sights import reduce_sights, zenith_angle
-from surveyapp.core.swing.tracking import damped_fit, turning_points
 from surveyapp.domain.project import OrientationSession
-from surveyapp.domain.readings import ReadingKind
+from surveyapp.domain.readings import FieldBook, ReadingKind
 from surveyapp.errors import Problem, SurveyError
 
 
-def contradictions(session: OrientationSession) -> list[Problem]:
+def contradictions(session: OrientationSession, book: FieldBook) -> list[Problem]:
     """Problems for which every command would refuse the book of a session.
 
     Parameters
     ----------
     session : OrientationSession
-        With its book as it would stand.
+    book : FieldBook
+        Its book as it would stand.
 
     Returns
     -------
@@ -35,7 +37,7 @@ def contradictions(session: OrientationSession) -> list[Problem]:
         Empty for a book that is right as far as it goes.
     """
     found: list[Problem] = []
-    for judge in _judges(session):
+    for judge in _judges(replace(session, book=book)):
         try:
             judge()
         except SurveyError as error:
