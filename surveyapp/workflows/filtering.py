@@ -43,7 +43,7 @@ def filter_log(
     r: float | None,
     seed: int = 1,
     progress: PartDone | None = None,
-) -> tuple[FilterResult, Floats, Floats]:
+) -> tuple[FilterResult, dict[str, Floats]]:
     """Filter one column.
 
     Parameters
@@ -62,8 +62,8 @@ def filter_log(
 
     Returns
     -------
-    tuple of FilterResult, ndarray, ndarray
-        The result, the raw and the filtered series.
+    tuple of FilterResult, dict of str to ndarray
+        The result, and the times of the log with the raw and the filtered series by column.
 
     Raises
     ------
@@ -79,7 +79,7 @@ def filter_log(
     series, unit = log.columns[names[0]], log.units[names[0]]
     stated = r if r is not None else 0.5 * float(np.mean(np.diff(series) ** 2))
     model = LocalLevel(q if q is not None else 1e-3 * stated, stated)
-    _check_model(model)
+    _check_model(model, seed)
     rng = np.random.default_rng(seed)
     filtered = run_filter(model_name, series, model, rng)
     rate = log.rate_hz or 1.0
@@ -119,7 +119,12 @@ def filter_log(
         seed=seed,
         warnings=tuple(warnings),
     )
-    return result, series, filtered.estimate
+    times = log.columns.get("time_s", np.arange(series.size) / rate)
+    return result, {
+        "time_s": times,
+        names[0]: series,
+        f"filtered_{names[0]}": filtered.estimate,
+    }
 
 
 def _known(name: str) -> FilterName:
@@ -130,7 +135,7 @@ def _known(name: str) -> FilterName:
     raise SurveyError(Problem("there is no such filter", "filter", name, hint=hint))
 
 
-def _check_model(model: LocalLevel) -> None:
+def _check_model(model: LocalLevel, seed: int) -> None:
     problems = [
         Problem(
             said("{name} is no variance", name=name), name, f"{value:g}", "a finite number above 0"
@@ -138,6 +143,8 @@ def _check_model(model: LocalLevel) -> None:
         for name, value in (("q", model.q), ("r", model.r))
         if not math.isfinite(value) or value <= 0.0
     ]
+    if seed < 0:
+        problems.append(Problem("the seed is negative", "seed", str(seed), "0 or more"))
     if problems:
         raise SurveyError(problems)
 
