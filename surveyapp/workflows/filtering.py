@@ -71,10 +71,7 @@ def filter_log(
         For an unknown filter or column, and for variances that are not positive.
     """
     model_name = _known(name)
-    names = noise_columns(file, column)
-    if len(names) > 1:
-        hint = said("`column` C, one of: {names}", names=", ".join(names))
-        raise SurveyError(Problem("which column?", file.request.where, "", "one column", hint))
+    names = _one_column(file, column)
     log = read_columns(file, names, progress)
     series, unit = log.columns[names[0]], log.units[names[0]]
     stated = r if r is not None else 0.5 * float(np.mean(np.diff(series) ** 2))
@@ -125,6 +122,14 @@ def filter_log(
         names[0]: series,
         f"filtered_{names[0]}": filtered.estimate,
     }
+
+
+def _one_column(file: LogFile, column: str | None) -> tuple[str, ...]:
+    names = noise_columns(file, column)
+    if len(names) > 1:
+        hint = said("`column` C, one of: {names}", names=", ".join(names))
+        raise SurveyError(Problem("which column?", file.request.where, "", "one column", hint))
+    return tuple(names)
 
 
 def _known(name: str) -> FilterName:
