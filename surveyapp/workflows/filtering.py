@@ -74,11 +74,8 @@ def filter_log(
     names = _one_column(file, column)
     log = read_columns(file, names, progress)
     series, unit = log.columns[names[0]], log.units[names[0]]
-    stated = r if r is not None else 0.5 * float(np.mean(np.diff(series) ** 2))
-    model = LocalLevel(q if q is not None else 1e-3 * stated, stated)
-    _check_model(model, seed)
-    rng = np.random.default_rng(seed)
-    filtered = run_filter(model_name, series, model, rng)
+    model = _model(series, (q, r), seed)
+    filtered = run_filter(model_name, series, model, np.random.default_rng(seed))
     rate = log.rate_hz or 1.0
     factors = octaves(series.size)
     before = channel_of(names[0], unit, series, rate_hz=rate, factors=factors)
@@ -140,7 +137,11 @@ def _known(name: str) -> FilterName:
     raise SurveyError(Problem("there is no such filter", "filter", name, hint=hint))
 
 
-def _check_model(model: LocalLevel, seed: int) -> None:
+def _model(series: Floats, stated: tuple[float | None, float | None], seed: int) -> LocalLevel:
+    """The variances as stated, or from the differences of the series."""
+    q, r = stated
+    reading = r if r is not None else 0.5 * float(np.mean(np.diff(series) ** 2))
+    model = LocalLevel(q if q is not None else 1e-3 * reading, reading)
     problems = [
         Problem(
             said("{name} is no variance", name=name), name, f"{value:g}", "a finite number above 0"
@@ -152,6 +153,7 @@ def _check_model(model: LocalLevel, seed: int) -> None:
         problems.append(Problem("the seed is negative", "seed", str(seed), "0 or more"))
     if problems:
         raise SurveyError(problems)
+    return model
 
 
 def _told(after: AllanChannel) -> AllanChannel:
