@@ -91,6 +91,8 @@ class _Terms:
         Which of ``AMPLITUDES``; -1 where a member has no size of its own.
     numbers : tuple of int
         By which ``Determinations.chosen`` knows a member; -1 where it always counts.
+    causes : tuple of tuple of str
+        What is in it: of a pair both.
     """
 
     log_prior: Floats
@@ -100,6 +102,7 @@ class _Terms:
     units: tuple[str, ...]
     sizes: tuple[int, ...]
     numbers: tuple[int, ...]
+    causes: tuple[tuple[str, ...], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,7 +182,10 @@ def members(data: Determinations, priors: Priors) -> Members:
     carried = to[:, :, 2:b] + rest[:, :, None] * (
         terms.products[:, None, 0, 2:b] / one[:, None, None]
     )
-    extra = unseen(data.columns, n, data.targets, priors)
+    extra = np.zeros_like(inner)
+    for part in unseen(data.columns, y, d, data.targets, priors=priors):
+        without = np.array([part.causes.isdisjoint(own) for own in terms.causes])
+        extra[without] += part.covariance
     inner = inner + extra
     found = Members(
         units=terms.units,
@@ -235,6 +241,7 @@ def _joined(parts: list[_Terms]) -> _Terms:
         tuple(u for p in parts for u in p.units),
         tuple(k for p in parts for k in p.sizes),
         tuple(k for p in parts for k in p.numbers),
+        tuple(c for p in parts for c in p.causes),
     )
 
 
@@ -286,6 +293,7 @@ def _rank_one(
         (unit,) * len(x),
         (size,) * len(x),
         (-1,) * len(x),
+        ((unit,),) * len(x),
     )
 
 
@@ -320,6 +328,7 @@ def _dense(data: Determinations, priors: Priors, d: Floats, fixed: Floats) -> It
             tuple(item.unit for _, item in part),
             tuple(item.size for _, item in part),
             tuple(number for number, _ in part),
+            tuple(tuple(found[place].unit for place, _ in item.causes) for _, item in part),
         )
 
 
@@ -334,13 +343,13 @@ class _Plan:
 
 
 def _singles(found: tuple[Kernel, ...], priors: Priors) -> list[_Plan]:
-    count: dict[str, int] = {}
+    total: dict[str, float] = {}
     for kernel in found:
-        count[kernel.unit] = count.get(kernel.unit, 0) + 1
+        total[kernel.unit] = total.get(kernel.unit, 0.0) + kernel.share
     return [
         _Plan(
             kernel.unit,
-            priors.share(kernel.unit) * size / count[kernel.unit],
+            priors.share(kernel.unit) * size * kernel.share / total[kernel.unit],
             k,
             ((place, a * a),),
         )
@@ -357,18 +366,21 @@ def _pairs(found: tuple[Kernel, ...], priors: Priors) -> list[_Plan]:
         for j in usable:
             pair = (found[i].unit, found[j].unit)
             if i < j and pair[0] != pair[1] and pair not in ALIKE and pair[::-1] not in ALIKE:
-                by_pair.setdefault(pair, []).append((i, j))
+                by_pair.setdefault(min(pair, pair[::-1]), []).append((i, j))
     share = priors.share(PAIRS)
     if not by_pair or share <= 0.0:
         return []
     each = share / len(by_pair) / len(PAIR_AMPLITUDES) ** 2
-    return [
-        _Plan(PAIRS, each / len(shapes), -1, ((i, a * a), (j, b * b)))
-        for shapes in by_pair.values()
-        for i, j in shapes
-        for a in PAIR_AMPLITUDES
-        for b in PAIR_AMPLITUDES
-    ]
+    plans = []
+    for shapes in by_pair.values():
+        own = np.array([found[i].share * found[j].share for i, j in shapes])
+        for (i, j), part in zip(shapes, (own / own.sum()).tolist(), strict=True):
+            plans += [
+                _Plan(PAIRS, each * part, -1, ((i, a * a), (j, b * b)))
+                for a in PAIR_AMPLITUDES
+                for b in PAIR_AMPLITUDES
+            ]
+    return plans
 
 
 def _bordered(a: Floats, k: Floats, fixed: Floats) -> tuple[Floats, Floats]:
