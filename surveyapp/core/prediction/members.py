@@ -13,15 +13,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surveyapp.core.prediction.kernels import PAIRED, Kernel, kernels, step_columns
+from surveyapp.core.prediction.kernels import kernels, step_columns
+from surveyapp.core.prediction.plans import pairs, singles
 from surveyapp.core.prediction.unseen import unseen
 from surveyapp.domain.priors import (
     AMPLITUDES,
     BASE,
     GROSS,
     NU0,
-    PAIR_AMPLITUDES,
-    PAIRS,
     STEP,
     Priors,
 )
@@ -34,8 +33,6 @@ LEAST_NOISE = 1e-6
 NEGLIGIBLE = 1e-5
 CHUNK = 64
 """Members that are factored at once: as many as fit into the cache."""
-ALIKE = frozenset({("temperature", "curve")})
-"""Pairs that would be one cause twice."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -304,7 +301,7 @@ def _dense(data: Determinations, priors: Priors, d: Floats, fixed: Floats) -> It
     own = np.stack([k.matrix[:n, :n] for k in found])
     cross = np.stack([targets @ k.matrix[:, :n] for k in found])
     ends = np.stack([targets @ k.matrix @ targets.T for k in found])
-    whole = [*_singles(found, priors), *_pairs(found, priors)]
+    whole = [*singles(found, priors), *pairs(found, priors)]
     plan = [
         (number, item)
         for number, item in enumerate(whole)
@@ -330,57 +327,6 @@ def _dense(data: Determinations, priors: Priors, d: Floats, fixed: Floats) -> It
             tuple(number for number, _ in part),
             tuple(tuple(found[place].unit for place, _ in item.causes) for _, item in part),
         )
-
-
-@dataclass(frozen=True, slots=True)
-class _Plan:
-    """A member to be factored: its unit, prior and size, and (kernel, variance) of its causes."""
-
-    unit: str
-    prior: float
-    size: int
-    causes: tuple[tuple[int, float], ...]
-
-
-def _singles(found: tuple[Kernel, ...], priors: Priors) -> list[_Plan]:
-    total: dict[str, float] = {}
-    for kernel in found:
-        total[kernel.unit] = total.get(kernel.unit, 0.0) + kernel.share
-    return [
-        _Plan(
-            kernel.unit,
-            priors.share(kernel.unit) * size * kernel.share / total[kernel.unit],
-            k,
-            ((place, a * a),),
-        )
-        for place, kernel in enumerate(found)
-        for k, (a, size) in enumerate(zip(AMPLITUDES, priors.sizes, strict=True))
-        if priors.share(kernel.unit) * size > 0.0
-    ]
-
-
-def _pairs(found: tuple[Kernel, ...], priors: Priors) -> list[_Plan]:
-    by_pair: dict[tuple[str, str], list[tuple[int, int]]] = {}
-    usable = [i for i, k in enumerate(found) if k.unit in PAIRED and priors.share(k.unit) > 0.0]
-    for i in usable:
-        for j in usable:
-            pair = (found[i].unit, found[j].unit)
-            if i < j and pair[0] != pair[1] and pair not in ALIKE and pair[::-1] not in ALIKE:
-                by_pair.setdefault(min(pair, pair[::-1]), []).append((i, j))
-    share = priors.share(PAIRS)
-    if not by_pair or share <= 0.0:
-        return []
-    each = share / len(by_pair) / len(PAIR_AMPLITUDES) ** 2
-    plans = []
-    for shapes in by_pair.values():
-        own = np.array([found[i].share * found[j].share for i, j in shapes])
-        for (i, j), part in zip(shapes, (own / own.sum()).tolist(), strict=True):
-            plans += [
-                _Plan(PAIRS, each * part, -1, ((i, a * a), (j, b * b)))
-                for a in PAIR_AMPLITUDES
-                for b in PAIR_AMPLITUDES
-            ]
-    return plans
 
 
 def _bordered(a: Floats, k: Floats, fixed: Floats) -> tuple[Floats, Floats]:
