@@ -46,7 +46,7 @@ SWINGS: Final = (*TURNING, ReadingKind.TRANSIT)
 SHORTEST_HALF_SWING_S: Final = 60.0
 TYPED_UP_S: Final = 5.0
 """Nobody reads two turning points within this time: such a row is typed up, its moment unknown."""
-_AGO: Final = re.compile(r"-\s*(\d+(?:\.\d*)?)\s*s?")
+_AGO: Final = re.compile(r"[-\u2212]\s*(\d+(?:\.\d*)?)\s*s?")
 _TIME: Final = re.compile(r"(\d{1,2}):(\d{2})(?::(\d{2}(?:\.\d*)?))?")
 
 
@@ -206,7 +206,7 @@ def understand(
     reading, _, moment = text.partition("@")
     stated = bool(moment.strip())
     if stated:
-        stamp = _corrected(observation, stamp, moment.strip())
+        stamp = _corrected(observation, stamp, moment.strip().replace(",", "."))
     if reading.count(",") == 1 and "." not in reading:
         reading = reading.replace(",", ".")  # the book keeps points
     quantity = QUANTITY[what.kind]

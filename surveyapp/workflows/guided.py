@@ -197,7 +197,7 @@ def write_typed_log(folder: Path, state: ProgrammeState) -> str:
         raise SurveyError(Problem("nothing was read yet", run.path))
     names = list(dict.fromkeys(name for row in rows for name in row))
     columns = {name: _cells(rows, name) for name in names}
-    identity, name = run.id, said("sensors/{id}.csv", id=run.id)
+    identity, name = run.id, f"sensors/{run.id}.csv"
     with ProjectLock(folder) as lock:
         if not lock.writable:
             what = "the project is closed, or written by somebody else"

@@ -42,11 +42,12 @@ def countdown_text(progress: Progress, remaining_s: float | None) -> str:
     forecast = progress.next
     if forecast is None:
         return ""
+    side = forecast.side or texts.NEXT_ANY
     if remaining_s is None:
         pattern = texts.NEXT_SIDE if forecast.moment_s is None else texts.NEXT_LONG_PAST
-        return pattern.format(side=forecast.side)
+        return pattern.format(side=side)
     pattern = texts.NEXT_NOW if is_near(progress, remaining_s) else texts.NEXT_POINT
-    text = pattern.format(side=forecast.side, time=_clock_text(remaining_s))
+    text = pattern.format(side=side, time=_clock_text(remaining_s))
     if progress.scale and forecast.moment_half_width_s is not None:
         text += texts.NEXT_SPREAD.format(seconds=plain(forecast.moment_half_width_s, 0))
     return text
