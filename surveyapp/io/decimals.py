@@ -38,7 +38,5 @@ def typed_words(text: str) -> list[str]:
     if any(word.count(",") > 1 or ("," in word and "." in word) for word in words):
         return text.replace(";", " ").replace(",", " ").split()
     return [
-        word.replace(",", ".") if _DECIMAL_COMMA.fullmatch(word) else word
-        for word in words
-        if word
+        word.replace(",", ".") if _DECIMAL_COMMA.fullmatch(word) else word for word in words if word
     ]

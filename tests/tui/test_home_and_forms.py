@@ -136,7 +136,12 @@ def test_a_decimal_comma_in_a_form_is_one_and_never_another_column() -> None:
     for text in ("nan", "inf", "1_000", "1,2,3", "1.2,3", "", "1e999"):
         with pytest.raises(ValueError, match="is no number"):
             typed_number(text)
-    assert [typed_number(text) for text in ("-9,7", "\u22129.7", ",5", "1e3")] == [-9.7, -9.7, 0.5, 1e3]
+    assert [typed_number(text) for text in ("-9,7", "\u22129.7", ",5", "1e3")] == [
+        -9.7,
+        -9.7,
+        0.5,
+        1e3,
+    ]
 
 
 def test_a_session_that_cannot_stand_leaves_the_project_as_it_was(tmp_path: Path) -> None:
