@@ -36,7 +36,6 @@ from surveyapp.io.sensor_logs.reading import LogRequest, Need, read_log
 from surveyapp.io.sensor_logs.writing import columns_text, write_columns
 from surveyapp.io.tomltext import atomic_write
 from surveyapp.io.writing import append_table
-from surveyapp.languages import said
 
 _BAD_IN_ID: Final = "'. "
 

@@ -130,9 +130,10 @@ def test_a_decimal_comma_in_a_form_is_one_and_never_another_column() -> None:
         "period": period,
         "torsion": {"lambda": 0.2},
     }
-    assert typed_words("12-00-00, 1000, 2000, 47.0, 8.0") == "12-00-00 1000 2000 47.0 8.0".split()
-    assert typed_words("12-00-00,1000,2000,47.0,8.0") == "12-00-00 1000 2000 47.0 8.0".split()
-    assert typed_words("12-00-00 1000,5 2000,5") == "12-00-00 1000.5 2000.5".split()
+    words = ["12-00-00", "1000", "2000", "47.0", "8.0"]
+    assert typed_words("12-00-00, 1000, 2000, 47.0, 8.0") == words
+    assert typed_words("12-00-00,1000,2000,47.0,8.0") == words
+    assert typed_words("12-00-00 1000,5 2000,5") == ["12-00-00", "1000.5", "2000.5"]
     for text in ("nan", "inf", "1_000", "1,2,3", "1.2,3", "", "1e999"):
         with pytest.raises(ValueError, match="is no number"):
             typed_number(text)

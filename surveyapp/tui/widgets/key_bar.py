@@ -14,7 +14,7 @@ LAST = ("escape", "f1", "f8", "q")
 
 
 class KeyBar(Footer):
-    """A footer of whole keys alone: help and the ways on and out in any case, others as there is room.
+    """A footer of whole keys: help, the ways on and out in any case, others as there is room.
 
     Parameters
     ----------
