@@ -340,6 +340,26 @@ def test_a_comma_is_a_decimal_sign_in_the_line(tmp_path: Path, text: str, value:
     assert row["elapsed_s"] == ("1.500" if "@" in text else "2.000")
 
 
+@pytest.mark.parametrize(
+    ("text", "value", "unit"),
+    [
+        ("24,1 \u0412", "24.1", "V"),
+        ("400 \u0413\u0446", "400", "Hz"),
+        ("\uff12\uff14\uff0c\uff11", "24.1", "V"),
+        ("\u0662\u0664", "24", "V"),  # stood in the book as it was typed
+    ],
+)
+def test_a_supply_typed_on_any_keyboard_stands_in_the_book_as_numbers(
+    tmp_path: Path, text: str, value: str, unit: str
+) -> None:
+    desk, _, folder = desk_at(tmp_path, Step.RUN_UP)
+    desk.kind = ReadingKind.SUPPLY
+    desk.typing(text)
+    assert desk.enter(text).startswith("on disk")
+    row = rows_on_disk(folder)[-1]
+    assert (row["value"], row["unit"]) == (value, unit)
+
+
 def test_two_commas_are_no_number(tmp_path: Path) -> None:
     desk, _, _ = desk_at(tmp_path, Step.ZERO_BEFORE)
     with pytest.raises(EntryError):

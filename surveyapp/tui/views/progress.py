@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -11,6 +10,7 @@ from surveyapp.core.observing.progress import Progress
 from surveyapp.core.observing.target import Target
 from surveyapp.observation.aim import Aim
 from surveyapp.report.numbers import plain, seconds
+from surveyapp.report.text import filled
 from surveyapp.tui import texts
 from surveyapp.tui.cells import columns
 from surveyapp_models.angles import AngleUnit, format_angle
@@ -99,7 +99,7 @@ def north_text(progress: Progress, unit: AngleUnit, method: str) -> str:
     if progress.north is None:
         if progress.missing:
             told = texts.NORTH_MISSING.format(problem=progress.missing)
-            return "\n".join(textwrap.wrap(told, WIDTH))
+            return filled(told, WIDTH)
         return _NORTH_NONE[method]
     north = format_angle(progress.north, unit)
     if progress.interval95 is None:
