@@ -24,7 +24,7 @@ from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.sensor_logs.reading import LogFile
 from surveyapp.languages import said
-from surveyapp.workflows.noise import channel_of, noise_columns, read_columns
+from surveyapp.workflows.noise import channel_of, noise_columns, read_columns, uneven
 from surveyapp_models.arrays import Floats
 
 STEP_SIGMAS = (2.0, 20.0)
@@ -99,7 +99,7 @@ def filter_log(
         )
         for sigmas in STEP_SIGMAS
     }
-    warnings = [*log.warnings, *_warnings(filtered, lags)]
+    warnings = [*log.warnings, *uneven(log), *_warnings(filtered, lags)]
     result = FilterResult(
         filter=model_name,
         column=names[0],

@@ -122,6 +122,19 @@ def channel_of(
     )
 
 
+def uneven(log: SensorLog) -> list[ResultWarning]:
+    """That the samples are taken as evenly spaced where they are not."""
+    if log.gaps:
+        text = "the samples beside a gap are taken as neighbours: cut the log at its gaps"
+        return [ResultWarning("gaps_ignored", text)]
+    if "time_s" in log.columns and log.size > 2:
+        step = np.diff(log.columns["time_s"][: 1 << 20])
+        if float(np.std(step)) > 0.2 * float(np.median(step)):
+            text = "the interval of the samples varies; its median is taken"
+            return [ResultWarning("uneven_rate", text)]
+    return []
+
+
 def allan_of_log(
     file: LogFile,
     *,
@@ -140,16 +153,8 @@ def allan_of_log(
     names = noise_columns(file, column)
     log = read_columns(file, names, progress)
     factors = factors_of(log, taus)
-    warnings = list(log.warnings)
-    if log.gaps:
-        text = "the samples beside a gap are taken as neighbours: cut the log at its gaps"
-        warnings.append(ResultWarning("gaps_ignored", text))
     rate = log.rate_hz or 1.0
-    if "time_s" in log.columns and log.size > 2:
-        step = np.diff(log.columns["time_s"][: 1 << 20])
-        if float(np.std(step)) > 0.2 * float(np.median(step)) and not log.gaps:
-            text = "the interval of the samples varies; its median is taken"
-            warnings.append(ResultWarning("uneven_rate", text))
+    warnings = [*log.warnings, *uneven(log)]
     channels = tuple(
         channel_of(
             name,

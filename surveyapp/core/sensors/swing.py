@@ -27,6 +27,8 @@ from surveyapp_models.compass.heading import heading_of
 
 NAMES: Final = tuple(f"deviation_{letter}" for letter in COEFFICIENTS)
 BLOCK_S: Final = 2.0
+FEWEST_HEADINGS: Final = 8
+RADIANS: Final = 6.2832
 LEVEL_LIMIT_DEG: Final = 45.0
 """A swing turns a carrier near level: up is within so many degrees of z."""
 
@@ -159,15 +161,21 @@ def _result(
             CalibrationModel("none", plain, plain, not met),
             CalibrationModel("A_to_E", after, held, met),
         ),
-        warnings=(*log.warnings, *_warnings(log, fit, met=met)),
+        warnings=(*log.warnings, *_warnings(log, fit, met=met), *odd_headings(log, met=met)),
         met=met,
         n=log.size,
         sha256=log.sha256,
         covariance=_degrees_covariance(fit) if met else None,
         extra={"coverage_cells": [cells.tolist()]},
-        constants={"heading_sigma_deg": math.degrees(sigma)} if met else {},
+        constants=_constants(fit, sigma) if met else {},
         temperature_c=_temperatures(log),
     )
+
+
+def _constants(fit: LinearFit | None, sigma: float) -> dict[str, float]:
+    """Sigma of A to E together, and of one heading about them [deg]."""
+    one = 0.0 if fit is None else math.degrees(fit.sigma0)
+    return {"heading_sigma_deg": math.degrees(sigma), "reading_sigma_deg": one}
 
 
 def _degrees_covariance(fit: LinearFit | None) -> tuple[tuple[float, ...], ...] | None:
@@ -192,6 +200,29 @@ def _temperatures(log: SensorLog) -> tuple[float, float] | None:
     if values is None or not np.all(np.isfinite(values)):
         return None
     return float(values.min()), float(values.max())
+
+
+def odd_headings(log: SensorLog, *, met: bool) -> list[ResultWarning]:
+    """Known headings beyond a turn are taken modulo 360; what else they may be is told."""
+    known = log.columns["heading_deg"]
+    low, high = float(known.min()), float(known.max())
+    found = []
+    if low < -360.0 or high > 360.0:
+        text = said(
+            "heading_deg runs from {low:g} to {high:g} degrees: whole turns are taken off; gon, "
+            "counts or mils would need `scale` heading_deg=VALUE",
+            low=low,
+            high=high,
+        )
+        found.append(ResultWarning("heading_beyond_a_turn", text))
+    elif not met and log.size >= FEWEST_HEADINGS and 3.0 < high - low and high <= RADIANS:
+        text = said(
+            "heading_deg runs from {low:g} to {high:g}: are these radians? `units` heading_deg=rad",
+            low=low,
+            high=high,
+        )
+        found.append(ResultWarning("heading_in_radians", text))
+    return found
 
 
 def _warnings(log: SensorLog, fit: LinearFit | None, *, met: bool) -> list[ResultWarning]:

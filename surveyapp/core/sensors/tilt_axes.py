@@ -229,6 +229,9 @@ def _result(
         constants={
             "reference_temperature_c": reference_c,
             "reading_sigma_arcsec": max(item.fit.sigma0 for item in fits),
+            "largest_reading_arcsec": max(
+                float(np.max(np.abs(log.columns[f"tilt_{a}_arcsec"]))) for a in AXES
+            ),
         },
     )
 

@@ -219,6 +219,7 @@ class LogFile:
             problems += checks.bad_times(columns["time_s"], where=where, first_row=first)
         stated = [name for name in columns if self.places[name].stated]
         problems += checks.mixed_units(columns, where=where)
+        problems += checks.strange_temperatures(columns, where=where)
         if not need.biased or not stated:
             problems += checks.implausible(columns, stated=stated, where=where)
         named = [name for name in columns if self.places[name].name.endswith(_suffix(name))]
@@ -255,6 +256,7 @@ class LogFile:
             scaled={n: self.places[n].factor for n in columns if self._counted(n)},
             sha256=sha256,
             path=self.request.where,
+            first_line=rows.first_row,
             warnings=tuple(warnings),
         )
 
