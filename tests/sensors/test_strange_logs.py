@@ -46,7 +46,9 @@ def sensed(
     """What a compass of these attitudes (body to north, west, up) records."""
     rng = np.random.default_rng(seed)
     n = len(attitude)
-    mag = np.einsum("nji,j->ni", attitude, FIELD) @ iron[1].T + iron[0] + rng.normal(0.0, 0.3, (n, 3))
+    mag = (
+        np.einsum("nji,j->ni", attitude, FIELD) @ iron[1].T + iron[0] + rng.normal(0.0, 0.3, (n, 3))
+    )
     acc = attitude[:, 2, :] * G + rng.normal(0.0, force_sigma, (n, 3))
     log = {"time_s": np.arange(n) / 20.0}
     return log | dict(zip((*MAG, *ACC), (*mag.T, *acc.T), strict=True))
@@ -180,9 +182,7 @@ def test_a_swing_card_tells_what_one_heading_is_worth(tmp_path: Path) -> None:
 def test_headings_of_several_turns_are_taken_modulo_a_turn(tmp_path: Path) -> None:
     heading, attitude = swung()
     log = sensed(attitude, 7, iron=SMALL)
-    plain = api.calibrate(
-        "compass", written(tmp_path / "a.csv", log | {"heading_deg": heading})
-    )
+    plain = api.calibrate("compass", written(tmp_path / "a.csv", log | {"heading_deg": heading}))
     twice = np.where(np.arange(heading.size) % 2 == 0, heading, heading + 720.0)
     result = api.calibrate("compass", written(tmp_path / "b.csv", log | {"heading_deg": twice}))
     for letter in "ABCDE":
