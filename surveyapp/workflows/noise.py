@@ -130,7 +130,7 @@ def uneven(log: SensorLog) -> list[ResultWarning]:
     if "time_s" in log.columns and log.size > 2:
         step = np.diff(log.columns["time_s"][: 1 << 20])
         if float(np.std(step)) > 0.2 * float(np.median(step)):
-            text = "the interval of the samples varies; its median is taken"
+            text = "the interval of the samples varies; its mean is taken"
             return [ResultWarning("uneven_rate", text)]
     return []
 

@@ -20,7 +20,6 @@ from surveyapp.core.sensors.compass_attitude import turned_back
 from surveyapp.domain.sensor_card import SensorCard
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 from surveyapp_models.compass.deviation import COEFFICIENTS, deviation_basis, undeviated
 from surveyapp_models.compass.heading import heading_of

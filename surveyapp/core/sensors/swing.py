@@ -29,6 +29,9 @@ NAMES: Final = tuple(f"deviation_{letter}" for letter in COEFFICIENTS)
 BLOCK_S: Final = 2.0
 FEWEST_HEADINGS: Final = 8
 RADIANS: Final = 6.2832
+WHOLE_CIRCLE: Final = 5.0
+"""Condition of A to E above which arcs of the circle are missing; 1 = evenly swung."""
+
 LEVEL_LIMIT_DEG: Final = 45.0
 """A swing turns a carrier near level: up is within so many degrees of z."""
 
@@ -161,7 +164,7 @@ def _result(
             CalibrationModel("none", plain, plain, not met),
             CalibrationModel("A_to_E", after, held, met),
         ),
-        warnings=(*log.warnings, *_warnings(log, fit, met=met), *odd_headings(log, met=met)),
+        warnings=(*log.warnings, *_warnings(log, fit, gate), *odd_headings(log, met=met)),
         met=met,
         n=log.size,
         sha256=log.sha256,
@@ -215,7 +218,7 @@ def odd_headings(log: SensorLog, *, met: bool) -> list[ResultWarning]:
             high=high,
         )
         found.append(ResultWarning("heading_beyond_a_turn", text))
-    elif not met and log.size >= FEWEST_HEADINGS and 3.0 < high - low and high <= RADIANS:
+    elif not met and log.size >= FEWEST_HEADINGS and high - low > 3.0 and high <= RADIANS:
         text = said(
             "heading_deg runs from {low:g} to {high:g}: are these radians? `units` heading_deg=rad",
             low=low,
@@ -225,11 +228,29 @@ def odd_headings(log: SensorLog, *, met: bool) -> list[ResultWarning]:
     return found
 
 
-def _warnings(log: SensorLog, fit: LinearFit | None, *, met: bool) -> list[ResultWarning]:
+def _why_refused(fit: LinearFit | None, gate: tuple[float, float]) -> str:
+    """The circle is not swung through, or the readings scatter too much for the headings."""
+    sigma, limit = gate
+    if fit is None or fit.condition > WHOLE_CIRCLE:
+        return said("the headings do not determine A to E: swing through the whole circle")
+    return said(
+        "a corrected heading would have a sigma of {sigma:.2f} degrees, more than {limit:g}: the "
+        "headings scatter by {rms:.2f} degrees about A to E over {rows} rows; swing again with "
+        "more headings, away from iron, and look for a wrong known heading",
+        sigma=math.degrees(sigma),
+        limit=math.degrees(limit),
+        rms=math.degrees(fit.rms),
+        rows=fit.residual.size,
+    )
+
+
+def _warnings(
+    log: SensorLog, fit: LinearFit | None, gate: tuple[float, float]
+) -> list[ResultWarning]:
+    met = fit is not None and gate[0] <= gate[1]
     found = []
     if not met:
-        text = "the headings do not determine A to E: swing through the whole circle"
-        found.append(ResultWarning("geometry", text))
+        found.append(ResultWarning("geometry", _why_refused(fit, gate)))
     if fit is not None and fit.inflation > 1.0:
         text = said(
             "neighbouring deviations resemble each other; sigmas widened {inflation:.2f} x",

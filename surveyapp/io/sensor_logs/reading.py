@@ -238,8 +238,8 @@ class LogFile:
         rate: float | None = self.request.rate_hz
         gaps: tuple[Gap, ...] = ()
         if "time_s" in columns and need.timed != "no":
-            median, gaps = checks.gaps_of(columns["time_s"])
-            rate = rate or (1.0 / median if median > 0.0 else None)
+            interval, gaps = checks.gaps_of(columns["time_s"])
+            rate = rate or (1.0 / interval if interval > 0.0 else None)
         elif need.timed != "no" and rate is not None:
             columns["time_s"] = np.arange(size) / rate
         clipped = checks.clipped_columns(columns)
