@@ -212,8 +212,8 @@ def odd_headings(log: SensorLog, *, met: bool) -> list[ResultWarning]:
     found = []
     if low < -360.0 or high > 360.0:
         text = said(
-            "heading_deg runs from {low:g} to {high:g} degrees: whole turns are taken off; gon, "
-            "counts or mils would need `scale` heading_deg=VALUE",
+            "heading_deg runs from {low:g} to {high:g} degrees: whole turns are taken off; gon "
+            "take `units` heading_deg=gon, counts `scale`",
             low=low,
             high=high,
         )

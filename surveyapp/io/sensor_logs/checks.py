@@ -32,6 +32,9 @@ LARGEST: Final = 1e20
 MOST_FIELD_UT: Final = 150.0
 """Twice the strongest field of the earth at the ground (67 uT), rounded up."""
 
+LEAST_READING_DEG: Final = -180.0
+"""Some instruments count a circle from -180 to 180 degrees."""
+
 SWEPT_FIELD_UT: Final = 4.0 * MOST_FIELD_UT
 """No axis that is turned in the field of the earth, soft iron included, changes by so much."""
 
@@ -259,6 +262,23 @@ def unstated_counts(
                     said("{name} is counts without a unit", name=name), where, found, "a unit", hint
                 )
             )
+    return problems
+
+
+def off_circle(columns: Mapping[str, Array], *, where: str) -> list[Problem]:
+    """Readings of a circle that no circle of degrees has; -180 to 360 is one."""
+    problems = []
+    for name in ("vertical_circle_deg", "horizontal_circle_deg"):
+        values = columns.get(name)
+        if values is None:
+            continue
+        finite = values[np.isfinite(values)]
+        bad = finite[(finite < LEAST_READING_DEG) | (finite > 360.0)]
+        if bad.size:
+            what = said("{name} is no reading of a circle", name=name)
+            hint = "was it typed in gon? `units` COLUMN=gon"
+            found, expected = said("{value:g} deg", value=bad[0]), said("0 to 360 deg")
+            problems.append(Problem(what, where, found, expected, hint))
     return problems
 
 

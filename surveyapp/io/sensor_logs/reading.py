@@ -209,10 +209,8 @@ class LogFile:
         problems: list[Problem] = []
         for name, values in columns.items():
             timed = name == "time_s" and need.timed != "no"
-            needed = name in need.columns or name in need.others or timed
-            problems += checks.not_finite(
-                name, values, where=where, first_row=first, blanks=not needed
-            )
+            free = not (name in need.columns or name in need.others or timed)
+            problems += checks.not_finite(name, values, where=where, first_row=first, blanks=free)
             if name in need.varying:
                 problems += checks.constant(name, values, where=where)
         if "time_s" in columns and need.timed != "no":
@@ -220,6 +218,7 @@ class LogFile:
         stated = [name for name in columns if self.places[name].stated]
         problems += checks.mixed_units(columns, where=where)
         problems += checks.strange_temperatures(columns, where=where)
+        problems += checks.off_circle(columns, where=where)
         if not need.biased or not stated:
             problems += checks.implausible(columns, stated=stated, where=where)
         named = [name for name in columns if self.places[name].name.endswith(_suffix(name))]
