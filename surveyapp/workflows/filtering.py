@@ -10,6 +10,7 @@ import numpy as np
 
 from surveyapp.core.sensors.allan import octaves
 from surveyapp.core.sensors.filters import (
+    BLOCK,
     FILTERS,
     LOST,
     Filtered,
@@ -18,7 +19,7 @@ from surveyapp.core.sensors.filters import (
     run_filter,
     step_lag,
 )
-from surveyapp.domain.advance import PartDone
+from surveyapp.domain.advance import PartDone, stage
 from surveyapp.domain.noise import AllanChannel, FilterResult
 from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
@@ -75,13 +76,13 @@ def filter_log(
     if len(names) > 1:
         hint = said("`column` C, one of: {names}", names=", ".join(names))
         raise SurveyError(Problem("which column?", file.request.where, "", "one column", hint))
-    log = read_columns(file, names, progress)
+    log = read_columns(file, names, stage(progress, 0.0, 0.5))
     series, unit = log.columns[names[0]], log.units[names[0]]
-    stated = r if r is not None else 0.5 * float(np.mean(np.diff(series) ** 2))
+    stated = r if r is not None else 0.5 * _mean_square_step(series)
     model = LocalLevel(q if q is not None else 1e-3 * stated, stated)
     _check_model(model)
     rng = np.random.default_rng(seed)
-    filtered = run_filter(model_name, series, model, rng)
+    filtered = run_filter(model_name, series, model, rng, progress=stage(progress, 0.5, 0.9))
     rate = log.rate_hz or 1.0
     factors = octaves(series.size)
     before = channel_of(names[0], unit, series, rate_hz=rate, factors=factors)
@@ -99,6 +100,8 @@ def filter_log(
         )
         for sigmas in STEP_SIGMAS
     }
+    if progress is not None:
+        progress(1.0)
     warnings = [*log.warnings, *uneven(log), *_warnings(filtered, lags)]
     result = FilterResult(
         filter=model_name,
@@ -120,6 +123,15 @@ def filter_log(
         warnings=tuple(warnings),
     )
     return result, series, filtered.estimate
+
+
+def _mean_square_step(series: Floats) -> float:
+    """Mean square of the differences of neighbouring readings."""
+    total = 0.0
+    for start in range(0, series.size - 1, BLOCK):
+        step = np.diff(series[start : start + BLOCK + 1])
+        total += float(step @ step)
+    return total / (series.size - 1)
 
 
 def _known(name: str) -> FilterName:

@@ -11,7 +11,7 @@ import numpy as np
 from surveyapp.core.sensors.allan import AllanCurve, Estimator, allan_curve, octaves
 from surveyapp.core.sensors.noise_coefficients import coefficients_of
 from surveyapp.core.sensors.noise_units import named_coefficients
-from surveyapp.domain.advance import PartDone
+from surveyapp.domain.advance import PartDone, stage
 from surveyapp.domain.noise import AllanChannel, AllanResult
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SENSOR_COLUMNS, TEXT_COLUMNS, SensorLog
@@ -102,9 +102,12 @@ def channel_of(
     factors: tuple[int, ...],
     estimator: Estimator = "oadev",
     highest_hz: float | None = None,
+    progress: PartDone | None = None,
 ) -> AllanChannel:
     """Curve and coefficients of one series; ``highest_hz`` as in ``coefficients_of``."""
-    curve: AllanCurve = allan_curve(series, rate_hz=rate_hz, factors=factors, estimator=estimator)
+    curve: AllanCurve = allan_curve(
+        series, rate_hz=rate_hz, factors=factors, estimator=estimator, progress=progress
+    )
     known = unit not in ("1", "LSB")
     found = None
     if known:
@@ -151,7 +154,7 @@ def allan_of_log(
         For columns or times that are not there, and for what is wrong with the log.
     """
     names = noise_columns(file, column)
-    log = read_columns(file, names, progress)
+    log = read_columns(file, names, stage(progress, 0.0, 0.5))
     factors = factors_of(log, taus)
     rate = log.rate_hz or 1.0
     warnings = [*log.warnings, *uneven(log)]
@@ -163,7 +166,8 @@ def allan_of_log(
             rate_hz=rate,
             factors=factors,
             estimator=estimator,
+            progress=stage(progress, 0.5 + 0.5 * k / len(names), 0.5 + 0.5 * (k + 1) / len(names)),
         )
-        for name in names
+        for k, name in enumerate(names)
     )
     return AllanResult(log.id, estimator, channels, log.sha256, tuple(warnings))
