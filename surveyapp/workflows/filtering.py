@@ -94,12 +94,7 @@ def filter_log(
         factors=factors,
         highest_hz=PASS_BAND * model.steady_gain * rate / (2.0 * math.pi),
     )
-    lags = {
-        f"{sigmas:g}_sigma": step_lag(
-            model_name, model, sigmas=sigmas, rng=np.random.default_rng(seed), longest=LONGEST_LAG
-        )
-        for sigmas in STEP_SIGMAS
-    }
+    lags = _lags(model_name, model, seed)
     if progress is not None:
         progress(1.0)
     warnings = [*log.warnings, *uneven(log), *_warnings(filtered, lags)]
@@ -123,6 +118,16 @@ def filter_log(
         warnings=tuple(warnings),
     )
     return result, series, filtered.estimate
+
+
+def _lags(name: FilterName, model: LocalLevel, seed: int) -> dict[str, float | None]:
+    """Samples until 90 % of a step is followed, by the size of the step."""
+    return {
+        f"{sigmas:g}_sigma": step_lag(
+            name, model, sigmas=sigmas, rng=np.random.default_rng(seed), longest=LONGEST_LAG
+        )
+        for sigmas in STEP_SIGMAS
+    }
 
 
 def _mean_square_step(series: Floats) -> float:
