@@ -147,6 +147,12 @@ def compensate_log(
     elif kind == "tilt":
         doubts = tilt_doubts(log, card)
     log = replace(log, warnings=(*log.warnings, *doubts))
+    if declination is not None and declination.sigma is None:
+        text = said(
+            "the declination has no sigma and counts as exact; that of a model has .31 to .50 "
+            "degrees: --declination D,SIGMA"
+        )
+        log = replace(log, warnings=(*log.warnings, ResultWarning("no_declination_sigma", text)))
     part = log.rows(slice(None, None, max(log.size // FORCE_ROWS, 1)))
     noise = force_sigma(part.vector("acc")) if kind == "compass" else 0.0
     starts = range(0, log.size, BLOCK_ROWS)
@@ -234,6 +240,9 @@ def write_compensated(
     if card.temperature_c is not None and span is None:
         text = "the log holds no temperature: whether the card holds was not judged by it"
         warnings.append(ResultWarning("temperature_unknown", text))
+    if kind == "compass" and log.vector("acc") is None:
+        text = "no specific force: the headings are taken as level, not tilt-compensated"
+        warnings.append(ResultWarning("not_tilt_compensated", text))
     if "restricted" in card.notes:
         warnings.append(
             ResultWarning("restricted", said("the card {value}", value=card.notes["restricted"]))
