@@ -27,7 +27,8 @@ class Truth:
     """What nature does in one line of the table; sizes in arc-seconds and half swings.
 
     ``amplitude`` is the first one [deg], within a tenth; ``damping_growth`` per half swing; a pulse
-    lasts three to five half swings. Two effects at once are written ``one+other``.
+    lasts three to five half swings. ``one_sign``: an effect of one instrument, whose sign and time
+    of warming up are those of all runs. Two effects at once are written ``one+other``.
     """
 
     name: str
@@ -141,7 +142,7 @@ def midpoint(truth: Truth, runs: int, g: np.random.Generator) -> Callable[[float
     when = g.uniform(0.25, 0.75, runs) * n
     period = g.uniform(0.3, 0.55, runs) * n
     phase = g.uniform(0.0, 2.0 * np.pi, runs)
-    tau = g.uniform(2.0, 6.0, runs)
+    tau = g.uniform(2.0, 6.0, 1 if truth.one_sign else runs)
     latest = n - 7.0
     begin = g.uniform(min(2.0, latest), max(2.0, latest), runs) if truth.pulse else np.zeros(runs)
     end = begin + g.uniform(3.0, 5.0, runs) if truth.pulse else begin

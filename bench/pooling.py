@@ -46,7 +46,7 @@ def kept(name: str, effect: str, sizes: dict[str, float], count: int) -> list[fl
 
 def cell(name: str, effect: str, sizes: dict[str, float], count: int) -> tuple[float, float, float]:
     """Shares of sets that alarm, that are rightly and that are wrongly named."""
-    truth = Truth(name, POINTS, effect, **sizes)  # type: ignore[arg-type]
+    truth = Truth(name, POINTS, effect, one_sign=True, **sizes)  # type: ignore[arg-type]
     cases, _ = problems(truth, RUNS * count, 7000 + count)
     found = [
         pool(cases[i * count : (i + 1) * count], np.random.default_rng(i)) for i in range(RUNS)

@@ -3,7 +3,8 @@
 An effect of the instrument has about the same coefficient in every run; what happens once (a step,
 a slip) is no matter for pooling. The runs are not merged: each gives the likelihood of a
 coefficient, and the evidence that they share one is weighed against that of every other effect, of
-a north that wanders and of correlated noise, pooled in the same way.
+a north that wanders, of correlated noise and of events (a step, a change of the damping) that have
+a place of their own in each run: eight runs whose damping changes would else name the friction.
 
 Source: prediction.md C. The likelihood of a coefficient is taken for normal about its estimate with
 the height of the Student one, so that the integrals over sessions and the common coefficient are
@@ -19,16 +20,11 @@ import numpy as np
 
 from surveyapp.diagnosis.candidates import Candidate, single_effects
 from surveyapp.diagnosis.case import Case
-from surveyapp.diagnosis.compare import orthonormal_design
 from surveyapp.diagnosis.fits import fit_members
-from surveyapp.domain.priors import NU0
+from surveyapp.diagnosis.pooled_runs import SIZES, SPREADS, event_evidence, run_of
 from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
-SPREADS = (0.05, 0.3, 1.0)
-"""How much sessions differ in a coefficient, in its own prior standard deviation."""
-SIZES = (0.7, 1.5, 4.0)
-"""Prior standard deviation of a common coefficient: what it does to one reading, in sigmas."""
 LEVEL = 0.05
 MARGIN = 2.0
 """Natural logarithm of evidence by which every rival must be worse."""
@@ -37,7 +33,6 @@ WALKS = (0.5, 1.0, 2.0, 4.0, 8.0)
 """Standard deviation of a walk at the end of a run, in sigmas."""
 CORRELATIONS = (0.3, 0.6, 0.85)
 CORRELATED = (0.7, 1.5, 3.0)
-LEAST_LEFT = 0.004
 NOISES = ("random_walk", "ar1")
 
 
@@ -150,6 +145,10 @@ def pool(cases: Sequence[Case], rng: np.random.Generator) -> Pooled:
     for name, values in zip(NOISES, (noises[:split], noises[split:]), strict=True):
         title = {"random_walk": said("a north that wanders"), "ar1": said("correlated noise")}[name]
         found.append(PooledEffect(name, title, _log_mean(values), None, None, None, "", len(cases)))
+    found += [
+        PooledEffect(event, title, value, None, None, None, "", len(cases))
+        for event, title, value in event_evidence(cases)
+    ]
     found = [item for item in found if _plausible(cases, item)]
     found.sort(key=lambda item: -item.evidence)
     fired = any(item.p is not None and item.p <= LEVEL for item in found)
@@ -193,14 +192,12 @@ def _session(
     rng: np.random.Generator,
 ) -> _Told:
     base = fit_members(case, ())
-    q = orthonormal_design(base)
-    n, free = case.size, case.size - q.shape[1]
-    sigma, nu0 = _noise(case, base.sum_of_squares, free)
+    run = run_of(case, base)
+    q, n, sigma = run.q, case.size, run.sigma
     noise = sigma * rng.standard_normal((NULL_DRAWS, n))
     readings = np.vstack([base.residual, noise])
     readings -= (readings @ q) @ q.T
-    nu = nu0 + free
-    total = nu0 * sigma**2 + np.sum(readings**2, axis=1)
+    total = run.nu0 * sigma**2 + np.sum(readings**2, axis=1)
     size = len(columns)
     estimates = np.full((NULL_DRAWS + 1, size), np.nan)
     variances, heights = estimates.copy(), estimates.copy()
@@ -211,26 +208,12 @@ def _session(
             continue
         for g, point in enumerate(candidate.points):
             i = place[candidate.id, tuple(sorted(point.items()))]
-            raw = candidate.columns[g, :, 0]
-            left = raw - q @ (q.T @ raw)
-            square = float(left @ left)
-            if square <= LEAST_LEFT**2 * float(raw @ raw):
+            found = run.likelihood(candidate.columns[g, :, 0], readings, total)
+            if found is None:
                 continue
-            b = readings @ left / square
-            rest = np.maximum(total - b * b * square, 1e-300)
-            estimates[:, i] = b
-            variances[:, i] = rest / nu / square
-            heights[:, i] = -0.5 * nu * np.log(rest / total)
-            sensitivity[i] = np.sqrt(square / n) / sigma
-    noises = _noises(case, q, base.residual, (sigma, nu0))
+            estimates[:, i], variances[:, i], heights[:, i], sensitivity[i] = found
+    noises = _noises(case, q, base.residual, (sigma, run.nu0))
     return _Told(estimates, variances, heights, sensitivity, noises)
-
-
-def _noise(case: Case, squares: float, free: int) -> tuple[float, float]:
-    """Stated sigma and its degrees of freedom; the scatter itself where none is stated."""
-    if case.sigma is not None:
-        return float(np.median(case.sigma)), NU0
-    return max(float(np.sqrt(squares / max(free, 1))), case.noise_floor, 1e-12), 0.0
 
 
 def _evidence(told: Sequence[_Told]) -> Floats:

@@ -47,6 +47,30 @@ def test_a_walk_is_not_named_however_many_runs_there_are() -> None:
         assert sum(item is not None for item in found) <= stats.binom.ppf(0.999, 6, 0.05)
 
 
+def test_what_changes_once_in_each_run_is_no_effect_of_the_instrument() -> None:
+    """Damping that changes somewhere in eight runs looks like dry friction: nothing is named."""
+    truth = Truth("damping", 8, "damping_break", damping_change=0.002, one_sign=True)
+    for seed in range(3):
+        found = pool(runs(truth, 8, seed), np.random.default_rng(seed))
+        assert found.named is None
+        best = max(found.effects, key=lambda item: item.evidence)
+        assert best.effect == "damping_break"
+        assert best.p is None  # its place is that of each run: pooling names it not
+
+
+def test_a_drift_that_all_runs_share_is_named() -> None:
+    truth = Truth("drift", 8, "midpoint_drift", drift=3.0, one_sign=True)
+    found = [pool(runs(truth, 8, s), np.random.default_rng(s)).named for s in range(8)]
+    named = [item for item in found if item is not None]
+    # .53 of such sets are named in the reference
+    assert len(named) >= stats.binom.ppf(0.01, 8, 0.53) > 0
+    for item in named:
+        assert item.effect == "midpoint_drift"
+        assert item.coefficient is not None
+        assert item.sigma is not None
+        assert abs(item.coefficient - 3.0) < 4.0 * item.sigma
+
+
 @pytest.fixture(scope="module")
 def archive(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("archive")
