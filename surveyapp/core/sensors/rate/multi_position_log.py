@@ -28,7 +28,6 @@ from surveyapp.core.sensors.rate.hand_parameters import (
     why_none,
     widened,
 )
-from surveyapp.core.sensors.rate.held_axes import axes_problem
 from surveyapp.core.sensors.rate.held_turns import (
     ACCELEROMETERS,
     GYROS,
@@ -133,7 +132,7 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
     Raises
     ------
     SurveyError
-        If there are too few stops for any model, or axes or units do not belong together.
+        If there are too few stops for any model, or a gyro is saturated.
     """
     stops = held_stops(log)
     if len(stops) < LEAST_STOPS:
@@ -144,9 +143,6 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
     chosen = _chosen(models, held)
     covariance = covariance_with_omitted(forces, chosen, gravity=options.gravity)
     turns = turns_between(log, stops, chosen, options.latitude)
-    wrong = axes_problem(turns, log.path) if len(turns) >= LEAST_TURNS else None
-    if wrong is not None:
-        raise SurveyError(wrong)
     bias, sigma_bias = _bias(stops, chosen, options)
     gyro = _fitted(stops, chosen, turns) if len(turns) >= LEAST_TURNS else None
     parameters = (
