@@ -21,6 +21,7 @@ from surveyapp.diagnosis.sensors.document import (
     candidates_of,
     gross_of,
     remedies_of,
+    rms_with_gross,
     words_of,
 )
 from surveyapp.diagnosis.sensors.loop import (
@@ -138,6 +139,7 @@ def diagnose_sensor(
     if record.gross:
         adopted.append(gross_of(record, n_log))
     models = {name: _model(record, fit) for name, fit in fits.items()}
+    models["before"]["rms"] = rms_with_gross(record, models["before"]["rms"])
     if proof is not None:
         models["before"]["confirm_rms"] = proof.before
         models["after"]["confirm_rms"] = proof.after

@@ -80,6 +80,14 @@ def adopted_of(
     }
 
 
+def rms_with_gross(record: SensorRecord, rms: float) -> float:
+    """Misfit of the base model with the gross errors still in it, from that without them."""
+    per_row = 1 if record.subject == "compass" else 2
+    kept = record.time.size * per_row
+    squares = rms**2 * kept + sum(size**2 for _, size in record.gross)
+    return math.sqrt(squares / (kept + per_row * len(record.gross)))
+
+
 def gross_of(record: SensorRecord, n_log: int) -> dict[str, Any]:
     """The gross errors as one effect."""
     effect = effect_of(record, "gross_error")
