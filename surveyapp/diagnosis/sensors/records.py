@@ -125,6 +125,8 @@ def gross_rows(residual: Floats) -> list[tuple[int, float]]:
     limit = GROSS * math.sqrt(residual.shape[1])
     places = np.flatnonzero((size > limit) & (across < 0.5 * size))
     found = {int(i) + 1: float(np.linalg.norm(second[i])) for i in places}
+    # a good reading between two wrong ones that are alike leaves both of them as well
+    found = {row: s for row, s in found.items() if not {row - 1, row + 1} <= found.keys()}
     found |= _gross_pairs(residual, spread, limit, taken=found)
     if len(found) > max(MOST_GROSS * len(residual), 3.0):
         return []
@@ -134,11 +136,7 @@ def gross_rows(residual: Floats) -> list[tuple[int, float]]:
 def _gross_pairs(
     residual: Floats, spread: Floats, limit: float, *, taken: Mapping[int, float]
 ) -> dict[int, float]:
-    """Two wrong readings in a row, of which neither leaves both its neighbours.
-
-    Each leaves the line between the readings about the pair, and those two agree: across a switch
-    they do not.
-    """
+    """Two wrong readings in a row: both leave the line between their neighbours, which agree."""
     before, after = residual[:-3], residual[3:]
     first = residual[1:-2] - (2.0 * before + after) / 3.0
     second = residual[2:-1] - (before + 2.0 * after) / 3.0
