@@ -13,6 +13,7 @@ from surveyapp import api
 from surveyapp.api.sensors import LogOptions
 from surveyapp.cli.main import main
 from surveyapp.diagnosis.sensors.records import gross_rows
+from surveyapp.errors import SurveyError
 
 SHARED = Path(os.environ.get("SURVEYAPP_DATA", Path(__file__).parents[2] / "../shared/data"))
 BROAD = SHARED / "broad_magnetometer"
@@ -217,3 +218,12 @@ def test_wrong_readings_beside_each_other_are_gross_and_a_switch_is_none() -> No
     assert [row for row, _ in gross_rows(residual)] == [100, 300, 301, 500, 502]
 
     assert gross_rows(residual[550:]) == []
+
+
+def test_a_log_of_another_kind_confirms_nothing(tmp_path: Path) -> None:
+    made = api.simulate("compass", tmp_path / "p", effects=("hard_iron=12",), seed=1)
+    toml = Path(made.folder) / "project.toml"
+    kind = '\n[[sensor_log]]\nid = "other"\nkind = "tilt"\nfile = "sensors/compass.csv"\n'
+    toml.write_text(toml.read_text() + kind)
+    with pytest.raises(SurveyError, match="another kind"):
+        api.diagnose_log(made.folder, sensor="compass", confirm="other")
