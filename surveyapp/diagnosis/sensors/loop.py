@@ -11,20 +11,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Final
 
 import numpy as np
 
 from surveyapp.diagnosis.sensors.noise import Whitener, bic
+from surveyapp.diagnosis.sensors.rule import MARGIN, MOST_EFFECTS, NEAR
 from surveyapp_models.arrays import Floats
-
-MARGIN: Final = 12.0
-"""BIC that an effect must gain over the best model without it: odds of e^6."""
-
-NEAR: Final = 6.0
-"""Effects whose BIC differs by less cannot be told apart."""
-
-MOST_EFFECTS: Final = 5
 
 
 @dataclass(frozen=True, slots=True)
