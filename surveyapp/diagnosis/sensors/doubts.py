@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 
 from surveyapp.diagnosis.sensors.loop import Chosen, LoopFit, LoopResult, Trial, fit_model
@@ -18,6 +20,9 @@ def doubted(record: SensorRecord, found: LoopResult) -> LoopResult:
     with the carrier are told from a room. What only white noise would name is not told from
     correlated noise.
     """
+    alike = _alike_iron(record, found) if record.mode == "size" else None
+    if alike is not None:
+        return alike
     if record.mode == "size" and found.after.chosen and found.after.noise != "white":
         weak = (found.steps[0].gain or 0.0) < SIZE_MARGIN
         if weak or _contribution(record, found.after) < ROOM_GRADIENT_UT:
@@ -49,6 +54,29 @@ def doubted(record: SensorRecord, found: LoopResult) -> LoopResult:
         return found
     rivals = (Trial(found.after.noise, plain.bic - found.after.bic), best)
     return LoopResult(found.before, found.after, found.after, found.trials, rivals, found.steps)
+
+
+ALIKE: Final = 0.05
+"""Share of a hard iron that a soft one leaves, below which both look alike: near level the field
+along z is constant, and what soft iron turns of it into x is a hard iron along x."""
+
+
+def _alike_iron(record: SensorRecord, found: LoopResult) -> LoopResult | None:
+    """Nothing named where a soft iron is named that is a hard iron as well; None where not."""
+    soft = next((c for c in found.after.chosen if c.candidate.id == "soft_iron"), None)
+    hard = next((c for c in record.candidates if c.id == "hard_iron"), None)
+    if soft is None or hard is None or "hard_iron" in found.after.ids:
+        return None
+    size = record.observed.size
+    known = np.concatenate([record.base, soft.design], axis=2).reshape(size, -1)
+    design = hard.designs(found.before.residual)[0][1].reshape(size, -1)
+    wanted = design - design.mean(axis=0)
+    left = design - known @ np.linalg.lstsq(known, design, rcond=1e-10)[0]
+    if float(np.sum(left**2)) > ALIKE * float(np.sum(wanted**2)):
+        return None
+    first = next(t for t in found.steps if t.id == "soft_iron")
+    rivals = (first, Trial("hard_iron", first.gain, first.likelihood_ratio, 3, first.noise))
+    return LoopResult(found.before, found.before, found.after, found.trials, rivals, found.steps)
 
 
 def _placeless(record: SensorRecord) -> bool:
