@@ -53,7 +53,8 @@ RESTING_ROWS = (50, 50, 50, 50, 2000)
 """Samples of rest in which corrections add up before they are taken out: few at first, when they
 are largest; then as the last number says."""
 POINT_M = 0.05
-"""Distance of the points of the path that are kept."""
+"""Distance of the points of the path that are kept; doubled whenever there are too many."""
+MOST_POINTS = 20_000
 PLACE_ROWS = 20_000
 """Samples of a stop from which its place is taken."""
 
@@ -271,18 +272,25 @@ class _Way:
         self.places: list[Floats] = []
         self.stops: list[Floats] = []
         self._here: list[Floats] = []
-        self._gone, self._last, self._next = 0.0, np.zeros(3), 0
+        self._gone, self._last = 0.0, np.zeros(3)
+        self._next, self._spacing = 0, POINT_M
 
     def add(self, place: Floats, first: int, still: Mask) -> None:
         """Places of the rows from ``first`` on; a rest and a motion never share a piece."""
         before = np.vstack([self._last if first else place[0], place])
         along = self._gone + np.cumsum(np.linalg.norm(np.diff(before[:, :2], axis=0), axis=1))
-        grid = np.arange(self._next, math.floor(along[-1] / POINT_M) + 1)
-        self._next = max(self._next, math.floor(along[-1] / POINT_M) + 1)
-        rows = np.unique(np.searchsorted(along, grid * POINT_M))
+        count = math.floor(along[-1] / self._spacing) + 1
+        grid = np.arange(self._next, count)
+        self._next = max(self._next, count)
+        rows = np.unique(np.searchsorted(along, grid * self._spacing))
         self.rows += (first + rows).tolist()
         self.along += along[rows].tolist()
         self.places += list(place[rows])
+        if len(self.rows) > MOST_POINTS:
+            for kept in (self.rows, self.along, self.places):
+                del kept[1::2]
+            self._spacing *= 2.0
+            self._next = math.floor(along[-1] / self._spacing) + 1
         self._gone, self._last = float(along[-1]), place[-1]
         last = first + place.shape[0]
         if still[first]:
