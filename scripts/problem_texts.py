@@ -25,6 +25,8 @@ ERRORS: Final = ("CellError", "FormulaError", "RecordError", "WordError")
 Sinks = dict[str, dict[str, int]]
 """By the name of a function: its arguments that become texts, with their places."""
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
+_Call = tuple[_Function | None, ast.Call]
+"""A call and the function in which it stands."""
 
 
 @dataclass(slots=True)
@@ -43,8 +45,9 @@ def texts_of(trees: dict[Path, ast.Module]) -> dict[Path, Found]:
         "ResultWarning": {"text": 1},
         **{name: {"message": 0} for name in ERRORS},
     }
+    calls = {path: list(_calls(tree, None)) for path, tree in trees.items()}
     while True:
-        found = {path: _of_module(tree, sinks) for path, tree in trees.items()}
+        found = {path: _of_module(tree, calls[path], sinks) for path, tree in trees.items()}
         grown = _grown(sinks, (pair for one in found.values() for pair in one.handed))
         if grown == sinks:
             return found
@@ -68,9 +71,9 @@ def _grown(sinks: Sinks, handed: Iterator[tuple[_Function, str]]) -> Sinks:
     return result
 
 
-def _of_module(tree: ast.Module, sinks: Sinks) -> Found:
+def _of_module(tree: ast.Module, calls: list[_Call], sinks: Sinks) -> Found:
     found = Found()
-    for function, call in _calls(tree, None):
+    for function, call in calls:
         name = getattr(call.func, "id", getattr(call.func, "attr", ""))
         if name == "add" and len(call.args) + len(call.keywords) == 1:
             continue  # that of a set
@@ -80,7 +83,7 @@ def _of_module(tree: ast.Module, sinks: Sinks) -> Found:
     return found
 
 
-def _calls(node: ast.AST, inside: _Function | None) -> Iterator[tuple[_Function | None, ast.Call]]:
+def _calls(node: ast.AST, inside: _Function | None) -> Iterator[_Call]:
     for child in ast.iter_child_nodes(node):
         if isinstance(child, ast.Call):
             yield inside, child

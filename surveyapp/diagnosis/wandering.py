@@ -9,6 +9,8 @@ instead, the less white the rest need be.
 
 from __future__ import annotations
 
+import numpy as np
+
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.fits import Fit, with_noise
 from surveyapp.diagnosis.stochastic import white_gains
@@ -20,6 +22,9 @@ STANDS = ((0.0, 0.45), (12.0, 0.15), (20.0, 0.02), (40.0, 0.0))
 white as this share of white records: what the share keeps of the right names. By simulation of
 ramps and walks of three gyros at 12, 18 and 30 stops (docs/explanation/sensors.md): the most right
 names of slow ramps with at most .10 of the walks named at 18 and 30 stops and .15 at 12."""
+MANY = ((18.0, 1.0), (30.0, 0.33))
+"""Stops, and the part of these shares that is asked for: the longer a walk walks, the less white is
+what a wrong effect leaves, and the less need the right one lose."""
 STATIONARY = ((0.0, 0.05), (20.0, 0.02), (40.0, 0.0))
 """The same of noise that comes back (AR(1)): it follows a drift badly, and where it does it is a
 walk; a level of its own costs right names and keeps off no wrong ones."""
@@ -42,7 +47,17 @@ def stands(problem: Case, fit: Fit, rival: Fit) -> bool:
     needed = [share for least, share in table if rival.bic >= fit.bic + least]
     if not needed:
         return False
-    return needed[-1] == 0.0 or whiteness(problem, fit, rival.noise.kind) >= needed[-1]
+    share = needed[-1] * asked_of(problem)
+    return share == 0.0 or whiteness(problem, fit, rival.noise.kind) >= share
+
+
+def asked_of(problem: Case) -> float:
+    """Part of the shares that is asked for with the stops of a record."""
+    if problem.series is None:
+        return 1.0
+    stops = np.unique(problem.position[np.isfinite(problem.series)]).size
+    sizes, parts = np.log(np.array(MANY)).T
+    return float(np.exp(np.interp(np.log(max(stops, 1)), sizes, parts)))
 
 
 def whiteness(problem: Case, fit: Fit, kind: str) -> float:

@@ -9,7 +9,7 @@ from surveyapp.diagnosis.candidates import SHAPE_ODDS, all_candidates
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.fits import Fit, Member, fit_members
 from surveyapp.diagnosis.subjects.rate import RateStop, rate_case
-from surveyapp.diagnosis.wandering import whiteness
+from surveyapp.diagnosis.wandering import asked_of, whiteness
 from surveyapp_models.arrays import Floats
 
 STOPS = 16
@@ -53,3 +53,19 @@ def test_a_shape_is_charged_beforehand_and_a_named_effect_is_not() -> None:
     n, p = case.size, fit.parameters
     plain = n * np.log(fit.sum_of_squares / n / case.scale**2) + p * np.log(n)
     assert fit.bic == pytest.approx(plain + SHAPE_ODDS)
+
+
+def test_fewer_white_records_are_given_away_where_there_are_many_stops() -> None:
+    """Eighteen stops and fewer: the whole share; from thirty on a third; between, in between."""
+    found = [
+        asked_of(
+            rate_case(
+                [RateStop(output=np.zeros(3), elapsed_s=6.0 * k) for k in range(count)],
+                identity="unit",
+            )
+        )
+        for count in (12, 18, 24, 30, 50)
+    ]
+    assert found[0] == found[1] == pytest.approx(1.0)
+    assert found[3] == found[4] == pytest.approx(0.33)
+    assert 0.5 < found[2] < 0.65
