@@ -7,13 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from surveyapp.core.sensors.rate.indexing_log import (
-    GYROS,
-    NEEDED,
-    OPTIONAL,
-    IndexingOptions,
-    find_heading,
-)
+from surveyapp.core.sensors.rate.indexing_log import IndexingOptions, find_heading
+from surveyapp.core.sensors.rate.indexing_stops import GYROS, NEEDED, OPTIONAL
 from surveyapp.core.sensors.rate.indexing_values import Setting
 from surveyapp.core.sensors.rate.parameters import DEG_H
 from surveyapp.domain.north import NorthResult

@@ -254,6 +254,37 @@ def _result(
         SensorParameter(f"rest_rate_{a}", float(rest[i]) / DEG_H, None, "deg/h")
         for i, a in enumerate("xyz")
     )
+    return NorthResult(
+        method="rotation",
+        source=log.id,
+        key="heading",
+        direction=NorthDirection(
+            math.degrees(carried.heading), sigma / ARCSEC, NORMAL_95 * sigma / ARCSEC, reference
+        ),
+        parameters=parameters,
+        warnings=(*log.warnings, *_warnings(options, warm)),
+        n=log.size,
+        sha256=log.sha256,
+        extra={
+            "attitude_quaternion": carried.quaternion.tolist(),
+            "levelling": {
+                "case": levelling.case,
+                "pitch_deg": math.degrees(levelling.pitch),
+                "roll_deg": math.degrees(levelling.roll),
+                "sigma_deg": math.degrees(levelling.sigma),
+                "rotations": [
+                    {"axis": axis, "deg": math.degrees(angle)}
+                    for axis, angle in levelling.rotations
+                ],
+            },
+            "steps": _steps(log, options, warm, gained, levelling=levelling),
+            "turned_deg": math.degrees(carried.turned) % 360.0,
+        },
+        direction_extra={"axis": "z" if carried.vertical else "y"},
+    )
+
+
+def _warnings(options: RotationOptions, warm: WarmUp) -> list[ResultWarning]:
     warnings = []
     if not warm.ended:
         text = said(
@@ -277,34 +308,7 @@ def _result(
             "the angle turned is in no sigma"
         )
         warnings.append(ResultWarning("nominal_scale", text))
-    return NorthResult(
-        method="rotation",
-        source=log.id,
-        key="heading",
-        direction=NorthDirection(
-            math.degrees(carried.heading), sigma / ARCSEC, NORMAL_95 * sigma / ARCSEC, reference
-        ),
-        parameters=parameters,
-        warnings=(*log.warnings, *warnings),
-        n=log.size,
-        sha256=log.sha256,
-        extra={
-            "attitude_quaternion": carried.quaternion.tolist(),
-            "levelling": {
-                "case": levelling.case,
-                "pitch_deg": math.degrees(levelling.pitch),
-                "roll_deg": math.degrees(levelling.roll),
-                "sigma_deg": math.degrees(levelling.sigma),
-                "rotations": [
-                    {"axis": axis, "deg": math.degrees(angle)}
-                    for axis, angle in levelling.rotations
-                ],
-            },
-            "steps": _steps(log, options, warm, gained, levelling=levelling),
-            "turned_deg": math.degrees(carried.turned) % 360.0,
-        },
-        direction_extra={"axis": "z" if carried.vertical else "y"},
-    )
+    return warnings
 
 
 def _steps(
