@@ -123,3 +123,32 @@ def test_a_position_in_which_the_unit_shook_is_left_out(tmp_path: Path) -> None:
     assert (code, told["stops"]) == (0, 3)
     assert any(w["code"] == "motion_in_stop" for w in told["warnings"])
     assert told["heading"]["deg"] == pytest.approx(40.0, abs=0.3)
+
+
+def test_coarse_digits_and_a_constant_gyro_along_the_index_are_at_rest(tmp_path: Path) -> None:
+    """Digits of 4 deg/h over a noise of .5: in most rows of a position there is one value only."""
+    c = indexed()
+    for a in "xyz":
+        c[f"gyr_{a}_rad_s"] = np.round(c[f"gyr_{a}_rad_s"] / (4.0 * DEG_H)) * (4.0 * DEG_H)
+    c["gyr_z_rad_s"][:] = np.median(c["gyr_z_rad_s"])
+    code, told = found(tmp_path, c)
+    assert (code, told["stops"]) == (0, 4)
+    assert told["heading"]["deg"] == pytest.approx(40.0, abs=12.0)
+
+
+def test_the_biases_of_a_second_unit_hold_the_doubt_of_the_attitude(tmp_path: Path) -> None:
+    """Without noise of its own what is left is the earth's rate times the sigma of the attitude."""
+    columns = indexed()
+    h, p, r, lat = (math.radians(v) for v in (40.0, 5.0, 3.0, 35.0))
+    body = about(2, -h) @ about(0, p) @ about(1, r)
+    rate = body.T @ (POLE * np.array([0.0, math.cos(lat), math.sin(lat)]))
+    rest = np.column_stack([np.arange(50) / 10.0, *(np.outer(rate, np.ones(50)))])
+    rest[::2, 1:] += 1e-12
+    names = ",".join(["time_s", *(f"gyr_{a}_rad_s" for a in "xyz")])
+    np.savetxt(tmp_path / "second.csv", rest, delimiter=",", header=names, comments="", fmt="%.15g")
+    _, told = found(tmp_path, columns, "--second", str(tmp_path / "second.csv"))
+    sigma = math.hypot(*(q["sigma"] for q in told["fixed_gyro"]["parameters"][:2]))
+    heading = told["heading"]["sigma_arcsec"] / 3600.0
+    assert sigma == pytest.approx(15.041 * math.cos(lat) * math.radians(heading), rel=0.2)
+    for q in told["fixed_gyro"]["parameters"]:
+        assert abs(q["value"]) < 4.0 * q["sigma"]

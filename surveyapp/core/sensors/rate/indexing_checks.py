@@ -200,7 +200,7 @@ def rate_problems(rate: float, *, sigma: float, where: str) -> list[Problem]:
             where,
             said("{rate:.4g} deg/h across the index axis", rate=rate / DEG_H),
             said("{earth:.2f} deg/h at most", earth=EARTH_RATE / DEG_H),
-            said("is it deg/s or deg/h? --unit COLUMN=UNIT; counts take --scale COLUMN=VALUE"),
+            said("is it deg/s or deg/h? `unit` COLUMN=UNIT; counts take `scale` COLUMN=VALUE"),
         )
     ]
 

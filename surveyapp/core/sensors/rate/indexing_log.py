@@ -21,6 +21,7 @@ from surveyapp.core.sensors.rate.indexing_stops import (
 )
 from surveyapp.core.sensors.rate.indexing_values import Indexed, Root, Setting, Stop
 from surveyapp.core.sensors.rate.parameters import DEG_H
+from surveyapp.core.sensors.rate.strapdown import skew
 from surveyapp.core.statistics.distributions import NORMAL_95
 from surveyapp.domain.calibration import SensorParameter, with_reasons
 from surveyapp.domain.north import NorthDirection, NorthResult
@@ -237,7 +238,9 @@ def _fixed(log: SensorLog, root: Root, setting: Setting) -> dict[str, Any]:
     rates = rates[keep]
     earth = root.attitude.T @ earth_rate(setting.latitude)
     bias = rates.mean(axis=0) - earth
-    sigma = rates.std(axis=0, ddof=1) / math.sqrt(rates.shape[0])
+    turned = root.attitude.T @ skew(earth_rate(setting.latitude))
+    known = np.diag(turned @ root.covariance[:3, :3] @ turned.T)
+    sigma = np.sqrt(rates.var(axis=0, ddof=1) / rates.shape[0] + np.maximum(known, 0.0))
     return {
         "source": log.id,
         "parameters": [

@@ -122,6 +122,9 @@ def calm(values: Floats) -> np.ndarray:
         return np.ones(values.shape[0], dtype=bool)
     off = np.abs(values - np.median(values, axis=0))
     spread = 1.4826 * np.median(off, axis=0)
+    # of coarse digits the middle one may be most of them: then half a digit is the noise
+    digit = np.where(off > 0.0, off, np.inf).min(axis=0)
+    spread = np.where(spread > 0.0, spread, np.where(np.isfinite(digit), 0.5 * digit, 0.0))
     return np.asarray(np.all(off <= MOVING_SIGMAS * spread + 1e-12, axis=1))
 
 
