@@ -45,12 +45,13 @@ def kept(name: str, effect: str, sizes: dict[str, float], count: int) -> list[fl
 
 
 def cell(name: str, effect: str, sizes: dict[str, float], count: int) -> tuple[float, float, float]:
-    """Shares of sets that alarm, that are rightly and that are wrongly named."""
+    """Shares of sets that alarm, that are rightly and that are wrongly named.
+
+    A set is of one instrument: sign and time of warming up are those of its runs.
+    """
     truth = Truth(name, POINTS, effect, one_sign=True, **sizes)  # type: ignore[arg-type]
-    cases, _ = problems(truth, RUNS * count, 7000 + count)
-    found = [
-        pool(cases[i * count : (i + 1) * count], np.random.default_rng(i)) for i in range(RUNS)
-    ]
+    sets = [problems(truth, count, 1000 * count + i)[0] for i in range(RUNS)]
+    found = [pool(cases, np.random.default_rng(i)) for i, cases in enumerate(sets)]
     names = [item.named.effect if item.named is not None else "" for item in found]
     return (
         float(np.mean([item.fired for item in found])),
