@@ -13,6 +13,7 @@ from surveyapp.core.simulate.rate.effect_kinds import (
     FOG_EFFECTS,
     HAND_EFFECTS,
     INDEXING_EFFECTS,
+    STATIC_EFFECTS,
     TABLE_EFFECTS,
     VEHICLE_EFFECTS,
 )
@@ -99,15 +100,22 @@ def _six_positions(effects: Sequence[Effect], rng: np.random.Generator) -> Simul
 def _disturbed(
     log: SimulatedLog, effects: Sequence[Effect], rng: np.random.Generator
 ) -> SimulatedLog:
-    """Effects that are added to what the gyros put out."""
+    """The sensor warms by 5 K, and effects are added to what the gyros put out."""
+    columns = dict(log.columns)
+    time = columns["time_s"]
+    warmth = 5.0 * (1.0 - np.exp(-time / (0.4 * float(time[-1]))))
+    columns["temperature_c"] = 20.0 + warmth + rng.normal(0.0, 0.02, time.size)
+    for name in (c for c in log.columns if c.startswith("gyr_")):
+        columns[name] = columns[name] + _sizes(effects).get("temperature", 0.0) * warmth
+    return _struck(SimulatedLog(columns, log.texts, log.truth), effects, rng)
+
+
+def _struck(log: SimulatedLog, effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
+    """A line in gyro x, a field that is switched, one stop of gyro x that is off."""
     sizes = _sizes(effects)
     columns = dict(log.columns)
     time = columns["time_s"]
-    names = [f"gyr_{a}_rad_s" for a in "xyz"]
-    warmth = 5.0 * (1.0 - np.exp(-time / (0.4 * float(time[-1]))))
-    columns["temperature_c"] = 20.0 + warmth + rng.normal(0.0, 0.02, time.size)
-    for name in names:
-        columns[name] = columns[name] + sizes.get("temperature", 0.0) * warmth
+    names = [c for c in log.columns if c.startswith("gyr_")]
     if "interference_line" in sizes:
         hz = _option(effects, "interference_line", "hz", 2.48)
         wave = sizes["interference_line"] * np.sin(2.0 * np.pi * hz * time)
@@ -116,7 +124,11 @@ def _disturbed(
         columns |= _field(columns, sizes["magnetic_sensitivity"], names, rng)
     if "gross_error" in sizes:
         words = np.array(log.texts["position"])
-        struck = words == sorted(set(words.tolist()))[int(rng.integers(6))]
+        places = sorted(set(words.tolist()))
+        struck = words == places[int(rng.integers(len(places)))]
+        if "reference_temperature_c" in columns:
+            struck &= columns["reference_temperature_c"] == NODES_C[int(rng.integers(5))]
+        struck &= columns["table_rate_deg_s"] > 0.0
         columns[names[0]] = columns[names[0]] + sizes["gross_error"] * struck
     return SimulatedLog(columns, log.texts, dict(log.truth) | {"effects": sizes})
 
@@ -148,7 +160,33 @@ def _temperature(effects: Sequence[Effect], rng: np.random.Generator) -> Simulat
         force = unit.accelerometer.bias + np.array([0.01, 0.02, -0.01]) * t
         return replace(unit.gyro, bias=bias), replace(unit.accelerometer, bias=force)
 
-    return temperature_log(unit, rng, nodes_c=NODES_C, at=at)
+    return _struck(temperature_log(unit, rng, nodes_c=NODES_C, at=at), effects, rng)
+
+
+def _static(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
+    """Half an hour at rest at 10 Hz, a fluxgate beside the gyros in a field that is switched."""
+    sizes = _sizes(effects)
+    time: Floats = (np.arange(18_000.0) + 0.5) * 0.1
+    unit = example_unit({}, TableRun())
+    forces = np.tile([0.2, -0.1, 9.80], (time.size, 1))
+    rates = unit.gyro.output(np.zeros((time.size, 3)), forces=forces, rng=rng)
+    columns: dict[str, Floats] = {"time_s": time}
+    columns |= {
+        f"gyr_{a}_rad_s": rates[:, i] + sizes.get("bias_ramp", 0.0) * time
+        for i, a in enumerate("xyz")
+    }
+    shown = forces + rng.normal(0.0, 0.01, forces.shape)
+    columns |= {f"acc_{a}_m_s2": shown[:, i] for i, a in enumerate("xyz")}
+    if "gross_error" in sizes:
+        begin = rng.uniform(0.1, 0.9) * float(time[-1])
+        struck = (time >= begin) & (time < begin + 60.0)
+        columns["gyr_x_rad_s"] = columns["gyr_x_rad_s"] + sizes["gross_error"] * struck
+    kept = [e for e in effects if e.id != "gross_error"]
+    if "magnetic_sensitivity" not in sizes:
+        columns |= _field(columns, 0.0, [f"gyr_{a}_rad_s" for a in "xyz"], rng)
+    log = _disturbed(SimulatedLog(columns, {}, {}), kept, rng)
+    truth = {f"bias_{a}": float(unit.gyro.bias[i]) / DEG_H for i, a in enumerate("xyz")}
+    return SimulatedLog(log.columns, log.texts, truth | {"effects": sizes})
 
 
 def _fog_station(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
@@ -170,11 +208,13 @@ def _fog_station(effects: Sequence[Effect], rng: np.random.Generator) -> Simulat
     reading = fog.constant - 23761.0 * ARCSEC
     spec = FogStationRun(fog, Table(math.radians(34.0)), run, reading, sets=8, passes=2)
     log = fog_station_log(spec, rng)
-    if "gross_error" in sizes:
-        columns = dict(log.columns)
-        struck = (columns["set"] == 3.0) & (columns["table_rate_deg_s"] > 0.0)
-        columns["gyr_x_rad_s"] = columns["gyr_x_rad_s"] + sizes["gross_error"] * struck
-        log = SimulatedLog(columns, log.texts, log.truth)
+    columns = dict(log.columns)
+    drift = sizes.get("bias_ramp", 0.0) * columns["time_s"]
+    struck = (columns["set"] == 3.0) & (columns["table_rate_deg_s"] > 0.0)
+    off = sizes.get("gross_error", 0.0) * struck
+    columns["gyr_x_rad_s"] = columns["gyr_x_rad_s"] + drift + off
+    kept = [e for e in effects if e.id in ("temperature", "interference_line")]
+    log = _disturbed(SimulatedLog(columns, log.texts, log.truth), kept, rng)
     return SimulatedLog(log.columns, log.texts, dict(log.truth) | {"effects": sizes})
 
 
@@ -284,7 +324,11 @@ Recipe = Callable[[Sequence[Effect], np.random.Generator], SimulatedLog]
 PROGRAMMES: Final[Mapping[str, Mapping[str, tuple[Recipe, tuple[EffectKind, ...]]]]] = {
     "rate": {
         "six-position": (_six_positions, TABLE_EFFECTS),
-        "temperature": (_temperature, TABLE_EFFECTS[:2]),
+        "temperature": (
+            _temperature,
+            tuple(e for e in TABLE_EFFECTS if e.id not in ("temperature", "bias_ramp")),
+        ),
+        "static": (_static, STATIC_EFFECTS),
         "multi-position": (_hand_held, HAND_EFFECTS),
     },
     "fog-station": {"": (_fog_station, FOG_EFFECTS)},
@@ -354,7 +398,7 @@ def simulate_rate(
         f'kind = "{"rate" if kind != "fog-station" else kind}"',
         f'file = "sensors/{identity}.csv"',
     ]
-    if name and kind == "rate":
+    if name and kind == "rate" and name != "static":
         lines.append(f'programme = "{name}"')
     latitude = log.truth.get("latitude_deg", math.degrees(LATITUDE))
     if kind != "fog-station":
