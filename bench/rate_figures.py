@@ -3,7 +3,8 @@
 The published experiment and its scatter, scale errors and part turns of a gyro on a total station,
 north with its constant, flips in six positions, compensation over temperature, the grey model,
 families of interference lines. The table of docs/explanation/rate-sensors.md.
-``SURVEYAPP_BENCH_RUNS`` scales the numbers of records (1 = those of the reference), ``SURVEYAPP_BENCH_PARTS`` names some.
+``SURVEYAPP_BENCH_RUNS`` scales the numbers of records (1 = those of the reference),
+``SURVEYAPP_BENCH_PARTS`` names some of the parts.
 """
 
 from __future__ import annotations
