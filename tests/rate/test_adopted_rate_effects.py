@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -19,6 +18,7 @@ from surveyapp.core.sensors.rate.adopted import (
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp_models.angles import ARCSEC
+from surveyapp_models.arrays import Floats
 from tests.cli.command import run as surveyapp
 from tests.rate.test_table_columns import DEG_H, table_log
 
@@ -45,14 +45,14 @@ def recorded() -> SensorLog:
 DATUM = StopDatum(rows=((100, 200), (300, 380)), middle_s=150.0, temperature_c=22.0, table=True)
 
 
-def put_in(log: SensorLog, identity: str) -> dict[str, Any]:
+def put_in(log: SensorLog, identity: str) -> Floats:
     """What an effect of that kind adds to gyro x [rad/s], written out by hand."""
     time, c = log.columns["time_s"], log.columns
     inside = np.zeros(log.size)
     inside[300:380] = 1.0
     in_x = np.array([word[0] == "x" for word in log.texts["position"]])
     wave = np.cos(2.0 * np.pi * 1.7 * (time - 10.0)) * ((time >= 10.0) & (time <= 200.0))
-    return {
+    shifts: dict[str, Floats] = {
         "bias_ramp": 2e-3 * DEG_S * (time - 150.0) / 60.0,
         "temperature": 3e-4 * DEG_S * (c["temperature_c"] - 22.0),
         "g_sensitivity": 1e-4 * DEG_S * c["acc_y_m_s2"],
@@ -60,7 +60,8 @@ def put_in(log: SensorLog, identity: str) -> dict[str, Any]:
         "scale_asymmetry": 0.5 * 200e-6 * np.deg2rad(np.abs(c["table_rate_deg_s"])) * in_x,
         "gross_error": 1e-3 * DEG_S * inside,
         "interference_line": 2e-3 * DEG_S * wave,
-    }[identity]
+    }
+    return shifts[identity]
 
 
 EFFECTS = (
