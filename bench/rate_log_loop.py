@@ -135,8 +135,8 @@ def diagnosed(kind: str, effect: str, seed: int) -> Told:
     told = found.to_dict()
     pair = told["before"]["loo_rms"], told["after"]["loo_rms"]
     if effect == "interference_line" and keys["interference"]:
-        held = keys["interference"][0]["held_out"]
-        pair = held["before"], held["after"]
+        held = [item["held_out"] for item in keys["interference"]]
+        pair = min(((h["before"], h["after"]) for h in held), key=lambda h: h[1] / h[0])
     return Told(found.verdict != "adequate", names, (pair[1] or 0.0) / (pair[0] or 1.0))
 
 

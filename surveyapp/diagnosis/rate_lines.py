@@ -28,6 +28,8 @@ from surveyapp_models.effects.rate.interference_line import EFFECT
 
 LINE_ALARM = 0.01
 """Probability of a false line in a log: small beside the five per cent of the stops."""
+MOST_LINES = 12
+"""Of one gyro; more are an image of something that is no line."""
 BLOCK_S = 10.0
 """Length of the blocks that are left out in turn."""
 BROKEN = 0.2
@@ -105,19 +107,47 @@ def judge_lines(
         rows = np.flatnonzero(np.isfinite(every))
         searched += [(gyro, every[part], time_s[part]) for part in _even_parts(time_s, rows)]
     for gyro, left, here in searched:
-        seen = find_interference(here, left)
-        if seen.unsearched:
-            reason = seen.unsearched
-            continue
-        for line in seen.lines:
-            p = min(1.0, line.false_alarm_probability * len(searched))
-            smallest = min(smallest, p)
-            if p <= LINE_ALARM:
-                found.append(_proved(gyro, _told(line, p), here, left))
+        more, p, why = _one_by_one(gyro, here, left, parts=len(searched))
+        found, smallest, reason = found + more, min(smallest, p), why or reason
     if reason and not found:
         return LineJudgement((), None, reason)
     kept = [one for one in found if one.after < one.before]
     return LineJudgement(_once_each(kept), smallest)
+
+
+def _one_by_one(
+    gyro: str, time_s: Floats, left: Floats, *, parts: int
+) -> tuple[list[LineFound], float, str]:
+    """Lines of one part of a gyro's samples, the strongest first and out before the next.
+
+    A record with pauses shows every line many times over, as far from it as the pauses are
+    frequent; these images go with the line itself.
+
+    Returns
+    -------
+    lines : list of LineFound
+    p : float
+        Smallest probability of a false alarm, over all ``parts`` that are searched.
+    reason : str
+        Why nothing could be searched, else empty.
+    """
+    found: list[LineFound] = []
+    smallest = 1.0
+    for _ in range(MOST_LINES):
+        seen = find_interference(time_s, left)
+        if seen.unsearched:
+            return found, smallest, seen.unsearched
+        told = [_told(n, min(1.0, n.false_alarm_probability * parts)) for n in seen.lines]
+        if not found:
+            smallest = min((n.false_alarm for n in told), default=1.0)
+        clear = [n for n in told if n.false_alarm <= LINE_ALARM]
+        if not clear:
+            break
+        one = _proved(gyro, max(clear, key=lambda n: n.amplitude), time_s, left)
+        found.append(one)
+        phase = 2.0 * math.pi * one.line.frequency * (time_s - time_s[0])
+        left = left - one.cosine * np.cos(phase) - one.sine * np.sin(phase)
+    return found, smallest, ""
 
 
 def _told(line: InterferenceLine, p: float) -> SpectralLine:
