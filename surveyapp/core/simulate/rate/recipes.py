@@ -9,6 +9,13 @@ from typing import Any, Final
 
 import numpy as np
 
+from surveyapp.core.simulate.rate.disturbed import (
+    NODES_C,
+    disturbed,
+    sizes_of,
+    struck,
+    switched_field,
+)
 from surveyapp.core.simulate.rate.effect_kinds import (
     FOG_EFFECTS,
     HAND_EFFECTS,
@@ -45,19 +52,6 @@ from surveyapp_models.rate.turntable import Table
 
 LATITUDE: Final = math.radians(45.77)
 """Of source 003."""
-NODES_C: Final = (-10.0, 5.0, 20.0, 30.0, 40.0)
-"""Chamber temperatures of source 000-25."""
-
-
-def _sizes(effects: Sequence[Effect]) -> dict[str, float]:
-    return {e.id: e.size for e in effects}
-
-
-def _option(effects: Sequence[Effect], identity: str, name: str, default: float) -> float:
-    for effect in effects:
-        if effect.id == identity:
-            return float(dict(effect.options).get(name) or default)
-    return default
 
 
 def example_unit(sizes: Mapping[str, float], run: TableRun) -> ImuOnTable:
@@ -92,66 +86,13 @@ def example_unit(sizes: Mapping[str, float], run: TableRun) -> ImuOnTable:
 
 
 def _six_positions(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
-    sizes = _sizes(effects)
+    sizes = sizes_of(effects)
     log = six_position_log(example_unit(sizes, TableRun(turns=4.0, interval_s=0.1)), rng)
-    return _disturbed(log, effects, rng)
-
-
-def _disturbed(
-    log: SimulatedLog, effects: Sequence[Effect], rng: np.random.Generator
-) -> SimulatedLog:
-    """The sensor warms by 5 K, and effects are added to what the gyros put out."""
-    columns = dict(log.columns)
-    time = columns["time_s"]
-    warmth = 5.0 * (1.0 - np.exp(-time / (0.4 * float(time[-1]))))
-    columns["temperature_c"] = 20.0 + warmth + rng.normal(0.0, 0.02, time.size)
-    for name in (c for c in log.columns if c.startswith("gyr_")):
-        columns[name] = columns[name] + _sizes(effects).get("temperature", 0.0) * warmth
-    return _struck(SimulatedLog(columns, log.texts, log.truth), effects, rng)
-
-
-def _struck(log: SimulatedLog, effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
-    """A line in gyro x, a field that is switched, one stop of gyro x that is off."""
-    sizes = _sizes(effects)
-    columns = dict(log.columns)
-    time = columns["time_s"]
-    names = [c for c in log.columns if c.startswith("gyr_")]
-    if "interference_line" in sizes:
-        hz = _option(effects, "interference_line", "hz", 2.48)
-        wave = sizes["interference_line"] * np.sin(2.0 * np.pi * hz * time)
-        columns[names[0]] = columns[names[0]] + wave
-    if "magnetic_sensitivity" in sizes:
-        columns |= _field(columns, sizes["magnetic_sensitivity"], names, rng)
-    if "gross_error" in sizes:
-        words = np.array(log.texts["position"])
-        places = sorted(set(words.tolist()))
-        struck = words == places[int(rng.integers(len(places)))]
-        if "reference_temperature_c" in columns:
-            struck &= columns["reference_temperature_c"] == NODES_C[int(rng.integers(5))]
-        struck &= columns["table_rate_deg_s"] > 0.0
-        columns[names[0]] = columns[names[0]] + sizes["gross_error"] * struck
-    return SimulatedLog(columns, log.texts, dict(log.truth) | {"effects": sizes})
-
-
-def _field(
-    columns: Mapping[str, Floats],
-    sensitivity: float,
-    names: Sequence[str],
-    rng: np.random.Generator,
-) -> dict[str, Floats]:
-    """A fluxgate beside the gyros in a field that is switched, and what the gyros make of it."""
-    time = columns["time_s"]
-    found: dict[str, Floats] = {}
-    for k, (axis, name) in enumerate(zip("xyz", names, strict=True)):
-        period = float(time[-1]) / (3.0 + 2.0 * k)
-        field_ut = 50.0 * np.sign(np.sin(2.0 * np.pi * time / period + 0.3 * k))
-        found[f"mag_{axis}_uT"] = field_ut + rng.normal(0.0, 0.5, time.size)
-        found[name] = columns[name] + sensitivity * field_ut
-    return found
+    return disturbed(log, effects, rng)
 
 
 def _temperature(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
-    unit = example_unit(_sizes(effects), TableRun(turns=2.0, interval_s=0.1, pause_s=2.0))
+    unit = example_unit(sizes_of(effects), TableRun(turns=2.0, interval_s=0.1, pause_s=2.0))
     unit = replace(unit, warm_up_s=10.0, static_s=10.0, table=Table(LATITUDE, azimuth=0.7))
 
     def at(node: float) -> tuple[Triad, Triad]:
@@ -160,12 +101,12 @@ def _temperature(effects: Sequence[Effect], rng: np.random.Generator) -> Simulat
         force = unit.accelerometer.bias + np.array([0.01, 0.02, -0.01]) * t
         return replace(unit.gyro, bias=bias), replace(unit.accelerometer, bias=force)
 
-    return _struck(temperature_log(unit, rng, nodes_c=NODES_C, at=at), effects, rng)
+    return struck(temperature_log(unit, rng, nodes_c=NODES_C, at=at), effects, rng)
 
 
 def _static(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
     """Half an hour at rest at 10 Hz, a fluxgate beside the gyros in a field that is switched."""
-    sizes = _sizes(effects)
+    sizes = sizes_of(effects)
     time: Floats = (np.arange(18_000.0) + 0.5) * 0.1
     unit = example_unit({}, TableRun())
     forces = np.tile([0.2, -0.1, 9.80], (time.size, 1))
@@ -183,14 +124,14 @@ def _static(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog
         columns["gyr_x_rad_s"] = columns["gyr_x_rad_s"] + sizes["gross_error"] * struck
     kept = [e for e in effects if e.id != "gross_error"]
     if "magnetic_sensitivity" not in sizes:
-        columns |= _field(columns, 0.0, [f"gyr_{a}_rad_s" for a in "xyz"], rng)
-    log = _disturbed(SimulatedLog(columns, {}, {}), kept, rng)
+        columns |= switched_field(columns, 0.0, [f"gyr_{a}_rad_s" for a in "xyz"], rng)
+    log = disturbed(SimulatedLog(columns, {}, {}), kept, rng)
     truth = {f"bias_{a}": float(unit.gyro.bias[i]) / DEG_H for i, a in enumerate("xyz")}
     return SimulatedLog(log.columns, log.texts, truth | {"effects": sizes})
 
 
 def _fog_station(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
-    sizes = _sizes(effects)
+    sizes = sizes_of(effects)
     fog = FogOnTelescope(
         constant=math.radians(171.0 + 7.0 / 60.0 + 49.0 / 3600.0),
         scale=sizes.get("scale_factor", 0.0),
@@ -214,7 +155,7 @@ def _fog_station(effects: Sequence[Effect], rng: np.random.Generator) -> Simulat
     off = sizes.get("gross_error", 0.0) * struck
     columns["gyr_x_rad_s"] = columns["gyr_x_rad_s"] + drift + off
     kept = [e for e in effects if e.id in ("temperature", "interference_line")]
-    log = _disturbed(SimulatedLog(columns, log.texts, log.truth), kept, rng)
+    log = disturbed(SimulatedLog(columns, log.texts, log.truth), kept, rng)
     return SimulatedLog(log.columns, log.texts, dict(log.truth) | {"effects": sizes})
 
 
@@ -237,14 +178,14 @@ def _indexing_unit(sizes: Mapping[str, float], rng: np.random.Generator) -> Inde
 
 
 def _indexing(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
-    sizes = _sizes(effects)
+    sizes = sizes_of(effects)
     log = indexing_log(_indexing_unit(sizes, rng), rng)
     return SimulatedLog(log.columns, log.texts, dict(log.truth) | {"effects": sizes})
 
 
 def _indexing_stops(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
     """Six stops of a vehicle; at the third the index axis is level and points east-west."""
-    sizes = _sizes(effects)
+    sizes = sizes_of(effects)
     first = _indexing_unit(sizes, rng)
     bias = first.gyro.bias
     runs = []
@@ -266,7 +207,7 @@ def _indexing_stops(effects: Sequence[Effect], rng: np.random.Generator) -> Simu
 
 
 def _vehicle(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
-    sizes = _sizes(effects)
+    sizes = sizes_of(effects)
     noise = sizes.get("noise", 1.0)
     cycle = sizes.get("power_cycle")
     run = VehicleRun(
@@ -314,7 +255,7 @@ def hand_run(sizes: Mapping[str, float], rng: np.random.Generator) -> HandRun:
 
 
 def _hand_held(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
-    sizes = _sizes(effects)
+    sizes = sizes_of(effects)
     log = hand_held_log(hand_run(sizes, rng), rng)
     return SimulatedLog(log.columns, log.texts, dict(log.truth) | {"effects": sizes})
 
