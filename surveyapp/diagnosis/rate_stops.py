@@ -27,6 +27,7 @@ from surveyapp.core.sensors.rate.position_log import (
 )
 from surveyapp.core.sensors.rate.table_log import Turned, label, motion_of
 from surveyapp.core.sensors.rate.temperature_log import CHAMBER, node_numbers
+from surveyapp.core.sensors.rate.turn_axes import axes_problems
 from surveyapp.diagnosis.subjects.rate import RateStop, RateTurn
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2, SensorLog
@@ -175,6 +176,9 @@ def _turned(
 ) -> list[RateTurn]:
     """The turns between the stops, where there are enough for the gyros' own elements."""
     turns = turns_between(log, stops, model, latitude)
+    problems = axes_problems(turns, log.path)
+    if problems:
+        raise SurveyError(problems)
     if len(turns) < LEAST_TURNS:
         return []
     inverse = fit_rates(turns).matrix

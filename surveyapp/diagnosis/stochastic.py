@@ -258,6 +258,42 @@ def best_noises(
     return tuple(result)
 
 
+def white_gains(problem: Case, J: Floats, *, draws: int) -> dict[NoiseKind, Floats]:
+    """The gain of each kind of noise in records of white noise about a design, shape (draws,).
+
+    What ``best_noises`` finds where there is nothing to find; the draws come from the design.
+
+    Parameters
+    ----------
+    problem : Case
+    J : ndarray, shape (n, p)
+    draws : int
+    """
+    models = noise_models(problem)
+    basis, _, _ = _independent(J)
+    seed = hashlib.sha256(np.ascontiguousarray(basis).tobytes()).digest()[:8]
+    rng = np.random.default_rng(int.from_bytes(seed, "big"))
+    n, dof = basis.shape[0], basis.shape[0] - basis.shape[1]
+    noise = rng.standard_normal((n, draws))
+    noise -= basis @ (basis.T @ noise)
+    plain = dof * np.log(np.einsum("nd,nd->d", noise, noise) / dof)
+    minus = np.empty((len(models), draws))
+    for g, model in enumerate(models):
+        q, r = np.linalg.qr(model.whitener @ basis)
+        seen = model.whitener @ noise
+        along = q.T @ seen
+        left = np.einsum("nd,nd->d", seen, seen) - np.einsum("pd,pd->d", along, along)
+        logs = model.log_determinant + 2.0 * float(np.log(np.abs(np.diag(r))).sum())
+        minus[g] = dof * np.log(left / dof) + logs
+    kinds = np.array([m.kind for m in models])
+    found: dict[NoiseKind, Floats] = {}
+    for kind in dict.fromkeys(m.kind for m in models):
+        own = minus[kinds == kind]
+        least = own.min(axis=0)
+        found[kind] = plain - least + 2.0 * np.log(np.exp(-0.5 * (own - least)).mean(axis=0))
+    return found
+
+
 def _independent(J: Floats) -> tuple[Floats, Floats, Floats]:
     """Orthonormal basis (n, r), triangle (r, p) and column norms (p,) of a design."""
     norms = np.sqrt((J**2).sum(axis=0))
