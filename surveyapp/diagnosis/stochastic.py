@@ -15,6 +15,7 @@ from typing import Literal
 import numpy as np
 
 from surveyapp.diagnosis.case import Case
+from surveyapp.diagnosis.wander_shapes import decay_of, walk_of
 from surveyapp_models.arrays import Floats
 
 NoiseKind = Literal["random_walk", "amplitude_walk", "ar1"]
@@ -79,7 +80,7 @@ def _build(problem: Case) -> tuple[NoiseModel, ...]:
     rank = _scaled_position(problem.position)
     series = np.zeros(n) if problem.series is None else problem.series
     own = (series[:, None] == series[None, :]).astype(np.float64)
-    walk = own * (np.minimum.outer(rank, rank) + 1.0)
+    walk = own * walk_of(rank)
     lag = np.abs(np.subtract.outer(rank, rank))
     order = _order_within(rank, series)
     step = np.abs(np.subtract.outer(order, order))
@@ -99,7 +100,7 @@ def _build(problem: Case) -> tuple[NoiseModel, ...]:
     for correlation in CORRELATIONS[thin]:
         # a negative correlation alternates from one observation to the next: it knows no time
         # between them, and only so is it a covariance where the positions are uneven
-        decay: Floats = np.asarray(abs(correlation) ** (lag if correlation > 0.0 else step))
+        decay = decay_of(lag if correlation > 0.0 else step, abs(correlation))
         if correlation < 0.0:
             decay = decay * np.where(step % 2.0 == 0.0, 1.0, -1.0)
         decay = decay * own
