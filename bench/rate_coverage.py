@@ -32,7 +32,8 @@ from surveyapp.core.sensors.rate.position_log import resting_rows
 from surveyapp.core.sensors.rate.six_position_log import SixPositionOptions, calibrate_six_positions
 from surveyapp.core.sensors.rate.temperature_log import calibrate_temperature
 from surveyapp.core.sensors.rate.temperature_nodes import TemperatureOptions
-from surveyapp.core.simulate.rate.recipes import NODES_C, example_unit, hand_run
+from surveyapp.core.simulate.rate.disturbed import NODES_C
+from surveyapp.core.simulate.rate.recipes import example_unit, hand_run
 from surveyapp.core.simulate.rate.table_programmes import (
     DEG_H,
     FogStationRun,

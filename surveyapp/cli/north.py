@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 import argparse
+import math
 from typing import TYPE_CHECKING
 
 from surveyapp.cli.output import heading, paragraph, print_json, table
-from surveyapp.cli.sensor_options import add_log_arguments, log_options, progress_bar, shown
+from surveyapp.cli.sensor_options import (
+    add_log_arguments,
+    log_options,
+    progress_bar,
+    shown,
+    shown_pair,
+)
 from surveyapp.domain.calibration import names_by_reason
 from surveyapp.errors import Problem, SurveyError
+from surveyapp_models.angles import AngleUnit, format_angle
 
 if TYPE_CHECKING:
     from surveyapp.domain.north import NorthResult
@@ -89,13 +97,17 @@ def print_north(result: NorthResult) -> None:
     print(heading(f"{result.source}: north by {result.method}, {result.n} rows"))
     direction = result.direction
     what = "circle reading of north" if result.key == "gyro_north" else "heading"
-    print(f"  {what}: {shown(direction.deg)} degrees, {direction.reference}")
+    sigma = None if direction.sigma_arcsec is None else direction.sigma_arcsec / 3600.0
+    value = shown_pair(direction.deg, sigma)[0]
+    if direction.deg is not None:
+        value += f" degrees = {format_angle(math.radians(direction.deg), AngleUnit.DMS, 1)}"
+    print(f"  {what}: {value}, {direction.reference}")
     print(
         f"  sigma {shown(direction.sigma_arcsec)} arcsec, "
         f"95 % interval +- {shown(direction.interval95_arcsec)} arcsec"
     )
     print()
-    cells = [[p.name, shown(p.value), shown(p.sigma), p.unit] for p in result.parameters]
+    cells = [[p.name, *shown_pair(p.value, p.sigma), p.unit] for p in result.parameters]
     print(table(["parameter", "value", "sigma", "unit"], cells))
     told: set[str] = set()
     for reason, own_names in names_by_reason(result.parameters).items():

@@ -11,11 +11,12 @@ from surveyapp.cli.numbers import finite
 from surveyapp.cli.output import heading, number, paragraph, print_json, table
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
+from surveyapp.report.numbers import decimals_of, dms_beside
 
 if TYPE_CHECKING:
     from surveyapp.api.sensors import LogOptions
     from surveyapp.domain.advance import PartDone
-    from surveyapp.domain.calibration import Calibration
+    from surveyapp.domain.calibration import Calibration, SensorParameter
 
 
 def add_log_arguments(parser: argparse.ArgumentParser) -> None:
@@ -140,7 +141,8 @@ def print_calibration(result: Calibration) -> None:
     """The parameters, the misfit before and after, the geometry and the warnings."""
     print(heading(f"{result.source}: {result.kind}, {result.n} rows"))
     rows = [
-        [item.name, shown(item.value), shown(item.sigma), item.unit] for item in result.parameters
+        [item.name, *shown_pair(item.value, item.sigma), unit_of(item)]
+        for item in result.parameters
     ]
     print(table(["parameter", "value", "sigma", "unit"], rows))
     print()
@@ -182,6 +184,21 @@ def _print_geometry(result: Calibration) -> None:
     print(paragraph(", ".join(parts)))
     for why, names in result.empty.items():
         print(paragraph(f"no value, {why}: {', '.join(names)}"))
+
+
+def shown_pair(value: float | None, sigma: float | None) -> tuple[str, str]:
+    """A number and its standard deviation: as many digits of it as the sigma is worth."""
+    decimals = decimals_of(sigma)
+    text = shown(value)
+    if value is not None and decimals is not None and "e" not in text:
+        known = len(text.partition(".")[2])
+        text = number(float(value), max(known, min(decimals, 9)))
+    return text, shown(sigma)
+
+
+def unit_of(item: SensorParameter) -> str:
+    """The unit of a parameter; of a circle reading with its degrees, minutes and seconds."""
+    return " = ".join(t for t in (item.unit, dms_beside(item.name, item.value)) if t)
 
 
 def shown(value: Any) -> str:

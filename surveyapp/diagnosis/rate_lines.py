@@ -7,7 +7,7 @@ earth rate, which comes round once a turn. What is left of each gyro is searched
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -15,15 +15,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.core.sensors.linear import alternate_blocks
+from surveyapp.core.sensors.rate.adopted import StopDatum, without_effects
 from surveyapp.diagnosis.long_records.interference import find_interference
-from surveyapp.diagnosis.long_records.lines import ALARM, SpectralLine
+from surveyapp.diagnosis.long_records.lines import SpectralLine
 from surveyapp.diagnosis.result import Adoption, CandidateResult, Diagnosis, NamedCoefficient
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.domain.line_spectrum import InterferenceLine
+from surveyapp.domain.sensor_log import SensorLog
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.rate import DEG_S
 from surveyapp_models.effects.rate.interference_line import EFFECT
 
+LINE_ALARM = 0.01
+"""Probability of a false line in a log: small beside the five per cent of the stops."""
+MOST_LINES = 12
+"""Of one gyro; more are an image of something that is no line."""
 BLOCK_S = 10.0
 """Length of the blocks that are left out in turn."""
 BROKEN = 0.2
@@ -55,6 +61,8 @@ class LineFound:
         Scatter of samples that had no part in the fit, without and with the line [rad/s].
     lasts_s : float
         Time from the first sample to the last.
+    begin_s : float
+        Time of the first sample, where the phase is zero.
     """
 
     gyro: str
@@ -64,6 +72,7 @@ class LineFound:
     before: float
     after: float
     lasts_s: float
+    begin_s: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,19 +107,47 @@ def judge_lines(
         rows = np.flatnonzero(np.isfinite(every))
         searched += [(gyro, every[part], time_s[part]) for part in _even_parts(time_s, rows)]
     for gyro, left, here in searched:
-        seen = find_interference(here, left)
-        if seen.unsearched:
-            reason = seen.unsearched
-            continue
-        for line in seen.lines:
-            p = min(1.0, line.false_alarm_probability * len(searched))
-            smallest = min(smallest, p)
-            if p <= ALARM:
-                found.append(_proved(gyro, _told(line, p), here, left))
+        more, p, why = _one_by_one(gyro, here, left, parts=len(searched))
+        found, smallest, reason = found + more, min(smallest, p), why or reason
     if reason and not found:
         return LineJudgement((), None, reason)
     kept = [one for one in found if one.after < one.before]
     return LineJudgement(_once_each(kept), smallest)
+
+
+def _one_by_one(
+    gyro: str, time_s: Floats, left: Floats, *, parts: int
+) -> tuple[list[LineFound], float, str]:
+    """Lines of one part of a gyro's samples, the strongest first and out before the next.
+
+    A record with pauses shows every line many times over, as far from it as the pauses are
+    frequent; these images go with the line itself.
+
+    Returns
+    -------
+    lines : list of LineFound
+    p : float
+        Smallest probability of a false alarm, over all ``parts`` that are searched.
+    reason : str
+        Why nothing could be searched, else empty.
+    """
+    found: list[LineFound] = []
+    smallest = 1.0
+    for _ in range(MOST_LINES):
+        seen = find_interference(time_s, left)
+        if seen.unsearched:
+            return found, smallest, seen.unsearched
+        told = [_told(n, min(1.0, n.false_alarm_probability * parts)) for n in seen.lines]
+        if not found:
+            smallest = min((n.false_alarm for n in told), default=1.0)
+        clear = [n for n in told if n.false_alarm <= LINE_ALARM]
+        if not clear:
+            break
+        one = _proved(gyro, max(clear, key=lambda n: n.amplitude), time_s, left)
+        found.append(one)
+        phase = 2.0 * math.pi * one.line.frequency * (time_s - time_s[0])
+        left = left - one.cosine * np.cos(phase) - one.sine * np.sin(phase)
+    return found, smallest, ""
 
 
 def _told(line: InterferenceLine, p: float) -> SpectralLine:
@@ -175,6 +212,7 @@ def _proved(gyro: str, line: SpectralLine, time_s: Floats, values: Floats) -> Li
         float(np.std(values)),
         float(np.std(rest)),
         float(time_s[-1] - time_s[0]),
+        float(time_s[0]),
     )
 
 
@@ -214,7 +252,11 @@ def _adoption(one: LineFound, found: Diagnosis) -> Adoption:
     record = AdoptedEffect(
         id=EFFECT.id,
         coefficients=tuple((c.name, c.value, c.sigma or 0.0, c.unit) for c in named),
-        grid=(("frequency_hz", one.line.frequency),),
+        grid=(
+            ("frequency_hz", one.line.frequency),
+            ("begin_s", one.begin_s),
+            ("end_s", one.begin_s + one.lasts_s),
+        ),
         data_sha256=str(found.ledger.get("data_sha256", "")),
         before=one.before / DEG_S,
         after=one.after / DEG_S,
@@ -222,6 +264,34 @@ def _adoption(one: LineFound, found: Diagnosis) -> Adoption:
     )
     grid = (("frequency_hz", one.line.frequency, "Hz"),)
     return Adoption(EFFECT.id, EFFECT.title, named, grid, one.line.false_alarm, None, record)
+
+
+def with_lines_beside(
+    found: Diagnosis,
+    *,
+    log: SensorLog,
+    columns: Mapping[str, str],
+    stretches: Sequence[Stretch],
+    datum: StopDatum,
+) -> tuple[Diagnosis, dict[str, Any]]:
+    """A diagnosis of stops with the lines of their samples, what it named taken out of these.
+
+    A field that is switched, a drift within a stop would else stand as lines of its own.
+
+    Parameters
+    ----------
+    found : Diagnosis
+    log : SensorLog
+    columns : mapping of str to str
+        Gyro to its column.
+    stretches : sequence of Stretch
+    datum : StopDatum
+    """
+    named = [replace(a.record, data_sha256="") for a in found.adopted]
+    clean, _ = without_effects(log, named, datum)
+    values = [clean.columns[c] for c in columns.values()]
+    judged = judge_lines(log.columns["time_s"], values, stretches, tuple(columns))
+    return with_lines_of(found, judged), interference_dict(judged)
 
 
 def interference_dict(judged: LineJudgement) -> dict[str, Any]:

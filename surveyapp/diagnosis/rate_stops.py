@@ -19,14 +19,17 @@ from surveyapp.core.sensors.rate.multi_position_log import (
 )
 from surveyapp.core.sensors.rate.position_log import (
     GYROS,
+    Placed,
     means_of,
     place_problems,
     placed_stretches,
     sense_of,
 )
-from surveyapp.core.sensors.rate.table_log import label, motion_of
+from surveyapp.core.sensors.rate.table_log import Turned, label, motion_of
+from surveyapp.core.sensors.rate.temperature_log import CHAMBER, node_numbers
 from surveyapp.core.sensors.rate.turn_axes import axes_problems
 from surveyapp.diagnosis.subjects.rate import RateStop, RateTurn
+from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2, SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
@@ -36,12 +39,22 @@ from surveyapp_models.rate.turntable import POSITIONS
 
 FIELDS = ("mag_x_uT", "mag_y_uT", "mag_z_uT")
 TESLA = 1e-6
+AT_REST = 0.9
+"""Share of a record above which one rest is all of it."""
+MOVED = math.radians(1.0)
+"""Between means of parts: without accelerometers more is motion [rad/s]."""
+BLOCKS = 40
+"""Parts of a record at rest: as many as a drift and a walk need to be told apart, and quickly."""
+LEAST_BLOCKS = 12
+LEAST_BLOCK_ROWS = 10
 
 
 def stops_of(
     log: SensorLog, *, latitude: float | None
-) -> tuple[list[RateStop], list[RateTurn], str]:
-    """Stops of a log, the turns between them, and what is not known of them.
+) -> tuple[list[RateStop], list[RateTurn], tuple[ResultWarning, ...]]:
+    """Stops of a log, the turns between them, and what is to be said of them.
+
+    A record that never moves has no stops: its blocks take their place.
 
     Parameters
     ----------
@@ -53,19 +66,82 @@ def stops_of(
     ------
     SurveyError
     """
-    told = ""
+    told: tuple[ResultWarning, ...] = ()
     if latitude is None:
-        told = (
+        text = (
             "the latitude is not known: the vertical earth rate stays in the stops and looks like "
             "a sensitivity to gravity"
         )
+        told = (ResultWarning("latitude_unknown", text),)
     if "position" in log.texts:
         return _table_stops(log, latitude), [], told
-    return *_held_stops(log, latitude), told
+    rests = held_stops(log) if log.has(*ACCELEROMETERS) else []
+    if len(rests) < LEAST_STOPS:
+        spans = [(s.start, s.stop) for s in rests] if rests else _unmoved(log)
+        if sum(last - first for first, last in spans) > AT_REST * log.size:
+            blocks = _rest_blocks(log, spans)
+            return blocks, [], (_one_rest(blocks),)
+    return *_held_stops(log, latitude, rests), told
 
 
-def _held_stops(log: SensorLog, latitude: float | None) -> tuple[list[RateStop], list[RateTurn]]:
-    stops = held_stops(log)
+def _rest_blocks(log: SensorLog, spans: Sequence[tuple[int, int]]) -> list[RateStop]:
+    """Means of equal parts of a record at rest, each as a stop.
+
+    Raises
+    ------
+    SurveyError
+        If there are too few samples.
+    """
+    rows = sum(last - first for first, last in spans)
+    length = max(rows // BLOCKS, LEAST_BLOCK_ROWS)
+    parts = [
+        (k, k + length) for first, last in spans for k in range(first, last - length + 1, length)
+    ]
+    if len(parts) < LEAST_BLOCKS:
+        expected = said("{rows} or more", rows=LEAST_BLOCKS * LEAST_BLOCK_ROWS)
+        raise SurveyError(
+            Problem("the record at rest is too short to diagnose", log.path, str(rows), expected)
+        )
+    columns = np.column_stack([log.columns[c] for c in GYROS])
+    return [
+        RateStop(
+            output=columns[first:last].mean(axis=0),
+            elapsed_s=float(np.mean(log.columns["time_s"][first:last])),
+            temperature_c=_mean(log, "temperature_c", first, last),
+            field=_field(log, first, last),
+            label=f"block {k + 1}",
+            rows=(first, last),
+        )
+        for k, (first, last) in enumerate(parts)
+    ]
+
+
+def _one_rest(blocks: Sequence[RateStop]) -> ResultWarning:
+    """That the record is one rest, and what takes the place of stops."""
+    text = said(
+        "the record is one rest: the means of {count} blocks of {seconds:.3g} s take the place of "
+        "stops, and the earth rate stays in the biases",
+        count=len(blocks),
+        seconds=blocks[1].elapsed_s - blocks[0].elapsed_s,
+    )
+    return ResultWarning("one_rest", text)
+
+
+def _unmoved(log: SensorLog) -> list[tuple[int, int]]:
+    """The whole record where no accelerometer tells rest from motion and no gyro shows any."""
+    if log.has(*ACCELEROMETERS):
+        return []
+    count = max(log.size // BLOCKS, 1)
+    for name in GYROS:
+        whole = log.columns[name][: log.size - log.size % count].reshape(-1, count)
+        if float(np.ptp(whole.mean(axis=1))) > MOVED:
+            return []
+    return [(0, log.size)]
+
+
+def _held_stops(
+    log: SensorLog, latitude: float | None, stops: Sequence[HeldStop]
+) -> tuple[list[RateStop], list[RateTurn]]:
     if len(stops) < LEAST_STOPS:
         raise SurveyError(
             Problem(
@@ -130,8 +206,12 @@ def _table_stops(log: SensorLog, latitude: float | None) -> list[RateStop]:
     motion = motion_of(log)
     if isinstance(motion, Problem):
         raise SurveyError([*problems, motion])
-    rounds = [label(log, "round", k, 1) for k in range(log.size)]
-    placed, more = placed_stretches(log, motion, rounds, ("position", "round"))
+    groups, labels = [label(log, "round", k, 1) for k in range(log.size)], ("position", "round")
+    chamber = CHAMBER in log.columns and node_numbers(log.columns[CHAMBER])[0].size > 1
+    if chamber:
+        numbers = node_numbers(log.columns[CHAMBER])[1]
+        groups, labels = [number + 1 for number in numbers], ("position", CHAMBER)
+    placed, more = placed_stretches(log, motion, groups, labels)
     problems += more
     if problems:
         raise SurveyError(problems)
@@ -158,11 +238,18 @@ def _table_stops(log: SensorLog, latitude: float | None) -> list[RateStop]:
                     place=POSITIONS.index(place.position) + 1 + 6 * (place.group - 1),
                     temperature_c=_mean(log, "temperature_c", first, last),
                     field=_field(log, first, last),
-                    label=f"{place.position} {'clockwise' if item.rate > 0 else 'back'}",
+                    label=_table_label(place, item),
                     rows=(first, last),
+                    node=place.group if chamber else None,
                 )
             )
     return sorted(found, key=lambda stop: stop.elapsed_s)
+
+
+def _table_label(place: Placed, item: Turned) -> str:
+    """Position, round or node where there are several, and the way."""
+    group = f" {place.group}" if place.group > 1 else ""
+    return f"{place.position}{group} {'clockwise' if item.rate > 0 else 'back'}"
 
 
 def _mean(log: SensorLog, name: str, first: int, last: int) -> float | None:

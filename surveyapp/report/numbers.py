@@ -50,6 +50,28 @@ def with_sigma(item: AngleResult | None, unit: AngleUnit) -> tuple[str, str, str
     return direction(item.value, unit), seconds(item.sigma), seconds(item.interval95)
 
 
+def decimals_of(sigma: float | None) -> int | None:
+    """Decimals that show two digits of a standard deviation; None where there is none."""
+    if sigma is None or not math.isfinite(sigma) or sigma <= 0.0:
+        return None
+    return max(0, 1 - math.floor(math.log10(sigma)))
+
+
+def by_sigma(value: float | None, sigma: float | None) -> str:
+    """A number with four significant digits, or as many as its sigma is worth."""
+    decimals = decimals_of(sigma)
+    if value is None or decimals is None or sigma is None or sigma > 5e-4 * abs(value):
+        return four_digits(value)
+    return plain(value, decimals)
+
+
+def dms_beside(name: str, value: float | None) -> str:
+    """Degrees, minutes and seconds of a reading in degrees, for beside its unit; else nothing."""
+    if name != "instrument_constant" or value is None:
+        return ""
+    return format_angle(math.radians(value), AngleUnit.DMS, 2)
+
+
 def line_name(station: str, target: str | None) -> str:
     """A line as people write it; a station alone where it has no target."""
     return station if target is None else f"{station}-{target}"

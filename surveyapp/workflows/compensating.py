@@ -32,6 +32,7 @@ from surveyapp.io.sensor_cards import read_sensor_card
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.io.sensor_logs.writing import write_parts
 from surveyapp.languages import said
+from surveyapp.workflows.adopted_effects import need_with_adopted, without_adopted
 
 BLOCK_ROWS: Final = 50_000
 """Rows that are corrected at once: a log of any length takes the memory of one block."""
@@ -43,6 +44,7 @@ KINDS: Final = ("compass", "tilt", "rate")
 MAG: Final = ("mag_x_uT", "mag_y_uT", "mag_z_uT")
 ACC: Final = ("acc_x_m_s2", "acc_y_m_s2", "acc_z_m_s2")
 TILT: Final = ("tilt_along_arcsec", "tilt_across_arcsec")
+TABLE_COLUMNS: Final = ("table_rate_deg_s", "table_angle_deg", "round", "temperature_c")
 GYR: Final = ("gyr_x_rad_s", "gyr_y_rad_s", "gyr_z_rad_s")
 
 
@@ -132,8 +134,10 @@ def compensate_log(
         raise SurveyError(
             Problem("a declination is added to magnetic headings only", "declination", found)
         )
-    log = file.read(_need(kind, file, card), progress=progress)
-    if entry is not None and entry.effects and kind != "rate":
+    log = file.read(_need(kind, file, card, entry), progress=progress)
+    if kind == "rate":
+        log = without_adopted(log, entry)
+    elif entry is not None and entry.effects:
         log, told = without_events(log, entry.effects)
         log = replace(log, warnings=(*log.warnings, *told))
     day = entry.calibrated_on if entry is not None and entry.calibrated_on else today
@@ -160,12 +164,14 @@ def compensate_log(
     return (_run(kind, block, card, (declination, where, noise)) for block in blocks), log, card
 
 
-def _need(kind: str, file: LogFile, card: SensorCard) -> Need:
+def _need(kind: str, file: LogFile, card: SensorCard, entry: SensorLogEntry | None) -> Need:
     if kind == "compass":
         acc = ACC if file.has(*ACC) else ()
         return Need(columns=(*MAG, *acc), optional=("temperature_c",))
     if kind == "rate":
-        return Need(columns=GYR, optional=("temperature_c",))
+        stops = entry.effects if entry is not None else ()
+        optional = (*ACC, *TABLE_COLUMNS, "position") if stops else ("temperature_c",)
+        return need_with_adopted(Need(columns=GYR, optional=optional), entry)
     columns = ("output",) if card.get("sensitivity") is not None else TILT
     return Need(columns=columns, optional=("temperature_c",), timed="optional")
 

@@ -35,14 +35,16 @@ CASES: Final = {
 class SensorCase:
     """A case, what a reader must know of it, and further keys of the JSON.
 
-    ``finished`` adds what the case alone cannot show, ``told`` makes keys of what was found.
+    ``finished`` adds what the case alone cannot show and its keys, ``told`` makes keys of what was
+    found; ``sha256`` is that of the log, for which effects are adopted.
     """
 
     case: Case
     warnings: tuple[ResultWarning, ...] = ()
     extra: dict[str, Any] = field(default_factory=dict)
     told: Callable[[Diagnosis], dict[str, Any]] | None = None
-    finished: Callable[[Diagnosis], Diagnosis] | None = None
+    finished: Callable[[Diagnosis], tuple[Diagnosis, dict[str, Any]]] | None = None
+    sha256: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,15 +118,21 @@ def diagnose_sensor(
     if confirm is not None:
         second = _case_of(confirm.file, confirm.entry, own).case
     diagnosis = run_engine(made.case, confirm=second)
+    extra = made.extra
     if made.finished is not None:
-        diagnosis = made.finished(diagnosis)
+        diagnosis, keys = made.finished(diagnosis)
+        extra = extra | keys
     notes = [*made.warnings, *already_adopted(entry)]
     written: tuple[str, ...] = ()
     refused: tuple[NotWritten, ...] = ()
     if project is not None:
         tables: list[dict[str, object]] = []
         if adopt:
-            tables, refused = sensor_tables([a.record for a in diagnosis.adopted], entry)
+            records = [
+                replace(a.record, data_sha256=made.sha256) if made.sha256 else a.record
+                for a in diagnosis.adopted
+            ]
+            tables, refused = sensor_tables(records, entry)
         written, more = write_under(
             project, entry, diagnosis.ledger, tables, software=software, now=now
         )
@@ -132,7 +140,7 @@ def diagnose_sensor(
     words = [note.text for note in notes] + list(words_of(diagnosis, made.case))
     words += [f"Not written: {item}." for item in refused]
     told = replace(diagnosis, warnings=(*diagnosis.warnings, *notes))
-    extra = made.extra | ({} if made.told is None else made.told(diagnosis))
+    extra = extra | ({} if made.told is None else made.told(diagnosis))
     found = Diagnosed(told, written=written, not_written=refused, words=tuple(words))
     return SensorDiagnosed(found, {"identity": entry.id, **extra})
 

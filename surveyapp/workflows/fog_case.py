@@ -8,15 +8,12 @@ from functools import partial
 import numpy as np
 
 from surveyapp.core.sensors.rate.fog_station_log import GYRO, NEEDED, OPTIONAL, turned_sets
-from surveyapp.diagnosis.rate_lines import (
-    Stretch,
-    interference_dict,
-    judge_lines,
-    with_lines_of,
-)
+from surveyapp.diagnosis.rate_lines import Stretch, with_lines_beside
 from surveyapp.diagnosis.subjects.fog_station import FogTurn, fog_case
 from surveyapp.domain.sensor_entry import SensorLogEntry
+from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.io.sensor_logs.reading import LogFile, Need
+from surveyapp.workflows.adopted_effects import fog_datum
 from surveyapp.workflows.diagnosing_sensor import SensorCase
 from surveyapp_models.effects.effect import Effect
 
@@ -24,6 +21,16 @@ from surveyapp_models.effects.effect import Effect
 def case(file: LogFile, entry: SensorLogEntry, own: tuple[Effect, ...]) -> SensorCase:
     """Read the log and make its case."""
     log = file.read(Need(columns=NEEDED, varying=NEEDED, optional=OPTIONAL, biased=True))
+    return case_of_log(log, entry, own)
+
+
+def case_of_log(log: SensorLog, entry: SensorLogEntry, own: tuple[Effect, ...] = ()) -> SensorCase:
+    """The case of a log that was read.
+
+    Raises
+    ------
+    SurveyError
+    """
     sets, warnings = turned_sets(log, [])
     time, values = log.columns["time_s"], log.columns[GYRO]
     warmth = log.columns.get("temperature_c")
@@ -44,11 +51,14 @@ def case(file: LogFile, entry: SensorLogEntry, own: tuple[Effect, ...]) -> Senso
                 )
             )
     stretches = [Stretch(*turn.rows, abs(turn.rate)) for turn in turns]
-    lines = judge_lines(time, [values], stretches, ("x",))
+    lines = partial(
+        with_lines_beside, log=log, columns={"x": GYRO}, stretches=stretches, datum=fog_datum(log)
+    )
     return SensorCase(
         fog_case(turns, identity=entry.id, extra=own),
         (*log.warnings, *warnings),
-        {"sets": len(sets), **interference_dict(lines)},
+        {"sets": len(sets)},
         None,
-        partial(with_lines_of, judged=lines),
+        lines,
+        log.sha256 or "",
     )

@@ -9,18 +9,14 @@ from typing import Any
 import numpy as np
 
 from surveyapp.core.sensors.rate.position_log import ACCELEROMETERS, GYROS
-from surveyapp.diagnosis.rate_lines import (
-    Stretch,
-    interference_dict,
-    judge_lines,
-    with_lines_of,
-)
+from surveyapp.diagnosis.rate_lines import Stretch, with_lines_beside
 from surveyapp.diagnosis.rate_stops import stops_of
 from surveyapp.diagnosis.result import Diagnosis
 from surveyapp.diagnosis.subjects.rate import RateTurn, rate_case
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_entry import SensorLogEntry
+from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.io.sensor_logs.reading import LogFile, Need
+from surveyapp.workflows.adopted_effects import stop_datum
 from surveyapp.workflows.diagnosing_sensor import SensorCase
 from surveyapp_models.effects.effect import Effect
 
@@ -29,6 +25,7 @@ OPTIONAL = (
     "table_angle_deg",
     "round",
     "temperature_c",
+    "reference_temperature_c",
     "mag_x_uT",
     "mag_y_uT",
     "mag_z_uT",
@@ -38,28 +35,42 @@ OPTIONAL = (
 def case(file: LogFile, entry: SensorLogEntry, own: tuple[Effect, ...]) -> SensorCase:
     """Read the log and make its case."""
     table = file.has("position")
-    columns = (*GYROS, "position") if table else (*GYROS, *ACCELEROMETERS)
+    still = not table and not any(file.has(c) for c in ACCELEROMETERS)
+    beside: tuple[str, ...] = ("position",) if table else (() if still else ACCELEROMETERS)
     optional = (*OPTIONAL, *ACCELEROMETERS)
-    log = file.read(Need(columns=columns, varying=GYROS, optional=optional, biased=True))
+    log = file.read(Need(columns=(*GYROS, *beside), varying=GYROS, optional=optional, biased=True))
+    return case_of_log(log, entry, own)
+
+
+def case_of_log(log: SensorLog, entry: SensorLogEntry, own: tuple[Effect, ...] = ()) -> SensorCase:
+    """The case of a log that was read.
+
+    Raises
+    ------
+    SurveyError
+    """
     latitude = None if entry.latitude_deg is None else math.radians(entry.latitude_deg)
     stops, turns, told = stops_of(log, latitude=latitude)
-    warnings = list(log.warnings)
-    if told:
-        warnings.append(ResultWarning("latitude_unknown", told))
     stretches = [
         Stretch(*stop.rows, 0.0 if stop.known is None else float(np.abs(stop.known).max()))
         for stop in stops
         if stop.rows is not None
     ]
-    lines = judge_lines(
-        log.columns["time_s"], [log.columns[c] for c in GYROS], stretches, ("x", "y", "z")
+    made = rate_case(stops, turns, identity=entry.id, extra=own)
+    lines = partial(
+        with_lines_beside,
+        log=log,
+        columns=dict(zip("xyz", GYROS, strict=True)),
+        stretches=stretches,
+        datum=stop_datum(stops, made.columns),
     )
     return SensorCase(
-        rate_case(stops, turns, identity=entry.id, extra=own),
-        tuple(warnings),
-        {"stops": len(stops), "turns": len(turns), **interference_dict(lines)},
+        made,
+        (*log.warnings, *told),
+        {"stops": len(stops), "turns": len(turns)},
         partial(_directions, turns=turns) if turns else None,
-        partial(with_lines_of, judged=lines),
+        lines,
+        log.sha256 or "",
     )
 
 

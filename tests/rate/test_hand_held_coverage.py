@@ -31,10 +31,10 @@ def test_intervals_of_hand_held_stops_hold_the_truth() -> None:
 
 @pytest.mark.statistical
 def test_intervals_of_the_gyro_on_a_total_station_hold_the_truth() -> None:
-    """Thirty records of three parameters: 24 and fewer of 30 have p = .003."""
-    found = coverage_of(fog_station, 30, seed=3)
+    """Twenty records of three parameters: 14 and fewer of 20 have p = 3e-4."""
+    found = coverage_of(fog_station, 20, seed=3)
     assert set(found) == {"elevation", "instrument_constant", "scale_factor"}
-    assert min(share for share, _ in found.values()) >= 0.83
+    assert min(share for share, _ in found.values()) >= 0.75
 
 
 @pytest.mark.statistical
@@ -48,15 +48,15 @@ def test_headings_by_indexing_are_covered_and_no_wrong_root_is_silent() -> None:
 
 @pytest.mark.statistical
 def test_intervals_of_table_programmes_hold_the_truth() -> None:
-    """Forty records: the table's rate, flips, the static method; nodes and what lies between.
+    """Twenty-four records: the table's rate, flips, the static method; nodes and what lies between.
 
-    Of 40 at .95 fewer than 33 have p = .003 a parameter, fewer than 30 of 40 p < 1e-5; the pooled
-    share of 12 or more parameters below .90 has p < .001 even where half of them move together.
+    Of 24 at .95 fewer than 17 have p < 1e-6 a parameter; the pooled share of 18 parameters below
+    .88 has p < .001 even where half of them move together.
     """
-    found = coverage_of(six_position, 40, seed=3)
+    found = coverage_of(six_position, 24, seed=3)
     assert len(found) == 18
-    assert min(share for share, _ in found.values()) >= 0.75
-    assert 0.90 <= float(np.mean([share for share, _ in found.values()])) <= 0.995
+    assert min(share for share, _ in found.values()) >= 0.70
+    assert 0.88 <= float(np.mean([share for share, _ in found.values()])) <= 0.995
     nodes = coverage_of(temperature, 8, seed=3)
     pooled = [share for name, (share, _) in nodes.items() if name.endswith("node")]
     assert len(pooled) == 24

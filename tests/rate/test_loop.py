@@ -187,8 +187,17 @@ def test_an_asymmetric_scale_and_a_crooked_seat_on_a_table_are_named() -> None:
     rng = np.random.default_rng(1)
     found = diagnose(rate_case(table_stops(rng, asymmetry=4e-5), identity="table"))
     assert named(found) == ["scale_asymmetry"]
-    crooked = diagnose(rate_case(table_stops(rng, flip=120.0 * ARCSEC), identity="table"))
-    assert "flip_error" in {c.effect for c in crooked.candidates if c.verdict != "not_significant"}
+    twice = [*table_stops(rng), *table_stops(rng, flip=120.0 * ARCSEC)]
+    twice = [
+        replace(s, elapsed_s=60.0 * k, place=(s.place or 0) + 6 * (k // 18))
+        for k, s in enumerate(twice)
+    ]
+    crooked = diagnose(rate_case(twice, identity="table"))
+    assert named(crooked) == ["flip_error"]
+    assert dict(crooked.adopted[0].record.grid) == {"place": 9.0}
+    sizes = {c.name: c.value for c in crooked.adopted[0].coefficients}
+    assert sizes["after_next"] == pytest.approx(120.0, abs=0.5)  # of y the one after z is x
+    assert sizes["next"] == pytest.approx(0.0, abs=0.5)
 
 
 def test_magnetic_sensitivity_needs_a_fluxgate_and_is_named_with_one() -> None:

@@ -59,6 +59,19 @@ def test_lines_of_noise_are_false_alarms_at_the_stated_rate() -> None:
     assert alarms <= 7
 
 
+def test_a_line_in_a_record_with_pauses_is_one_line() -> None:
+    """Turning 9 of 15 s: images of the line stand 1/15 Hz beside it until it is out."""
+    rng = np.random.default_rng(4)
+    time = np.arange(9000.0) * 0.05
+    values = rng.normal(size=time.size) + np.cos(2.0 * math.pi * 2.48 * time + 1.0)
+    stretches = [Stretch(k * 300, k * 300 + 180) for k in range(30)]
+    found = judge_lines(time, [values], stretches, ("x",)).lines
+    assert len(found) == 1
+    assert found[0].line.frequency == pytest.approx(2.48, abs=1e-3)
+    assert math.hypot(found[0].cosine, found[0].sine) == pytest.approx(1.0, abs=0.1)
+    assert found[0].after < found[0].before
+
+
 def test_without_a_choice_the_sensor_logs_are_listed(tmp_path: Path) -> None:
     folder = simulated(tmp_path / "unit", "rate", "--programme", "multi-position")
     found = surveyapp("diagnose", folder, "--json").json

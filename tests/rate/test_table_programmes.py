@@ -76,17 +76,17 @@ def test_level_and_azimuth_of_the_table_do_not_matter(tilt_deg: float) -> None:
 
 
 def test_sigmas_of_all_twelve_parameters_are_right() -> None:
-    """60 records x 12: pooled chi-square; the bench counts the intervals of 200."""
+    """30 records x 12: pooled chi-square; the bench counts the intervals of 200."""
     scores = []
-    for seed in range(60):
+    for seed in range(30):
         log = six_position_log(unit(), np.random.default_rng(seed))
         found = calibrated(log)
         for item in found.parameters:
             assert item.value is not None
             assert item.sigma is not None
             scores.append((item.value - float(str(log.truth[item.name]))) / item.sigma)
-    assert float(np.mean(np.square(scores))) == pytest.approx(1.0, abs=0.22)  # 4 sigma of 720
-    assert 0.92 <= float(np.mean(np.abs(scores) <= 1.96)) <= 0.98
+    assert float(np.mean(np.square(scores))) == pytest.approx(1.0, abs=0.30)  # 4 sigma of 360
+    assert 0.91 <= float(np.mean(np.abs(scores) <= 1.96)) <= 0.99
 
 
 def test_flips_of_a_minute_are_46_seconds_in_a_misalignment_and_the_sigma_says_so() -> None:

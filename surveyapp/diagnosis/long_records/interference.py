@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,16 +11,51 @@ import numpy as np
 from surveyapp.diagnosis.long_records.averaged import BLOCK, averaged_spectrum
 from surveyapp.diagnosis.long_records.families import Family, find_families
 from surveyapp.diagnosis.long_records.linefit import fit_sines
-from surveyapp.diagnosis.long_records.lines import even_grid, find_lines
+from surveyapp.diagnosis.long_records.lines import JITTER, LEAST_FILLED, even_grid, find_lines
 from surveyapp.domain.line_spectrum import HarmonicFamily, InterferenceLine, Scatter
 from surveyapp_models.arrays import Floats
 
 LONGEST = 1 << 20
 """Samples up to which one transform serves."""
 PLOT_POINTS = 256
+PIECE = 1 << 16
+"""Samples that are looked at at once."""
 BLOCK_S = 10.0
 SAME_LINE = 2.0
 """Cycles over the record within which two lines are one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Remainder:
+    """A record without its lines, block by block: nothing of its length is made beside it.
+
+    The lines are fitted anew in each block: over so long a time their phase may wander.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+    step : float
+        [s]
+    frequencies : tuple of float
+        [Hz]
+    """
+
+    values: Floats
+    step: float
+    frequencies: tuple[float, ...] = ()
+
+    def __iter__(self) -> Iterator[Floats]:
+        """Blocks of the record in order."""
+        t = np.arange(BLOCK) * self.step
+        waves = [f(2.0 * np.pi * w * t) for w in self.frequencies for f in (np.cos, np.sin)]
+        design = np.column_stack([np.ones(BLOCK), *waves])
+        for first in range(0, self.values.size, BLOCK):
+            part = self.values[first : first + BLOCK]
+            here = design[: part.size]
+            if waves and part.size > 4 * here.shape[1]:
+                solution, *_ = np.linalg.lstsq(here, part, rcond=None)
+                part = part - here[:, 1:] @ solution[1:]
+            yield part
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,15 +66,15 @@ class Interference:
     ----------
     lines : tuple of InterferenceLine
     families : tuple of HarmonicFamily
-    rest : ndarray, shape (n,)
-        The column without its mean and its lines.
+    rest : ndarray, shape (n,), or Remainder
+        The column without its lines; of a long record block by block.
     unsearched : str
         Why no line could be looked for; empty if they were.
     """
 
     lines: tuple[InterferenceLine, ...]
     families: tuple[HarmonicFamily, ...]
-    rest: Floats
+    rest: Floats | Remainder
     unsearched: str = ""
 
 
@@ -50,12 +86,12 @@ def find_interference(time_s: Floats, values: Floats) -> Interference:
     time_s, values : ndarray, shape (n,)
         Sorted by time.
     """
+    if values.size > LONGEST:
+        return _long(time_s, values)
     centred = values - values.mean()
     grid = even_grid(time_s) if time_s.size > 64 else "fewer than 65 samples"
     if isinstance(grid, str):
         return Interference((), (), centred, grid)
-    if values.size > LONGEST:
-        return _long(time_s, centred)
     search = find_lines(time_s, centred, columns={}, effects=())
     families, sines, length = find_families(time_s, centred)
     singles = [
@@ -103,23 +139,74 @@ def _family_of(frequency: float, families: tuple[Family, ...], length: float) ->
     return None
 
 
-def _long(time_s: Floats, centred: Floats) -> Interference:
+def _long(time_s: Floats, values: Floats) -> Interference:
     """A very long record: averaged blocks; families among the lines that stand out."""
     step = float(time_s[-1] - time_s[0]) / (time_s.size - 1)
-    size = 1 << 16
-    pieces = (centred[k : k + size] for k in range(0, centred.size, size))
-    seen = averaged_spectrum(pieces)
+    uneven = _uneven(time_s)
+    if uneven:
+        return Interference((), (), Remainder(values, step), uneven)
+    middle = float(np.mean(values[:PIECE]))
+    seen = averaged_spectrum(piece - middle for piece in _pieces(values))
     resolution = 1.0 / (seen.block * step)
     lines = []
     for cycles, amplitude, p in seen.lines():
         k = min(max(round(cycles * seen.block), 1), seen.background.size - 1)
         noise = float(seen.background[k])
-        sigma = math.sqrt(6.0 * noise / centred.size) / (math.pi * max(amplitude, 1e-300))
-        spread = math.sqrt(2.0 * noise / centred.size)
+        sigma = math.sqrt(6.0 * noise / values.size) / (math.pi * max(amplitude, 1e-300))
+        spread = math.sqrt(2.0 * noise / values.size)
         lines.append(InterferenceLine(cycles / step, sigma * resolution, amplitude, spread, p))
     families = _families_among(lines, 2.0 * resolution)
-    rest = _without(centred, step, [line.frequency_hz for line in lines])
+    rest = Remainder(values, step, tuple(line.frequency_hz for line in lines))
     return Interference(tuple(lines), families, rest)
+
+
+def _pieces(values: Floats) -> Iterator[Floats]:
+    return (values[k : k + PIECE] for k in range(0, values.size, PIECE))
+
+
+def _uneven(time_s: Floats) -> str:
+    """Why a long record has no even grid, gaps allowed; empty if it has. As ``even_grid``."""
+    usual = float(np.median(np.diff(time_s[:PIECE])))
+    if not usual > 0.0:
+        return "several samples have the same time"
+    whole = 0.0
+    for first in range(0, time_s.size - 1, PIECE):
+        steps = np.rint(np.diff(time_s[first : first + PIECE + 1]) / usual)
+        if steps.min() < 1.0:
+            return "the samples are not evenly spaced"
+        whole += float(steps.sum())
+    if time_s.size < LEAST_FILLED * (whole + 1.0):
+        return "more than half of the samples are missing"
+    step = float(time_s[-1] - time_s[0]) / whole
+    index, moments = 0.0, _Moments()
+    for first in range(0, time_s.size - 1, PIECE):
+        part = time_s[first : first + PIECE + 1]
+        numbers = index + np.cumsum(np.rint(np.diff(part) / usual))
+        moments.add(part[1:] - time_s[0] - step * numbers)
+        index = float(numbers[-1])
+    return "the samples are not evenly spaced" if moments.sd(0) > JITTER * step else ""
+
+
+class _Moments:
+    """Mean and sum of squares about it, piece by piece (Chan, Golub and LeVeque 1983)."""
+
+    def __init__(self) -> None:
+        self.count, self.mean, self.squares = 0, 0.0, 0.0
+
+    def add(self, part: Floats) -> None:
+        """Take a piece in."""
+        if part.size == 0:
+            return
+        mean = float(part.mean())
+        off = mean - self.mean
+        total = self.count + part.size
+        self.squares += float(np.sum((part - mean) ** 2)) + off**2 * self.count * part.size / total
+        self.mean += off * part.size / total
+        self.count = total
+
+    def sd(self, ddof: int) -> float:
+        """Standard deviation of all pieces."""
+        return math.sqrt(self.squares / max(self.count - ddof, 1))
 
 
 def _families_among(lines: list[InterferenceLine], slack: float) -> tuple[HarmonicFamily, ...]:
@@ -142,40 +229,25 @@ def _families_among(lines: list[InterferenceLine], slack: float) -> tuple[Harmon
     return tuple(found)
 
 
-def _without(values: Floats, step: float, frequencies: list[float]) -> Floats:
-    """The record less its lines, fitted anew in each block: their phase may wander."""
-    rest = values.copy()
-    if not frequencies:
-        return rest
-    t = np.arange(BLOCK) * step
-    columns = [f(2.0 * np.pi * w * t) for w in frequencies for f in (np.cos, np.sin)]
-    design = np.column_stack(columns)
-    for first in range(0, values.size, BLOCK):
-        part = rest[first : first + BLOCK]
-        here = design[: part.size]
-        if part.size > 4 * here.shape[1]:
-            solution, *_ = np.linalg.lstsq(here, part, rcond=None)
-            part -= here @ solution
-    return rest
-
-
-def scatter_of(values: Floats, rest: Floats, *, rate_hz: float, unit: str) -> Scatter:
+def scatter_of(values: Floats, rest: Floats | Remainder, *, rate_hz: float, unit: str) -> Scatter:
     """Standard deviations of samples and of 10 s means, with and without the lines."""
     count = max(round(BLOCK_S * rate_hz), 1)
+    before, before_10s = _scatter(_pieces(values), count)
+    after, after_10s = _scatter(rest if isinstance(rest, Remainder) else _pieces(rest), count)
+    return Scatter(before, after, before_10s, after_10s, unit)
 
-    def of_means(series: Floats) -> float | None:
-        whole = series[: series.size - series.size % count]
-        if whole.size < 3 * count:
-            return None
-        return float(np.std(whole.reshape(-1, count).mean(axis=1), ddof=1))
 
-    return Scatter(
-        float(np.std(values, ddof=1)),
-        float(np.std(rest, ddof=1)),
-        of_means(values),
-        of_means(rest),
-        unit,
-    )
+def _scatter(pieces: Iterable[Floats], count: int) -> tuple[float, float | None]:
+    """Standard deviation of samples and of means of ``count`` of them; None from too few."""
+    samples, means = _Moments(), _Moments()
+    held = np.zeros(0)
+    for piece in pieces:
+        samples.add(piece)
+        held = np.concatenate([held, piece])
+        whole = held.size - held.size % count
+        means.add(held[:whole].reshape(-1, count).mean(axis=1))
+        held = held[whole:]
+    return samples.sd(1), means.sd(1) if means.count >= 3 else None
 
 
 def plotted_density(values: Floats, *, rate_hz: float) -> tuple[Floats, Floats]:

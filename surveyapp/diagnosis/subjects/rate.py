@@ -21,7 +21,7 @@ from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
-from surveyapp_models.effects.effect import Columns, Effect
+from surveyapp_models.effects.effect import Column, Columns, Effect
 from surveyapp_models.effects.rate import (
     AXIS,
     DEG_S,
@@ -63,6 +63,8 @@ class RateStop:
     label : str
     rows : tuple of int, or None
         First and last row of the log, last exclusive.
+    node : int or None
+        Temperature of the chamber, from 1: the biases are taken anew at each.
     """
 
     output: Floats
@@ -74,6 +76,7 @@ class RateStop:
     field: Floats | None = None
     label: str = ""
     rows: tuple[int, int] | None = None
+    node: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,12 +101,15 @@ class RateTurn:
 
 
 def rest_base(columns: Columns, /) -> Floats:
-    """A bias for each gyro, shape (n, 3)."""
-    return by_axis(columns, np.ones(columns["axis"].size))
+    """A bias for each gyro, at each temperature of a chamber, shape (n, 3 nodes)."""
+    if "node" not in columns:
+        return by_axis(columns, np.ones(columns["axis"].size))
+    nodes = np.unique(columns["node"])
+    return np.hstack([by_axis(columns, (columns["node"] == k).astype(float)) for k in nodes])
 
 
 def turned_base(columns: Columns, /) -> Floats:
-    """Bias and response to the rates of each gyro, shape (n, 12)."""
+    """Bias and response to the rates of each gyro, shape (n, 9 + 3 nodes)."""
     return np.column_stack([rest_base(columns), *(columns[need.name] for need in GYRO_RATES)])
 
 
@@ -135,16 +141,19 @@ ACTIONS = (
     Action("upside_down", "repeat the last stop upside down", _upside_down),
     Action("warmer", "repeat the last stop 5 K warmer", _warmer),
 )
+NODE = Column("node", "number of the chamber's temperature, from 1")
 COLUMNS = (
-    *(AXIS, STOP, ELAPSED, TEMPERATURE, PLACE),
+    *(AXIS, STOP, NODE, ELAPSED, TEMPERATURE, PLACE),
     *(*FORCES, *INPUTS, *FIELDS),
     *(*GYRO_FORCES, *GYRO_RATES, *GYRO_SIZES),
 )
 
 
-def rate_subject(*, turned: bool) -> DiagnosedSubject:
-    """The subject of stops at rest, or of stops on a table that turned."""
+def rate_subject(*, turned: bool, nodes: int = 0) -> DiagnosedSubject:
+    """The subject of stops at rest, or of stops on a table that turned, perhaps in a chamber."""
     biases = tuple(f"bias_{a}" for a in "xyz")
+    if nodes:
+        biases = tuple(f"bias_{a}_node_{k + 1}" for k in range(nodes) for a in "xyz")
     matrix = tuple(f"response_{a}{b}" for a in "xyz" for b in "xyz")
     names = (*biases, *matrix) if turned else biases
     return DiagnosedSubject(
@@ -155,7 +164,7 @@ def rate_subject(*, turned: bool) -> DiagnosedSubject:
         base=turned_base if turned else rest_base,
         base_names=names,
         effects=of_subject("rate"),
-        value=tuple(1.0 / 3.0 if k < 3 else 0.0 for k in range(len(names))),
+        value=tuple(1.0 / len(biases) if k < len(biases) else 0.0 for k in range(len(names))),
         actions=ACTIONS,
         unit="deg/s",
         scale=DEG_S,
@@ -210,7 +219,8 @@ def rate_case(
         extra=extra,
     )
     turned = bool(turns) or any(s.known is not None for s in stops)
-    case = case_of(rate_subject(turned=turned), record)
+    nodes = np.unique(columns["node"]).size if "node" in columns else 0
+    case = case_of(rate_subject(turned=turned, nodes=nodes), record)
     told = np.arange(observed.size) < rests
     weights = np.where(told, 1.0 / rests, 0.0)
     return replace(case, value_weights=weights, reported=told.astype(np.float64), own_scales=scales)
@@ -241,6 +251,9 @@ def _stop_columns(stops: Sequence[RateStop]) -> dict[str, Floats]:
     temperatures = [s.temperature_c for s in stops if s.temperature_c is not None]
     if len(temperatures) == count and np.ptp(temperatures) > 0.0:
         columns["temperature_c"] = each(temperatures)
+    nodes = [float(s.node) for s in stops if s.node is not None]
+    if len(nodes) == count and np.ptp(nodes) > 0.0:
+        columns["node"] = each(nodes)
     places = [float(s.place) for s in stops if s.place is not None]
     if len(places) == count:
         columns["place"] = each(places)

@@ -14,7 +14,7 @@ from surveyapp.domain.project import ResultWarning
 from surveyapp.languages import joined, said, said_each, term
 from surveyapp.languages.names import by_id, ids, named
 from surveyapp.report.blocks import Block, Figure, Heading, KeyValues, Paragraph, Table, Tone
-from surveyapp.report.numbers import NOTHING, four_digits
+from surveyapp.report.numbers import NOTHING, by_sigma, dms_beside, four_digits
 from surveyapp.report.plots import Axis, Frame
 
 DIGEST_SHOWN = 16
@@ -101,9 +101,9 @@ def parameter_table(parameters: Sequence[SensorParameter]) -> Table:
     rows = tuple(
         (
             named(item.name),
-            four_digits(item.value),
+            by_sigma(item.value, item.sigma),
             four_digits(item.sigma),
-            item.unit,
+            joined(" = ", [t for t in (item.unit, dms_beside(item.name, item.value)) if t]),
         )
         for item in parameters
     )

@@ -9,6 +9,7 @@ from surveyapp.core.sensors.rate.fog_station_log import NEEDED, OPTIONAL, calibr
 from surveyapp.domain.calibration import Calibration
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.reading import Need
+from surveyapp.workflows.adopted_effects import without_adopted
 from surveyapp.workflows.calibrating.drift import with_drift
 from surveyapp.workflows.calibrating.due import with_due_date
 from surveyapp.workflows.calibrating.request import CalibrationRequest
@@ -45,6 +46,7 @@ def calibrate(request: CalibrationRequest) -> Calibration:
         log = request.read(Need(columns=NEEDED, varying=NEEDED, optional=OPTIONAL))
     except SurveyError as error:
         raise SurveyError([*problems, *error.problems]) from None
+    log = without_adopted(log, request.entry)
     found = calibrate_fog_station(
         log, rule=cast("Rule", rule), relative_rate_sigma=relative, problems=problems
     )

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from surveyapp.core.sensors.rate.accelerometers import Resting
+from surveyapp.core.sensors.rate.adopted import adopted_flip_sigma, adopted_parameters
 from surveyapp.core.sensors.rate.multi_position_log import NEEDED as HAND_HELD
 from surveyapp.core.sensors.rate.multi_position_log import (
     MultiPositionOptions,
@@ -30,11 +31,12 @@ from surveyapp.core.sensors.rate.temperature_log import (
 )
 from surveyapp.core.sensors.rate.temperature_nodes import TemperatureOptions
 from surveyapp.domain.calibration import Calibration
+from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2, SensorLog
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.sensor_logs.reading import LogRequest, Need, read_log
 from surveyapp.languages import either, said
-from surveyapp.workflows.adopted_effects import not_taken_out
+from surveyapp.workflows.adopted_effects import need_with_adopted, without_adopted
 from surveyapp.workflows.calibrating.drift import with_drift
 from surveyapp.workflows.calibrating.due import with_due_date
 from surveyapp.workflows.calibrating.request import CalibrationRequest
@@ -61,8 +63,19 @@ def calibrate(request: CalibrationRequest) -> Calibration:
                 "" if programme is None else nearest_names(str(programme), PROGRAMMES),
             )
         )
-    found = with_drift(with_due_date(PROGRAMMES[programme](request), request), request)
-    return replace(found, warnings=(*found.warnings, *not_taken_out(request.entry)))
+    return with_drift(
+        with_due_date(_with_adopted(PROGRAMMES[programme](request), request.entry), request),
+        request,
+    )
+
+
+def _with_adopted(found: Calibration, entry: SensorLogEntry | None) -> Calibration:
+    """The parameters, and those that the adopted effects of the sensor add."""
+    applied = {w.text.partition(" ")[0] for w in found.warnings if w.code == "adopted_applied"}
+    if entry is None or not applied:
+        return found
+    used = [e for e in entry.effects if e.id in applied]
+    return replace(found, parameters=(*found.parameters, *adopted_parameters(used)))
 
 
 def latitude_of(request: CalibrationRequest, problems: list[Problem]) -> float | None:
@@ -87,6 +100,13 @@ def _positive(request: CalibrationRequest, name: str, problems: list[Problem]) -
     return value
 
 
+def _flip_sigma(request: CalibrationRequest, problems: list[Problem]) -> float:
+    """Stated, or at least what a crooked seat that was adopted shows [rad]."""
+    stated = _positive(request, "flip_sigma_arcsec", problems) * ARCSEC
+    shown = 0.0 if request.entry is None else adopted_flip_sigma(request.entry.effects)
+    return max(stated, shown)
+
+
 def _gravity(request: CalibrationRequest, problems: list[Problem]) -> float:
     value = request.number("gravity_m_s2")
     if value is None:
@@ -100,26 +120,34 @@ def _gravity(request: CalibrationRequest, problems: list[Problem]) -> float:
     return value
 
 
-def _read(request: CalibrationRequest, need: Need, problems: list[Problem]) -> SensorLog:
-    """The log, or what is wrong with it and with the options together.
+def _read(
+    request: CalibrationRequest,
+    need: Need,
+    problems: list[Problem],
+    *,
+    estimated: tuple[str, ...] = (),
+) -> SensorLog:
+    """The log without adopted effects, or what is wrong with it and with the options together.
+
+    ``estimated`` are the effects that the programme estimates itself.
 
     Raises
     ------
     SurveyError
     """
     try:
-        log = request.read(need)
+        log = request.read(need_with_adopted(need, request.entry))
     except SurveyError as error:
         raise SurveyError([*problems, *error.problems]) from None
     if problems:
         raise SurveyError(problems)
-    return log
+    return without_adopted(log, request.entry, estimated=estimated)
 
 
 def _six_positions(request: CalibrationRequest) -> Calibration:
     problems: list[Problem] = []
     options = SixPositionOptions(
-        flip_sigma=_positive(request, "flip_sigma_arcsec", problems) * ARCSEC,
+        flip_sigma=_flip_sigma(request, problems),
         relative_rate_sigma=_positive(request, "table_rate_relative_sigma", problems),
         latitude=latitude_of(request, problems),
     )
@@ -158,7 +186,7 @@ def _temperature(request: CalibrationRequest) -> Calibration:
         predict_at=_temperatures(request, problems),
         room=None if room is None else _room(request, str(room), problems),
         gravity=_gravity(request, problems),
-        flip_sigma=_positive(request, "flip_sigma_arcsec", problems) * ARCSEC,
+        flip_sigma=_flip_sigma(request, problems),
         relative_rate_sigma=_positive(request, "table_rate_relative_sigma", problems),
     )
     need = Need(
@@ -166,7 +194,8 @@ def _temperature(request: CalibrationRequest) -> Calibration:
         varying=GYROS,
         optional=(*TABLE_COLUMNS, *ACCELEROMETERS),
     )
-    return calibrate_temperature(_read(request, need, problems), options)
+    log = _read(request, need, problems, estimated=("temperature",))
+    return calibrate_temperature(log, options)
 
 
 def _temperatures(request: CalibrationRequest, problems: list[Problem]) -> tuple[float, ...]:

@@ -6,13 +6,11 @@ One line of ``METHODS`` a method; the module behind it holds ``find(request) -> 
 from __future__ import annotations
 
 import importlib
-from dataclasses import replace
 from typing import Final, cast
 
 from surveyapp.domain.north import NorthResult
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.languages import either
-from surveyapp.workflows.adopted_effects import not_taken_out
 from surveyapp.workflows.north.request import NorthRequest, declination_problems
 
 METHODS: Final = {
@@ -43,8 +41,7 @@ def find_north(request: NorthRequest) -> NorthResult:
         raise SurveyError([*problems, *error.problems]) from None
     if problems:
         raise SurveyError(problems)
-    told = not_taken_out(request.entry)
-    return replace(result, warnings=(*result.warnings, *told)) if told else result
+    return result
 
 
 __all__ = ["METHODS", "NorthRequest", "NorthResult", "find_north"]

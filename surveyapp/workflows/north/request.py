@@ -14,6 +14,7 @@ from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.languages import said
+from surveyapp.workflows.adopted_effects import need_with_adopted, without_adopted
 
 _LATITUDE_HINT = "the level part of the earth rate, from which north is found, depends on it"
 
@@ -44,8 +45,9 @@ class NorthRequest:
     progress: PartDone | None = None
 
     def read(self, need: Need) -> SensorLog:
-        """Read the columns that are needed."""
-        return self.file.read(need, progress=self.progress)
+        """Read the columns that are needed, without adopted effects of the log."""
+        log = self.file.read(need_with_adopted(need, self.entry), progress=self.progress)
+        return without_adopted(log, self.entry)
 
     def option(self, name: str) -> object:
         """An option of the command line, else of the project's entry; None if neither has it."""

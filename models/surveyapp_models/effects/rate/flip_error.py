@@ -11,13 +11,17 @@ from surveyapp_models.effects.rate import AXIS, INPUTS, PLACE
 
 
 def basis(columns: Columns, /, **grid: float) -> Floats:
-    """Small rotation times known rate in the rows of one position, shape (n, 3) [rad/s]."""
+    """Small rotations across the table's axis times known rate in the rows of one position.
+
+    Shape (n, 2) [rad/s]. A turn about the table's axis itself is no error of the seat.
+    """
     here = columns["place"] == grid["place"]
     rate = np.column_stack([columns[f"input_{a}"] for a in "xyz"])
     axis = columns["axis"].astype(np.intp)
-    found = np.zeros((rate.shape[0], 3))
-    for k in range(3):
-        turned = np.cross(np.eye(3)[k], rate)
+    own = int(np.argmax(np.abs(rate[here]).sum(axis=0)))
+    found = np.zeros((rate.shape[0], 2))
+    for k in range(2):
+        turned = np.cross(np.eye(3)[(own + 1 + k) % 3], rate)
         found[:, k] = turned[np.arange(axis.size), axis] * here
     return found
 
@@ -33,7 +37,11 @@ EFFECT = Effect(
     subject="rate",
     needs=(AXIS, PLACE, *INPUTS),
     coefficients=tuple(
-        Coefficient(a, "arcsec", ARCSEC, -36000.0, 36000.0, f"turn about {a}") for a in "xyz"
+        Coefficient(name, "arcsec", ARCSEC, -36000.0, 36000.0, f"turn about {meaning}")
+        for name, meaning in (
+            ("next", "the axis after that of the position: y for x, z for y, x for z"),
+            ("after_next", "the one after: z for x, x for y, y for z"),
+        )
     ),
     basis=basis,
     grid=(GridParameter("place", "number", places, "the position"),),

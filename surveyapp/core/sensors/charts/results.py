@@ -222,16 +222,7 @@ def table_charts(result: Calibration) -> tuple[Picture, ...]:
     found: list[Picture] = []
     sets: Sequence[dict[str, Any]] = result.extra.get("sets", ())
     if result.kind == "fog-station" and sets:
-        number = range(1, len(sets) + 1)
-        values = pairs(number, (s["elevation_arcsec"] for s in sets))
-        mean = float(np.mean([v for _, v in values]))
-        line = ((1.0, mean), (float(len(sets)), mean))
-        repeats = (Series(said("elevation"), values, "dots"), Series(said("mean"), line, "guide"))
-        found.append(
-            Chart(
-                said("Elevation of the gyro axis"), said("set"), said("elevation [arcsec]"), repeats
-            )
-        )
+        found.append(_repeats(sets))
     nodes: Sequence[dict[str, Any]] = result.extra.get("nodes", ())
     for name, unit in (("bias", "deg/h"), ("scale_factor", "ppm")):
         series = tuple(
@@ -244,6 +235,24 @@ def table_charts(result: Calibration) -> tuple[Picture, ...]:
                 Chart(title, said("temperature [C]"), joined("", (word, f" [{unit}]")), series)
             )
     return tuple(found)
+
+
+def _repeats(sets: Sequence[dict[str, Any]]) -> Chart:
+    """Each set about the mean of its own pass: the passes themselves lie degrees apart."""
+    shown = np.array([s["elevation_arcsec"] for s in sets], dtype=np.float64)
+    passes = np.array([s["pass"] for s in sets])
+    for number in np.unique(passes):
+        shown[passes == number] -= shown[passes == number].mean()
+    line = ((1.0, 0.0), (float(len(sets)), 0.0))
+    return Chart(
+        said("Elevation of the gyro axis, set by set"),
+        said("set"),
+        said("about the mean of its pass [arcsec]"),
+        (
+            Series(said("elevation"), pairs(range(1, len(sets) + 1), shown), "dots"),
+            Series(said("mean"), line, "guide"),
+        ),
+    )
 
 
 def _node_points(nodes: Sequence[dict[str, Any]], name: str) -> Points:

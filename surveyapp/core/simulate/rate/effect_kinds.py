@@ -20,14 +20,21 @@ TABLE_EFFECTS: Final = (
     EffectKind("temperature", "deg/h/K", DEG_H, "bias per kelvin; the record warms by 5 K"),
     EffectKind("interference_line", "deg/h", DEG_H, "amplitude of a line", (("hz", 2.48),)),
     EffectKind("magnetic_sensitivity", "deg/h/uT", DEG_H, "bias per field along the axis"),
-    EffectKind("gross_error", "deg/h", DEG_H, "one position's output of gyro x is off"),
+    EffectKind("gross_error", "deg/h", DEG_H, "output of gyro x is off in one position, clockwise"),
 )
 """Effects of a unit on a table."""
+
+STATIC_EFFECTS: Final = (
+    *(e for e in TABLE_EFFECTS[4:8]),
+    EffectKind("gross_error", "deg/h", DEG_H, "output of gyro x is off for a minute"),
+)
+"""Effects of a unit at rest."""
 
 FOG_EFFECTS: Final = (
     EffectKind("rate_error", "1", 1.0, "relative sigma of the table's rate, each way anew"),
     EffectKind("scale_factor", "ppm", 1e-6, "error of the gyro's scale factor"),
     EffectKind("gross_error", "deg/h", DEG_H, "one set's output is off while turning clockwise"),
+    *(e for e in TABLE_EFFECTS[4:7]),
 )
 """Effects of a gyro on a total station."""
 

@@ -9,10 +9,18 @@ from typing import Any, Final
 
 import numpy as np
 
+from surveyapp.core.simulate.rate.disturbed import (
+    NODES_C,
+    disturbed,
+    sizes_of,
+    struck,
+    switched_field,
+)
 from surveyapp.core.simulate.rate.effect_kinds import (
     FOG_EFFECTS,
     HAND_EFFECTS,
     INDEXING_EFFECTS,
+    STATIC_EFFECTS,
     TABLE_EFFECTS,
     VEHICLE_EFFECTS,
 )
@@ -44,19 +52,6 @@ from surveyapp_models.rate.turntable import Table
 
 LATITUDE: Final = math.radians(45.77)
 """Of source 003."""
-NODES_C: Final = (-10.0, 5.0, 20.0, 30.0, 40.0)
-"""Chamber temperatures of source 000-25."""
-
-
-def _sizes(effects: Sequence[Effect]) -> dict[str, float]:
-    return {e.id: e.size for e in effects}
-
-
-def _option(effects: Sequence[Effect], identity: str, name: str, default: float) -> float:
-    for effect in effects:
-        if effect.id == identity:
-            return float(dict(effect.options).get(name) or default)
-    return default
 
 
 def example_unit(sizes: Mapping[str, float], run: TableRun) -> ImuOnTable:
@@ -91,55 +86,13 @@ def example_unit(sizes: Mapping[str, float], run: TableRun) -> ImuOnTable:
 
 
 def _six_positions(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
-    sizes = _sizes(effects)
+    sizes = sizes_of(effects)
     log = six_position_log(example_unit(sizes, TableRun(turns=4.0, interval_s=0.1)), rng)
-    return _disturbed(log, effects, rng)
-
-
-def _disturbed(
-    log: SimulatedLog, effects: Sequence[Effect], rng: np.random.Generator
-) -> SimulatedLog:
-    """Effects that are added to what the gyros put out."""
-    sizes = _sizes(effects)
-    columns = dict(log.columns)
-    time = columns["time_s"]
-    names = [f"gyr_{a}_rad_s" for a in "xyz"]
-    warmth = 5.0 * (1.0 - np.exp(-time / (0.4 * float(time[-1]))))
-    columns["temperature_c"] = 20.0 + warmth + rng.normal(0.0, 0.02, time.size)
-    for name in names:
-        columns[name] = columns[name] + sizes.get("temperature", 0.0) * warmth
-    if "interference_line" in sizes:
-        hz = _option(effects, "interference_line", "hz", 2.48)
-        wave = sizes["interference_line"] * np.sin(2.0 * np.pi * hz * time)
-        columns[names[0]] = columns[names[0]] + wave
-    if "magnetic_sensitivity" in sizes:
-        columns |= _field(columns, sizes["magnetic_sensitivity"], names, rng)
-    if "gross_error" in sizes:
-        words = np.array(log.texts["position"])
-        struck = words == sorted(set(words.tolist()))[int(rng.integers(6))]
-        columns[names[0]] = columns[names[0]] + sizes["gross_error"] * struck
-    return SimulatedLog(columns, log.texts, dict(log.truth) | {"effects": sizes})
-
-
-def _field(
-    columns: Mapping[str, Floats],
-    sensitivity: float,
-    names: Sequence[str],
-    rng: np.random.Generator,
-) -> dict[str, Floats]:
-    """A fluxgate beside the gyros in a field that is switched, and what the gyros make of it."""
-    time = columns["time_s"]
-    found: dict[str, Floats] = {}
-    for k, (axis, name) in enumerate(zip("xyz", names, strict=True)):
-        period = float(time[-1]) / (3.0 + 2.0 * k)
-        field_ut = 50.0 * np.sign(np.sin(2.0 * np.pi * time / period + 0.3 * k))
-        found[f"mag_{axis}_uT"] = field_ut + rng.normal(0.0, 0.5, time.size)
-        found[name] = columns[name] + sensitivity * field_ut
-    return found
+    return disturbed(log, effects, rng)
 
 
 def _temperature(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
-    unit = example_unit(_sizes(effects), TableRun(turns=2.0, interval_s=0.1, pause_s=2.0))
+    unit = example_unit(sizes_of(effects), TableRun(turns=2.0, interval_s=0.1, pause_s=2.0))
     unit = replace(unit, warm_up_s=10.0, static_s=10.0, table=Table(LATITUDE, azimuth=0.7))
 
     def at(node: float) -> tuple[Triad, Triad]:
@@ -148,11 +101,37 @@ def _temperature(effects: Sequence[Effect], rng: np.random.Generator) -> Simulat
         force = unit.accelerometer.bias + np.array([0.01, 0.02, -0.01]) * t
         return replace(unit.gyro, bias=bias), replace(unit.accelerometer, bias=force)
 
-    return temperature_log(unit, rng, nodes_c=NODES_C, at=at)
+    return struck(temperature_log(unit, rng, nodes_c=NODES_C, at=at), effects, rng)
+
+
+def _static(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
+    """Half an hour at rest at 10 Hz, a fluxgate beside the gyros in a field that is switched."""
+    sizes = sizes_of(effects)
+    time: Floats = (np.arange(18_000.0) + 0.5) * 0.1
+    unit = example_unit({}, TableRun())
+    forces = np.tile([0.2, -0.1, 9.80], (time.size, 1))
+    rates = unit.gyro.output(np.zeros((time.size, 3)), forces=forces, rng=rng)
+    columns: dict[str, Floats] = {"time_s": time}
+    columns |= {
+        f"gyr_{a}_rad_s": rates[:, i] + sizes.get("bias_ramp", 0.0) * time
+        for i, a in enumerate("xyz")
+    }
+    shown = forces + rng.normal(0.0, 0.01, forces.shape)
+    columns |= {f"acc_{a}_m_s2": shown[:, i] for i, a in enumerate("xyz")}
+    if "gross_error" in sizes:
+        begin = rng.uniform(0.1, 0.9) * float(time[-1])
+        struck = (time >= begin) & (time < begin + 60.0)
+        columns["gyr_x_rad_s"] = columns["gyr_x_rad_s"] + sizes["gross_error"] * struck
+    kept = [e for e in effects if e.id != "gross_error"]
+    if "magnetic_sensitivity" not in sizes:
+        columns |= switched_field(columns, 0.0, [f"gyr_{a}_rad_s" for a in "xyz"], rng)
+    log = disturbed(SimulatedLog(columns, {}, {}), kept, rng)
+    truth = {f"bias_{a}": float(unit.gyro.bias[i]) / DEG_H for i, a in enumerate("xyz")}
+    return SimulatedLog(log.columns, log.texts, truth | {"effects": sizes})
 
 
 def _fog_station(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
-    sizes = _sizes(effects)
+    sizes = sizes_of(effects)
     fog = FogOnTelescope(
         constant=math.radians(171.0 + 7.0 / 60.0 + 49.0 / 3600.0),
         scale=sizes.get("scale_factor", 0.0),
@@ -170,11 +149,13 @@ def _fog_station(effects: Sequence[Effect], rng: np.random.Generator) -> Simulat
     reading = fog.constant - 23761.0 * ARCSEC
     spec = FogStationRun(fog, Table(math.radians(34.0)), run, reading, sets=8, passes=2)
     log = fog_station_log(spec, rng)
-    if "gross_error" in sizes:
-        columns = dict(log.columns)
-        struck = (columns["set"] == 3.0) & (columns["table_rate_deg_s"] > 0.0)
-        columns["gyr_x_rad_s"] = columns["gyr_x_rad_s"] + sizes["gross_error"] * struck
-        log = SimulatedLog(columns, log.texts, log.truth)
+    columns = dict(log.columns)
+    drift = sizes.get("bias_ramp", 0.0) * columns["time_s"]
+    struck = (columns["set"] == 3.0) & (columns["table_rate_deg_s"] > 0.0)
+    off = sizes.get("gross_error", 0.0) * struck
+    columns["gyr_x_rad_s"] = columns["gyr_x_rad_s"] + drift + off
+    kept = [e for e in effects if e.id in ("temperature", "interference_line")]
+    log = disturbed(SimulatedLog(columns, log.texts, log.truth), kept, rng)
     return SimulatedLog(log.columns, log.texts, dict(log.truth) | {"effects": sizes})
 
 
@@ -197,14 +178,14 @@ def _indexing_unit(sizes: Mapping[str, float], rng: np.random.Generator) -> Inde
 
 
 def _indexing(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
-    sizes = _sizes(effects)
+    sizes = sizes_of(effects)
     log = indexing_log(_indexing_unit(sizes, rng), rng)
     return SimulatedLog(log.columns, log.texts, dict(log.truth) | {"effects": sizes})
 
 
 def _indexing_stops(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
     """Six stops of a vehicle; at the third the index axis is level and points east-west."""
-    sizes = _sizes(effects)
+    sizes = sizes_of(effects)
     first = _indexing_unit(sizes, rng)
     bias = first.gyro.bias
     runs = []
@@ -226,7 +207,7 @@ def _indexing_stops(effects: Sequence[Effect], rng: np.random.Generator) -> Simu
 
 
 def _vehicle(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
-    sizes = _sizes(effects)
+    sizes = sizes_of(effects)
     noise = sizes.get("noise", 1.0)
     cycle = sizes.get("power_cycle")
     run = VehicleRun(
@@ -274,7 +255,7 @@ def hand_run(sizes: Mapping[str, float], rng: np.random.Generator) -> HandRun:
 
 
 def _hand_held(effects: Sequence[Effect], rng: np.random.Generator) -> SimulatedLog:
-    sizes = _sizes(effects)
+    sizes = sizes_of(effects)
     log = hand_held_log(hand_run(sizes, rng), rng)
     return SimulatedLog(log.columns, log.texts, dict(log.truth) | {"effects": sizes})
 
@@ -284,7 +265,11 @@ Recipe = Callable[[Sequence[Effect], np.random.Generator], SimulatedLog]
 PROGRAMMES: Final[Mapping[str, Mapping[str, tuple[Recipe, tuple[EffectKind, ...]]]]] = {
     "rate": {
         "six-position": (_six_positions, TABLE_EFFECTS),
-        "temperature": (_temperature, TABLE_EFFECTS[:2]),
+        "temperature": (
+            _temperature,
+            tuple(e for e in TABLE_EFFECTS if e.id not in ("temperature", "bias_ramp")),
+        ),
+        "static": (_static, STATIC_EFFECTS),
         "multi-position": (_hand_held, HAND_EFFECTS),
     },
     "fog-station": {"": (_fog_station, FOG_EFFECTS)},
@@ -354,7 +339,7 @@ def simulate_rate(
         f'kind = "{"rate" if kind != "fog-station" else kind}"',
         f'file = "sensors/{identity}.csv"',
     ]
-    if name and kind == "rate":
+    if name and kind == "rate" and name != "static":
         lines.append(f'programme = "{name}"')
     latitude = log.truth.get("latitude_deg", math.degrees(LATITUDE))
     if kind != "fog-station":
