@@ -23,7 +23,7 @@ from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.later_visits import campaign_data, is_campaign
 from surveyapp.diagnosis.outlook import ActionResult, Outlook
 from surveyapp.domain.priors import DEFAULT_PRIORS, GROSS, Priors
-from surveyapp.languages import said
+from surveyapp.languages import joined, said, term
 from surveyapp_models.arrays import Floats
 
 DRAWS = 200
@@ -177,8 +177,8 @@ def worth_in_words(outlook: Outlook, *, scale: float, unit: str) -> list[str]:
     if not outlook.actions:
         return []
     best = outlook.actions[0]
-    sign = '"' if unit == "arcsec" else f" {unit}"
-    now = f"+-{outlook.interval / scale:.1f}{sign}"
+    sign = '"' if unit == "arcsec" else joined("", (" ", term(unit)))
+    now = joined("", (f"+-{outlook.interval / scale:.1f}", sign))
 
     def told(item: ActionResult) -> str:
         return said(
@@ -201,8 +201,16 @@ def worth_in_words(outlook: Outlook, *, scale: float, unit: str) -> list[str]:
     ]
     others = [told(item) for item in outlook.actions[1:3]]
     if others:
-        sentences.append(said("Else: {others}.", others="; or ".join(others)))
+        sentences.append(said("Else: {others}.", others=_alternatives(others)))
     return sentences
+
+
+def _alternatives(texts: Sequence[str]) -> str:
+    """Clauses of which one is to be done."""
+    whole, *others = texts
+    for text in others:
+        whole = said("{before}; or {last}", before=whole, last=text)
+    return whole
 
 
 __all__ = ["Outlook", "advice", "worth_in_words"]

@@ -22,6 +22,7 @@ from surveyapp.diagnosis.fits import Fit
 from surveyapp.diagnosis.outlook import ActionResult, Outlook
 from surveyapp.diagnosis.run_average import reading_noise
 from surveyapp.diagnosis.run_rivals import SLIPS, Design, Rival, RunAction, design_of, rivals_of
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
 LEAST, MOST = 6, 60
@@ -32,10 +33,14 @@ LEAST_WEIGHT = 1e-3
 
 
 RUN_ACTIONS = (
-    RunAction("two_points", "read two more turning points", anew=False),
-    RunAction("reversed_start", "observe a second run now, begun on the other side", reversed=True),
-    RunAction("second_run", "observe a second run in four hours, set up anew", later=True),
-    RunAction("other_observer", "let another observer do a second run now", other_observer=True),
+    RunAction("two_points", said("read two more turning points"), anew=False),
+    RunAction(
+        "reversed_start", said("observe a second run now, begun on the other side"), reversed=True
+    ),
+    RunAction("second_run", said("observe a second run in four hours, set up anew"), later=True),
+    RunAction(
+        "other_observer", said("let another observer do a second run now"), other_observer=True
+    ),
 )
 
 
@@ -63,7 +68,7 @@ def run_advice(case: Case, base: Fit, rng: np.random.Generator) -> Outlook | Non
         results.append(_worth(state, action, rng, noise[0]))
     results.sort(key=lambda item: (-item.information, item.interval95))
     assert now is not None
-    return Outlook(now[0], now[1] * noise[0], tuple(results), "north at")
+    return Outlook(now[0], now[1] * noise[0], tuple(results), said("north at"))
 
 
 @dataclass(frozen=True, slots=True)

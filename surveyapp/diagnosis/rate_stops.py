@@ -54,7 +54,7 @@ def stops_of(
     """
     told = ""
     if latitude is None:
-        told = (
+        told = said(
             "the latitude is not known: the vertical earth rate stays in the stops and looks like "
             "a sensitivity to gravity"
         )

@@ -13,7 +13,7 @@ from enum import StrEnum
 import numpy as np
 
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.languages import said
+from surveyapp.languages import joined, said, term
 
 
 class ObservationKind(StrEnum):
@@ -208,9 +208,9 @@ class Observation:
     @property
     def where(self) -> str:
         """Where the observation stands, for messages."""
-        place = f"line {self.line}, " if self.line else ""
         sight = "-".join(name for name in (self.back, self.at, self.to) if name)
-        return f"{place}{self.kind} {sight}"
+        what = joined(" ", (term(self.kind.value.replace("_", " ")), sight))
+        return said("line {line}, {what}", line=self.line, what=what) if self.line else what
 
 
 def _observation_problems(obs: Observation) -> list[Problem]:

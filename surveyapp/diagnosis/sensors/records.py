@@ -20,6 +20,7 @@ from surveyapp.diagnosis.sensors.noise import whiteners
 from surveyapp.diagnosis.sensors.turn import turn
 from surveyapp.diagnosis.sensors.windows import Blocks, block_means, blocks_of, switch
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Effect
@@ -272,7 +273,7 @@ def _size_record(log: SensorLog, effects: tuple[Effect, ...]) -> SensorRecord:
     # the attitude is not known: no turn against it, and the gradient has a form of its own
     unseen = [e for e in effects if e.id not in ("misalignment", "field_gradient", "temperature")]
     candidates, missing = _catalogued(unseen, columns, block, used / scale)
-    missing.append(("misalignment", "no reference attitude (ref_q)"))
+    missing.append(("misalignment", said("no reference attitude (ref_q)")))
     candidates += _size_candidates(columns, missing, m, block)
     time = log.columns["time_s"][kept]
     step = np.concatenate([m, one], axis=2)
@@ -296,7 +297,7 @@ def _size_candidates(
         names = (*(f"temperature_{a}" for a in "xyz"), "temperature_square")
         found.append(_plain("temperature", (design, block), names, "uT/K"))
     else:
-        missing.append(("temperature", "no temperature_c [degree Celsius] that varies"))
+        missing.append(("temperature", said("no temperature_c [degree Celsius] that varies")))
     if place is not None and np.all(np.isfinite(place)):
         at = np.column_stack([columns[f"place_{a}"][::3] for a in "xyz"])
         squares = np.column_stack([at, at**2, at[:, [0]] * at[:, [1]], at[:, [0]] * at[:, [2]],
@@ -304,7 +305,7 @@ def _size_candidates(
         names = tuple(f"gradient_{s}" for s in ("x", "y", "z", "xx", "yy", "zz", "xy", "xz", "yz"))
         found.append(_plain("field_gradient", (squares[:, None, :], block), names, "uT/m"))
     else:
-        missing.append(("field_gradient", "no place (ref_px_m, ref_py_m, ref_pz_m)"))
+        missing.append(("field_gradient", said("no place (ref_px_m, ref_py_m, ref_pz_m)")))
     return found
 
 

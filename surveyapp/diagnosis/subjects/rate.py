@@ -132,8 +132,8 @@ def _warmer(columns: Columns, /) -> dict[str, Floats] | None:
 
 
 ACTIONS = (
-    Action("upside_down", "repeat the last stop upside down", _upside_down),
-    Action("warmer", "repeat the last stop 5 K warmer", _warmer),
+    Action("upside_down", said("repeat the last stop upside down"), _upside_down),
+    Action("warmer", said("repeat the last stop 5 K warmer"), _warmer),
 )
 COLUMNS = (
     *(AXIS, STOP, ELAPSED, TEMPERATURE, PLACE),
@@ -149,8 +149,8 @@ def rate_subject(*, turned: bool) -> DiagnosedSubject:
     names = (*biases, *matrix) if turned else biases
     return DiagnosedSubject(
         id="rate",
-        title="a rate sensor",
-        value_name="the mean bias of the three gyros",
+        title=said("a rate sensor"),
+        value_name=said("the mean bias of the three gyros"),
         columns=COLUMNS,
         base=turned_base if turned else rest_base,
         base_names=names,

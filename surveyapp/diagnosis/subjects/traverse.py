@@ -112,7 +112,7 @@ def traverse(
     columns["own_sigma"] = _controlled(columns)
     return Case(
         subject="traverse",
-        title="traverse",
+        title=said("traverse"),
         value_name=said("the place of the least certain point"),
         observations=transform @ right,
         base=base,
