@@ -17,6 +17,7 @@ import string
 import sys
 import tomllib
 from collections.abc import Iterable, Iterator
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Final, get_args
@@ -46,20 +47,28 @@ HEADERS: Final = {
 FORMS: Final = {"de": 2, "ru": 3, "zh": 1}
 
 
-def texts() -> dict[Key, str]:
-    """Every text and where it stands."""
-    found: dict[Key, str] = {}
+@cache
+def refusals() -> tuple[dict[Path, ast.Module], dict[Path, problem_texts.Found]]:
+    """Syntax trees of all modules, and what refusals and warnings say in each."""
     trees = {
         path: ast.parse(path.read_text(encoding="utf-8"))
         for path in sorted((ROOT / "surveyapp").rglob("*.py"))
-        if path.parent.name != "texts"
     }
-    refusals = problem_texts.texts_of(trees)
+    return trees, problem_texts.texts_of(trees)
+
+
+@cache
+def texts() -> dict[Key, str]:
+    """Every text and where it stands."""
+    found: dict[Key, str] = {}
+    trees, refused = refusals()
     for path, tree in trees.items():
+        if path.parent.name == "texts":
+            continue
         place = path.relative_to(ROOT).as_posix()
         for key, line in _said(tree):
             found.setdefault(key, f"{place}:{line}")
-        for text, line in refusals[path].texts:
+        for text, line in refused[path].texts:
             if problem_texts.has_words(text):
                 found.setdefault((text, None), f"{place}:{line}")
     for text, place in (*_screens(), *_tables()):

@@ -25,6 +25,8 @@ ERRORS: Final = ("CellError", "FormulaError", "RecordError", "WordError")
 Sinks = dict[str, dict[str, int]]
 """By the name of a function: its arguments that become texts, with their places."""
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
+_Call = tuple[_Function | None, ast.Call]
+"""A call and the function in which it stands."""
 
 
 @dataclass(slots=True)
@@ -69,9 +71,7 @@ def _grown(sinks: Sinks, handed: Iterator[tuple[_Function, str]]) -> Sinks:
     return result
 
 
-def _of_module(
-    tree: ast.Module, calls: list[tuple[_Function | None, ast.Call]], sinks: Sinks
-) -> Found:
+def _of_module(tree: ast.Module, calls: list[_Call], sinks: Sinks) -> Found:
     found = Found()
     for function, call in calls:
         name = getattr(call.func, "id", getattr(call.func, "attr", ""))
@@ -83,7 +83,7 @@ def _of_module(
     return found
 
 
-def _calls(tree: ast.Module) -> Iterator[tuple[_Function | None, ast.Call]]:
+def _calls(tree: ast.Module) -> Iterator[_Call]:
     """Every call in the order of the source, and the function that it stands in."""
     waiting: list[tuple[_Function | None, ast.AST]] = [(None, tree)]
     while waiting:

@@ -106,7 +106,8 @@ class SensorLog:
     size : int
         Rows.
     rate_hz : float or None
-        Stated, else from the median interval of ``time_s``; None where neither is there.
+        Stated, else from the mean interval of ``time_s`` without its gaps; None where neither is
+        there.
     gaps : tuple of Gap
         Intervals of more than 2.5 median ones.
     clipped : mapping of str to int
@@ -151,7 +152,7 @@ class SensorLog:
         every = -(-self.size // most)
         if every <= 1:
             return self
-        text = said("{size} rows: every {every}th is used", size=self.size, every=every)
+        text = said("{size} rows: one in {every} is used", size=self.size, every=every)
         warnings = (*self.warnings, ResultWarning("thinned", text))
         return replace(self.rows(slice(None, None, every)), warnings=warnings)
 

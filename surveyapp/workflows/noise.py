@@ -148,7 +148,7 @@ def allan_of_log(
     if "time_s" in log.columns and log.size > 2:
         step = np.diff(log.columns["time_s"][: 1 << 20])
         if float(np.std(step)) > 0.2 * float(np.median(step)) and not log.gaps:
-            text = "the interval of the samples varies; its median is taken"
+            text = "the interval of the samples varies; its mean is taken"
             warnings.append(ResultWarning("uneven_rate", text))
     channels = tuple(
         channel_of(

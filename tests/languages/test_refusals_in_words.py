@@ -20,13 +20,9 @@ ROOT = Path(__file__).resolve().parents[2]
 
 def test_every_refusal_can_be_said_in_another_language() -> None:
     """No text with values in it reaches a Problem or a warning other than through ``said``."""
-    trees = {
-        path: ast.parse(path.read_text(encoding="utf-8"))
-        for path in (ROOT / "surveyapp").rglob("*.py")
-    }
     lost = [
         f"{path.name}:{expression.lineno}: {text}"
-        for path, found in problem_texts.texts_of(trees).items()
+        for path, found in extract_texts.refusals()[1].items()
         for expression, text in found.unsaid
         if isinstance(expression, ast.JoinedStr) and problem_texts.has_words(_literal(expression))
     ]

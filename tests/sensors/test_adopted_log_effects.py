@@ -63,7 +63,7 @@ def test_a_long_log_is_thinned_and_its_gross_errors_keep_their_rows(
     monkeypatch.setattr("surveyapp.workflows.diagnosing_log.MOST_ROWS", 700)
     thin = api.calibrate("compass", made.folder, sensor="compass")
     assert (whole.n, thin.n) == (2400, 600)
-    assert "every 4th is used" in next(w.text for w in thin.warnings if w.code == "thinned")
+    assert "one in 4 is used" in next(w.text for w in thin.warnings if w.code == "thinned")
     for a, b in zip(whole.parameters[:3], thin.parameters[:3], strict=True):
         assert a.sigma is not None
         assert b.sigma is not None

@@ -324,3 +324,40 @@ def test_a_card_holds_within_its_days_and_temperatures(tmp_path: Path) -> None:
     with pytest.raises(SurveyError) as caught:
         read_sensor_card(path)
     assert len(caught.value.problems) >= 4
+
+
+def test_the_rate_of_times_that_a_logger_rounded(tmp_path: Path) -> None:
+    """286 Hz in whole milliseconds has steps of 3 and 4: the median would be 333 Hz."""
+
+    def rate(times: list[float]) -> float | None:
+        rows = "\n".join(f"{t:.3f},{k % 7},{k % 5}.5,{k % 3}.5" for k, t in enumerate(times))
+        path = write(tmp_path / "log.csv", f"time_s,mag_x_uT,mag_y_uT,mag_z_uT\n{rows}\n")
+        return read_log(request(path), NEED).rate_hz
+
+    assert rate([round(k / 286.0, 3) for k in range(2861)]) == pytest.approx(286.0, rel=1e-4)
+    assert rate([round(k / 80.0, 2) for k in range(801)]) == pytest.approx(80.0, rel=1e-3)
+    missing = [k / 100.0 for k in range(1000) if k % 23]
+    assert rate(missing) == pytest.approx(100.0, rel=1e-9)
+    with_gap = [k / 100.0 + (500.0 if k > 400 else 0.0) for k in range(1000)]
+    assert rate(with_gap) == pytest.approx(100.0, rel=1e-6)
+
+
+def test_a_column_without_a_name_keeps_its_first_number(tmp_path: Path) -> None:
+    path = write(tmp_path / "log.csv", "".join(f"{v}\n" for v in (5.0, 1.5, 2.5, 4.0)))
+    log = read_log(request(path, rate_hz=1.0), Need(others=("1",)))
+    assert log.columns["1"].tolist() == [5.0, 1.5, 2.5, 4.0]
+    named = write(tmp_path / "named.csv", "100\nfreq\n1.5\n2.5\n")
+    assert read_log(request(named, rate_hz=1.0, header_rows=1), Need(others=("freq",))).size == 2
+
+
+def test_counts_under_the_name_of_a_field_and_a_clock_under_that_of_seconds(tmp_path: Path) -> None:
+    rows = "\n".join(f"{k},{600 - 100 * k},{50 * k},{-70 * k}" for k in range(12))
+    path = write(tmp_path / "log.csv", f"time_s,mag_x_uT,mag_y_uT,mag_z_uT\n{rows}\n")
+    assert "log.csv: mag_x_uT is counts without a unit" in problems_of(request(path))
+    log = read_log(request(path, scale={"mag_x_uT": 0.1, "mag_y_uT": 0.1, "mag_z_uT": 0.1}), NEED)
+    assert log.columns["mag_x_uT"][0] == pytest.approx(60.0)
+    rows = "\n".join(f"2026-01-01T00:00:{k:02d},{k}.5,{k},1.{k}" for k in range(12))
+    write(path, f"time_s,mag_x_uT,mag_y_uT,mag_z_uT\n{rows}\n")
+    with pytest.raises(SurveyError) as caught:
+        read_log(request(path), NEED)
+    assert "seconds" in caught.value.problems[0].hint

@@ -46,6 +46,9 @@ OFFSET_LIMIT_UT: Final = 2.0
 MOST_UNEQUAL: Final = 4.0
 """Scales of the axes that differ by more are units: one axis in mG beside uT is 10."""
 
+LEAST_FIELD_UT, MOST_FIELD_UT = 15.0, 100.0
+"""The field of the earth is 22 to 67 uT at the ground (IGRF-13)."""
+
 FEWEST_ROWS: Final = 20
 AZIMUTHS, BANDS = 12, 6
 """Cells of the picture of the coverage: equal in area."""
@@ -338,6 +341,14 @@ def _warnings(
     elif chosen == 0:
         text = "no iron is found: no model predicts held-out blocks better than the raw readings"
         found.append(ResultWarning("no_iron", text))
+    fit = trials[chosen].fit
+    if verdict != "refused" and not LEAST_FIELD_UT <= fit.field <= MOST_FIELD_UT:
+        text = said(
+            "the field of the record is {field:.4g} uT and that of the earth 22 to 67 uT: are unit "
+            "and scale right, or was it taken beside iron?",
+            field=fit.field,
+        )
+        found.append(ResultWarning("field_size", text))
     failed = [t.fit.model for t in trials if not t.fit.converged]
     if failed:
         text = said("no ellipsoid could be fitted with: {names}", names=ids(failed))

@@ -27,6 +27,9 @@ from surveyapp_models.compass.heading import heading_of
 
 NAMES: Final = tuple(f"deviation_{letter}" for letter in COEFFICIENTS)
 BLOCK_S: Final = 2.0
+WHOLE_CIRCLE: Final = 5.0
+"""Condition of A to E above which arcs of the circle are missing; 1 = evenly swung."""
+
 LEVEL_LIMIT_DEG: Final = 45.0
 """A swing turns a carrier near level: up is within so many degrees of z."""
 
@@ -159,7 +162,7 @@ def _result(
             CalibrationModel("none", plain, plain, not met),
             CalibrationModel("A_to_E", after, held, met),
         ),
-        warnings=(*log.warnings, *_warnings(log, fit, met=met)),
+        warnings=(*log.warnings, *_warnings(log, fit, gate)),
         met=met,
         n=log.size,
         sha256=log.sha256,
@@ -194,11 +197,29 @@ def _temperatures(log: SensorLog) -> tuple[float, float] | None:
     return float(values.min()), float(values.max())
 
 
-def _warnings(log: SensorLog, fit: LinearFit | None, *, met: bool) -> list[ResultWarning]:
+def _why_refused(fit: LinearFit | None, gate: tuple[float, float]) -> str:
+    """The circle is not swung through, or the readings scatter too much for the headings."""
+    sigma, limit = gate
+    if fit is None or fit.condition > WHOLE_CIRCLE:
+        return said("the headings do not determine A to E: swing through the whole circle")
+    return said(
+        "a corrected heading would have a sigma of {sigma:.2f} degrees, more than {limit:g}: the "
+        "headings scatter by {rms:.2f} degrees about A to E over {rows} rows; swing again with "
+        "more headings, away from iron, and look for a wrong known heading",
+        sigma=math.degrees(sigma),
+        limit=math.degrees(limit),
+        rms=math.degrees(fit.rms),
+        rows=fit.residual.size,
+    )
+
+
+def _warnings(
+    log: SensorLog, fit: LinearFit | None, gate: tuple[float, float]
+) -> list[ResultWarning]:
+    met = fit is not None and gate[0] <= gate[1]
     found = []
     if not met:
-        text = "the headings do not determine A to E: swing through the whole circle"
-        found.append(ResultWarning("geometry", text))
+        found.append(ResultWarning("geometry", _why_refused(fit, gate)))
     if fit is not None and fit.inflation > 1.0:
         text = said(
             "neighbouring deviations resemble each other; sigmas widened {inflation:.2f} x",

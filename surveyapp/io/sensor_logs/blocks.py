@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import csv
 import hashlib
+import re
 import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -27,6 +28,9 @@ from surveyapp.languages import said
 BLOCK_BYTES: Final = 8 * 1024 * 1024
 MAPPED_VALUES: Final = 8_000_000
 """Above this number of values the columns are mapped to disk (64 MB)."""
+
+_CLOCK: Final = re.compile(r"^\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}|^\d{1,2}:\d\d(:|$)")
+"""A date or a time of day."""
 
 MAX_TOLD: Final = 20
 """Wrong cells that are named one by one; the rest is counted."""
@@ -278,6 +282,8 @@ def _number(cell: str, place: tuple[int, str], wrong: Wrong) -> float:
         return float(text)
     except ValueError:
         hint = "numbers take a decimal point" if "," in text else ""
+        if _CLOCK.search(text):
+            hint = "times are seconds, as a number; `rate_hz` replaces them"
         wrong.add(
             place[0],
             said("{place} is no number", place=place[1]),

@@ -69,12 +69,17 @@ def find_layout(lines: Sequence[str], *, header_rows: int | None, where: str) ->
         if len(cells) != len(below) or not (_numeric(below) or canonical_texts):
             continue
         if _numeric(cells) and not _empty(cells):
-            if len(cells) == 1 or index > 0:
+            if index > 0 or (len(cells) == 1 and not _all_single(lines)):
                 continue
             return _unnamed(lines, index, separator)
         if len(cells) > 1 and _fits_rest(lines[index + 1 :], separator, len(cells)):
             return _named(lines, index)
     return _fallback(lines, where)
+
+
+def _all_single(lines: Sequence[str]) -> bool:
+    """Whether every line is one number: a column without a name, and no setting above a table."""
+    return all(_numeric([line]) for line in lines)
 
 
 def _fallback(lines: Sequence[str], where: str) -> Layout:

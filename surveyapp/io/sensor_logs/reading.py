@@ -209,16 +209,15 @@ class LogFile:
         problems: list[Problem] = []
         for name, values in columns.items():
             timed = name == "time_s" and need.timed != "no"
-            needed = name in need.columns or name in need.others or timed
-            problems += checks.not_finite(
-                name, values, where=where, first_row=first, blanks=not needed
-            )
+            free = not (name in need.columns or name in need.others or timed)
+            problems += checks.not_finite(name, values, where=where, first_row=first, blanks=free)
             if name in need.varying:
                 problems += checks.constant(name, values, where=where)
         if "time_s" in columns and need.timed != "no":
             problems += checks.bad_times(columns["time_s"], where=where, first_row=first)
         stated = [name for name in columns if self.places[name].stated]
         problems += checks.mixed_units(columns, where=where)
+        problems += checks.off_circle(columns, where=where)
         if not need.biased or not stated:
             problems += checks.implausible(columns, stated=stated, where=where)
         named = [name for name in columns if self.places[name].name.endswith(_suffix(name))]
@@ -237,8 +236,8 @@ class LogFile:
         rate: float | None = self.request.rate_hz
         gaps: tuple[Gap, ...] = ()
         if "time_s" in columns and need.timed != "no":
-            median, gaps = checks.gaps_of(columns["time_s"])
-            rate = rate or (1.0 / median if median > 0.0 else None)
+            interval, gaps = checks.gaps_of(columns["time_s"])
+            rate = rate or (1.0 / interval if interval > 0.0 else None)
         elif need.timed != "no" and rate is not None:
             columns["time_s"] = np.arange(size) / rate
         clipped = checks.clipped_columns(columns)

@@ -33,6 +33,7 @@ UNITS: Final[dict[str, tuple[str, float]]] = {
     "rad": ("angle", 1.0),
     "deg": ("angle", _DEG),
     "arcsec": ("angle", _DEG / 3600.0),
+    "gon": ("angle", math.pi / 200.0),
     "s": ("time", 1.0),
     "ms": ("time", 1e-3),
     "us": ("time", 1e-6),

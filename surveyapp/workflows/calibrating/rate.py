@@ -30,16 +30,19 @@ from surveyapp.core.sensors.rate.temperature_log import (
 )
 from surveyapp.core.sensors.rate.temperature_nodes import TemperatureOptions
 from surveyapp.domain.calibration import Calibration
-from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2
+from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2, SensorLog
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.sensor_logs.reading import LogRequest, Need, read_log
-from surveyapp.languages import either
+from surveyapp.languages import either, said
 from surveyapp.workflows.adopted_effects import not_taken_out
 from surveyapp.workflows.calibrating.drift import with_drift
 from surveyapp.workflows.calibrating.due import with_due_date
 from surveyapp.workflows.calibrating.request import CalibrationRequest
 from surveyapp_models.angles import ARCSEC
 
+GRAVITY_M_S2: Final = (9.7, 9.9)
+"""Free fall on the ground lies between 9.764 (Huascaran) and 9.834 (Arctic Ocean) m/s2 (Hirt et al.
+2013, GGMplus), and by 2e-6 a metre of depth above that."""
 TABLE_COLUMNS: Final = ("table_rate_deg_s", "table_angle_deg", "round", "temperature_c")
 
 
@@ -62,61 +65,83 @@ def calibrate(request: CalibrationRequest) -> Calibration:
     return replace(found, warnings=(*found.warnings, *not_taken_out(request.entry)))
 
 
-def latitude_of(request: CalibrationRequest) -> float | None:
-    """Stated latitude [rad], of the command line or of the log's entry.
-
-    Raises
-    ------
-    SurveyError
-        If it is none.
-    """
+def latitude_of(request: CalibrationRequest, problems: list[Problem]) -> float | None:
+    """Stated latitude [rad], of the command line or of the log; what is none is a problem."""
     degrees = request.number("latitude")
     if degrees is None and request.entry is not None:
         degrees = request.entry.latitude_deg
     if degrees is None:
         return None
     if not -90.0 <= degrees <= 90.0:
-        raise SurveyError(
+        problems.append(
             Problem("this is no latitude", "latitude", f"{degrees:g}", "-90 to 90 degrees")
         )
+        return None
     return math.radians(degrees)
 
 
-def _positive(request: CalibrationRequest, name: str, option: str) -> float:
+def _positive(request: CalibrationRequest, name: str, problems: list[Problem]) -> float:
     value = request.number(name, 0.0) or 0.0
     if value < 0.0:
-        raise SurveyError(Problem("a sigma is negative", option, f"{value:g}", "0 or more"))
+        problems.append(Problem("a sigma is negative", name, f"{value:g}", "0 or more"))
     return value
 
 
+def _gravity(request: CalibrationRequest, problems: list[Problem]) -> float:
+    value = request.number("gravity_m_s2")
+    if value is None:
+        return STANDARD_GRAVITY_M_S2
+    low, high = GRAVITY_M_S2
+    if not low <= value <= high:
+        expected = said("{low:g} to {high:g} m/s2", low=low, high=high)
+        problems.append(
+            Problem("this is no gravity on the earth", "gravity_m_s2", f"{value:g}", expected)
+        )
+    return value
+
+
+def _read(request: CalibrationRequest, need: Need, problems: list[Problem]) -> SensorLog:
+    """The log, or what is wrong with it and with the options together.
+
+    Raises
+    ------
+    SurveyError
+    """
+    try:
+        log = request.read(need)
+    except SurveyError as error:
+        raise SurveyError([*problems, *error.problems]) from None
+    if problems:
+        raise SurveyError(problems)
+    return log
+
+
 def _six_positions(request: CalibrationRequest) -> Calibration:
+    problems: list[Problem] = []
     options = SixPositionOptions(
-        flip_sigma=_positive(request, "flip_sigma_arcsec", "flip_sigma_arcsec") * ARCSEC,
-        relative_rate_sigma=_positive(
-            request, "table_rate_relative_sigma", "table_rate_relative_sigma"
-        ),
-        latitude=latitude_of(request),
+        flip_sigma=_positive(request, "flip_sigma_arcsec", problems) * ARCSEC,
+        relative_rate_sigma=_positive(request, "table_rate_relative_sigma", problems),
+        latitude=latitude_of(request, problems),
     )
     need = Need(
         columns=(*GYROS, "position"),
         varying=GYROS,
         optional=(*TABLE_COLUMNS, *ACCELEROMETERS),
     )
-    return calibrate_six_positions(request.read(need), options)
+    return calibrate_six_positions(_read(request, need, problems), options)
 
 
 def _multi_position(request: CalibrationRequest) -> Calibration:
-    gravity = request.number("gravity_m_s2", STANDARD_GRAVITY_M_S2) or STANDARD_GRAVITY_M_S2
-    log = request.read(
-        Need(columns=HAND_HELD, varying=HAND_HELD, optional=("temperature_c",), biased=True)
-    )
-    return calibrate_multi_position(log, MultiPositionOptions(latitude_of(request), gravity))
+    problems: list[Problem] = []
+    options = MultiPositionOptions(latitude_of(request, problems), _gravity(request, problems))
+    need = Need(columns=HAND_HELD, varying=HAND_HELD, optional=("temperature_c",), biased=True)
+    return calibrate_multi_position(_read(request, need, problems), options)
 
 
 def _temperature(request: CalibrationRequest) -> Calibration:
     problems: list[Problem] = []
-    latitude = latitude_of(request)
-    if latitude is None:
+    latitude = latitude_of(request, problems)
+    if latitude is None and not problems:
         problems.append(
             Problem(
                 "the latitude is not stated",
@@ -127,33 +152,21 @@ def _temperature(request: CalibrationRequest) -> Calibration:
                 "deg/h",
             )
         )
-    wanted = _temperatures(request, problems)
     room = request.option("room")
-    log = None
-    try:
-        log = request.read(
-            Need(
-                columns=(*GYROS, "position", CHAMBER),
-                varying=GYROS,
-                optional=(*TABLE_COLUMNS, *ACCELEROMETERS),
-            )
-        )
-    except SurveyError as error:
-        problems += error.problems
-    if problems or log is None or latitude is None:
-        raise SurveyError(problems)
-    gravity = request.number("gravity_m_s2", STANDARD_GRAVITY_M_S2) or STANDARD_GRAVITY_M_S2
     options = TemperatureOptions(
-        latitude=latitude,
-        predict_at=wanted,
-        room=None if room is None else _room(request, str(room)),
-        gravity=gravity,
-        flip_sigma=_positive(request, "flip_sigma_arcsec", "flip_sigma_arcsec") * ARCSEC,
-        relative_rate_sigma=_positive(
-            request, "table_rate_relative_sigma", "table_rate_relative_sigma"
-        ),
+        latitude=latitude or 0.0,
+        predict_at=_temperatures(request, problems),
+        room=None if room is None else _room(request, str(room), problems),
+        gravity=_gravity(request, problems),
+        flip_sigma=_positive(request, "flip_sigma_arcsec", problems) * ARCSEC,
+        relative_rate_sigma=_positive(request, "table_rate_relative_sigma", problems),
     )
-    return calibrate_temperature(log, options)
+    need = Need(
+        columns=(*GYROS, "position", CHAMBER),
+        varying=GYROS,
+        optional=(*TABLE_COLUMNS, *ACCELEROMETERS),
+    )
+    return calibrate_temperature(_read(request, need, problems), options)
 
 
 def _temperatures(request: CalibrationRequest, problems: list[Problem]) -> tuple[float, ...]:
@@ -175,19 +188,24 @@ def _temperatures(request: CalibrationRequest, problems: list[Problem]) -> tuple
     return tuple(found)
 
 
-def _room(request: CalibrationRequest, name: str) -> tuple[Resting, ...]:
+def _room(
+    request: CalibrationRequest, name: str, problems: list[Problem]
+) -> tuple[Resting, ...] | None:
     """Rests of the room-temperature log, position by position."""
     path = Path(name)
     if not path.is_absolute() and not path.exists() and request.folder is not None:
         path = request.folder / name
-    log = read_log(
-        LogRequest(path=path, where=name, id=path.name),
-        Need(columns=(*ACCELEROMETERS, "position"), optional=TABLE_COLUMNS, timed="optional"),
-    )
-    problems = place_problems(log)
-    if problems:
-        raise SurveyError(problems)
-    return resting_rows(log)
+    try:
+        log = read_log(
+            LogRequest(path=path, where=name, id=path.name),
+            Need(columns=(*ACCELEROMETERS, "position"), optional=TABLE_COLUMNS, timed="optional"),
+        )
+    except SurveyError as error:
+        problems += error.problems
+        return None
+    wrong = place_problems(log)
+    problems += wrong
+    return None if wrong else resting_rows(log)
 
 
 PROGRAMMES: Final[Mapping[str, Callable[[CalibrationRequest], Calibration]]] = {

@@ -16,11 +16,15 @@ from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, wrap_pi
+from surveyapp_models.constants import EARTH_RATE
 
 NEEDED = ("gyr_x_rad_s", "horizontal_circle_deg", "face")
 OPTIONAL = ("vertical_circle_deg", "temperature_c")
 OFF_LEVEL = 60.0 * ARCSEC
 """Distance of a reading from the constant above which the rule of the circle matters [rad]."""
+NOISE_SIGMAS = 10.0
+"""Standard deviations of a row that two of them may differ by beside the earth rate; a gyro as
+noisy as the earth rate finds no north."""
 POLAR = math.radians(75.0)
 """Latitude above which a gyro finds no north that serves (source 000-18) [rad]."""
 
@@ -65,6 +69,7 @@ def find_north(log: SensorLog, options: FogNorthOptions) -> NorthResult:
     SurveyError
     """
     positions = _positions(log)
+    _need_a_gyro_at_rest(log, options)
     solved = solve_north(
         positions,
         latitude=options.latitude,
@@ -106,6 +111,24 @@ def find_north(log: SensorLog, options: FogNorthOptions) -> NorthResult:
             "dof": solved.dof,
             "latitude_deg": math.degrees(options.latitude),
         },
+    )
+
+
+def _need_a_gyro_at_rest(log: SensorLog, options: FogNorthOptions) -> None:
+    """At rest two positions differ by twice the earth rate at most: else it is another unit."""
+    rates = log.columns["gyr_x_rad_s"]
+    allowed = 2.0 * EARTH_RATE + NOISE_SIGMAS * max(options.rate_sigma or 0.0, EARTH_RATE)
+    apart = float(np.ptp(rates)) if rates.size else 0.0
+    if apart <= allowed:
+        return
+    raise SurveyError(
+        Problem(
+            "the positions differ by more than the earth turns",
+            said("{path}, gyr_x_rad_s", path=log.path),
+            said("{value:.6g} deg/h apart", value=apart / DEG_H),
+            said("{value:.6g} deg/h at most", value=allowed / DEG_H),
+            "is it in rad/s, and was the instrument at rest? `units` COLUMN=deg/h",
+        )
     )
 
 

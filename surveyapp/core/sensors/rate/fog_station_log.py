@@ -16,6 +16,7 @@ from surveyapp.core.sensors.rate.fog_station import (
 )
 from surveyapp.core.sensors.rate.table_log import (
     Turned,
+    encoder_told,
     label,
     motion_of,
     red_noise_factor,
@@ -49,6 +50,8 @@ OPTIONAL = (
 )
 NO_SCALE_ERROR = 0.1
 """Relative error of a scale factor that no gyro has: the rule is wrong then."""
+STEEPEST = 0.9
+"""Of the table's rate: a gyro that shows more stands upright, or is in another unit."""
 STEEP = math.radians(10.0)
 """Elevation above which the source asks to level the gyro better first [rad]."""
 
@@ -73,8 +76,11 @@ def calibrate_fog_station(
     ------
     SurveyError
     """
-    turns, warnings = turned_sets(log, problems)
+    turns, warnings = turned_sets(log, problems, relative_rate_sigma=relative_rate_sigma or 0.0)
     sets = [_both_ways(log, turned, pass_id, set_id) for (pass_id, set_id), turned in turns.items()]
+    steep = [s for s in sets if abs(s.sine) > STEEPEST]
+    if steep:
+        raise SurveyError(_not_level(log, steep))
     found = combine(sets, rule=rule, relative_rate_sigma=relative_rate_sigma or 0.0)
     if found.scale is not None and abs(found.scale) > NO_SCALE_ERROR:
         raise SurveyError(_against_rule(log, rule))
@@ -82,7 +88,7 @@ def calibrate_fog_station(
 
 
 def turned_sets(
-    log: SensorLog, problems: list[Problem]
+    log: SensorLog, problems: list[Problem], *, relative_rate_sigma: float = 0.0
 ) -> tuple[dict[tuple[int, int], list[Turned]], list[ResultWarning]]:
     """Whole turns of each pass and set, and what is to be said of the table's sense.
 
@@ -91,6 +97,8 @@ def turned_sets(
     log : SensorLog
     problems : list of Problem
         Found before; raised together with those of the log.
+    relative_rate_sigma : float
+        Stated for the table's rate.
 
     Raises
     ------
@@ -116,9 +124,31 @@ def turned_sets(
         problems = [*problems, *wrong, *_saturation(turned, log.columns[GYRO], where)]
         if turned:
             found[(pass_id, set_id)] = turned
+    every = [t for turned in found.values() for t in turned]
+    noted, wrong = encoder_told(log, motion, every, relative_rate_sigma=relative_rate_sigma)
+    problems = [*problems, *wrong]
     if problems:
         raise SurveyError(_told_once(problems))
-    return found, sense_warnings(motion)
+    return found, [*sense_warnings(motion), *noted]
+
+
+def _not_level(log: SensorLog, sets: list[BothWays]) -> list[Problem]:
+    """The gyro shows so much of the table's rate that it is another gyro or another unit."""
+    return [
+        Problem(
+            "the gyro does not lie near the horizontal",
+            said(
+                "{path}, pass {pass_id}, set {set_id}",
+                path=log.path,
+                pass_id=s.pass_id,
+                set_id=s.set_id,
+            ),
+            said("it shows {share:.4g} of the table's rate", share=abs(s.sine)),
+            said("at most {share:g}: the sine of its elevation", share=STEEPEST),
+            "is gyr_x_rad_s the gyro of the telescope, and in rad/s? `units` COLUMN=deg/s",
+        )
+        for s in sets
+    ]
 
 
 def _against_rule(log: SensorLog, rule: Rule) -> Problem:
@@ -309,12 +339,14 @@ def _warnings(sets: list[BothWays], found: Constant, relative: float | None) -> 
     if relative is None:
         text = "no --table-rate-relative-sigma: the table's rate counts as exact in every sigma"
         warnings.append(ResultWarning("no_table_rate_sigma", text))
-    if max(abs(s.elevation) for s in sets if s.pass_id == sets[0].pass_id) > STEEP:
+    first = [s.elevation for s in sets if s.pass_id == sets[0].pass_id]
+    steepest = max(first, key=abs)
+    if abs(steepest) > STEEP:
         text = said(
             "the elevation of {value:.2f} degrees is above 10: the error of the "
             "table's rate enters by its tangent; level the gyro better or add a "
             "pass",
-            value=math.degrees(found.elevation),
+            value=math.degrees(steepest),
         )
         warnings.append(ResultWarning("elevation_above_10", text))
     if found.scale is None:

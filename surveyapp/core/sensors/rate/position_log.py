@@ -33,6 +33,15 @@ GYROS = ("gyr_x_rad_s", "gyr_y_rad_s", "gyr_z_rad_s")
 ACCELEROMETERS = ("acc_x_m_s2", "acc_y_m_s2", "acc_z_m_s2")
 REST_SHARE = 1e-6
 """Of the largest table rate: slower is rest."""
+MOST_SCALE = 2.0
+"""Response to the table's rate, or its inverse, above which the unit is wrong, not the scale."""
+RATE_UNITS = {
+    "deg/s": math.degrees(1.0),
+    "deg/h": math.degrees(1.0) * 3600.0,
+}
+"""What a gyro in another unit shows of a rate of one rad/s."""
+UNIT_SLACK = 0.15
+"""Relative distance within which a response is taken for that of a unit."""
 GUARD_ROWS = 3
 """Rows left out beside turning when the rest of a position is averaged."""
 
@@ -145,6 +154,27 @@ def means_of(log: SensorLog, placed: Sequence[Placed]) -> list[PositionMeans]:
     return found
 
 
+def unit_problems(means: Sequence[PositionMeans], *, where: str) -> list[Problem]:
+    """Gyros whose response to the table's rate is that of another unit."""
+    shown = {"xyz"[m.axis]: abs(float(m.column()[m.axis])) for m in means}
+    wrong = {a: s for a, s in shown.items() if not 1.0 / MOST_SCALE <= s <= MOST_SCALE}
+    if not wrong:
+        return []
+    found = ", ".join(
+        said("gyr_{axis} shows {share:.4g} of the table's rate", axis=a, share=s)
+        for a, s in wrong.items()
+    )
+    factor = math.exp(float(np.mean(np.log([max(s, 1e-12) for s in wrong.values()]))))
+    units = [u for u, f in RATE_UNITS.items() if abs(factor / f - 1.0) < UNIT_SLACK]
+    hint = said("are the gyros in rad/s and the table in deg/s? counts take `scale` COLUMN=VALUE")
+    if units:
+        hint = said("are the gyros in {unit}? `units` COLUMN={unit}", unit=units[0])
+    if abs(factor / math.degrees(1.0) - 1.0) < UNIT_SLACK:
+        hint += said("; or is the table's rate in rad/s?")
+    expected = said("{low:g} to {high:g}", low=1.0 / MOST_SCALE, high=MOST_SCALE)
+    return [Problem("the gyros are in another unit than the table", where, found, expected, hint)]
+
+
 def sense_of(
     means: Sequence[PositionMeans], *, where: str
 ) -> tuple[list[PositionMeans], list[ResultWarning], list[Problem]]:
@@ -160,6 +190,10 @@ def sense_of(
         )
         return turned, [ResultWarning("sense_of_rotation", text)], []
     names = ", ".join(dict.fromkeys(m.position for m in against))
+    whole = {a for a in range(3) if all(m in against for m in means if m.axis == a)}
+    hint = "is a position named wrongly, or was the table turned the other way?"
+    if all(m.axis in whole for m in against):
+        hint = "does this gyro count the other way, or are its columns exchanged with another's?"
     return (
         list(means),
         [],
@@ -171,7 +205,7 @@ def sense_of(
                     "the gyro of {names} turns against the table, the others with it", names=names
                 ),
                 "x+ = body x up; an axis that points up reads minus the clockwise rate",
-                "is a position named wrongly, or was the table turned the other way?",
+                hint,
             )
         ],
     )

@@ -26,6 +26,7 @@ from surveyapp.core.sensors.rate.position_log import (
     resting_of,
     sense_of,
     table_tilt,
+    unit_problems,
 )
 from surveyapp.core.sensors.rate.six_position import (
     GyroTriad,
@@ -34,7 +35,8 @@ from surveyapp.core.sensors.rate.six_position import (
     solve_six_positions,
     traditional,
 )
-from surveyapp.core.sensors.rate.table_log import label, motion_of, sense_warnings
+from surveyapp.core.sensors.rate.table_log import encoder_told, label, motion_of, sense_warnings
+from surveyapp.core.sensors.rate.turning import about_turns
 from surveyapp.core.statistics.distributions import chi_square_tail
 from surveyapp.domain.calibration import (
     Calibration,
@@ -97,7 +99,11 @@ def calibrate_six_positions(log: SensorLog, options: SixPositionOptions) -> Cali
     if problems:
         raise SurveyError(problems)
     static, resting = resting_of(log, motion, placed)
-    means, warnings, problems = sense_of(means_of(log, placed), where=log.path)
+    shown = means_of(log, placed)
+    means, warnings, problems = sense_of(shown, where=log.path)
+    used = [t for p in placed for t in p.turned]
+    noted, wrong = encoder_told(log, motion, used, relative_rate_sigma=options.relative_rate_sigma)
+    problems += wrong or ([] if problems else unit_problems(shown, where=log.path))
     problems += label_problems(resting, where=log.path)
     if problems:
         raise SurveyError(problems)
@@ -116,12 +122,12 @@ def calibrate_six_positions(log: SensorLog, options: SixPositionOptions) -> Cali
         ),
         warnings=(
             *log.warnings,
-            *sense_warnings(motion),
-            *warnings,
+            *sense_warnings(motion, warnings),
+            *noted,
             *_warnings(log, motion_begin_s(log, placed), options),
         ),
         met=not missing,
-        n=sum(t.stretch.stop - t.stretch.start for p in placed for t in p.turned),
+        n=sum(t.stretch.stop - t.stretch.start for t in used),
         sha256=log.sha256,
         extra={
             "steps": _steps(log, placed, table_tilt(resting)),
@@ -233,7 +239,7 @@ def _smoothing(log: SensorLog, placed: Sequence[Placed]) -> dict[str, Any]:
     count = max(round(SMOOTHED_S * (log.rate_hz or 1.0)), 1)
     sample, smoothed = [], []
     for name in GYROS:
-        part = log.columns[name][item.stretch.start : item.stretch.stop]
+        part = about_turns(item.stretch, log.columns[name])
         sample.append(item.mean(log.columns[name]).noise / DEG_H)
         whole = part[: part.size - part.size % count]
         means = whole.reshape(-1, count).mean(axis=1)

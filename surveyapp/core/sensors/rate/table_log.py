@@ -30,6 +30,10 @@ SATURATED_SHARE = 0.02
 """Of the samples of a stretch at the very end of the column's range."""
 SATURATED_LACK = 0.02
 """Relative lack of the mean against the table's rate."""
+CONTRADICTION = 0.1
+"""Relative difference of recorded angle and nominal rate that no table has."""
+TABLE_CLOCKS = 1e-5
+"""Relative difference that the clocks of table and log may have."""
 RED_NOISE_LEVEL = 0.01
 """Probability below which the means of turns scatter more than their samples allow."""
 
@@ -48,10 +52,25 @@ def motion_of(log: SensorLog) -> TableMotion | Problem:
     return table_motion(log.columns["time_s"], rate_deg_s=rate, angle_deg=angle)
 
 
-def sense_warnings(motion: TableMotion) -> list[ResultWarning]:
-    """Told where the nominal rates had the wrong sign."""
+def sense_warnings(
+    motion: TableMotion, of_gyros: Sequence[ResultWarning] = ()
+) -> list[ResultWarning]:
+    """Told where the nominal rates had the wrong sign, by the encoder or by the gyros.
+
+    Parameters
+    ----------
+    motion : TableMotion
+    of_gyros : sequence of ResultWarning
+        What the gyros said of the sense that was believed.
+    """
     if not motion.reversed_sense:
-        return []
+        return list(of_gyros)
+    if of_gyros:
+        text = (
+            "table_angle_deg counts anticlockwise from above: every gyro agrees with the sign of "
+            "table_rate_deg_s, which was believed"
+        )
+        return [ResultWarning("sense_of_rotation", text)]
     text = (
         "table_rate_deg_s has the opposite sign of the recorded table_angle_deg; the angle was "
         "believed: clockwise from above is positive"
@@ -119,10 +138,75 @@ def stretches_of(log: SensorLog, motion: TableMotion, labels: Sequence[str]) -> 
         for values in gyros:
             kept = settled(kept, values)
         if not motion.nominal:
-            seconds = log.columns["time_s"][kept.stop - 1] - log.columns["time_s"][kept.start]
-            kept = replace(kept, rate=float(kept.angles[-1] - kept.angles[0]) / float(seconds))
+            kept = replace(kept, rate=recorded_rate(kept, log.columns["time_s"])[0])
         found.append(kept)
     return found
+
+
+def recorded_rate(stretch: Steady, time_s: Floats) -> tuple[float, float]:
+    """Rate of a stretch by its angles and its standard deviation [rad/s]: a straight line."""
+    time = time_s[stretch.start : stretch.stop]
+    time = time - time.mean()
+    size = float(time @ time)
+    slope = float(time @ stretch.angles) / size
+    rest = stretch.angles - stretch.angles.mean() - slope * time
+    return slope, math.sqrt(float(rest @ rest) / max(time.size - 2, 1) / size)
+
+
+def encoder_told(
+    log: SensorLog, motion: TableMotion, turned: Sequence[Turned], *, relative_rate_sigma: float
+) -> tuple[list[ResultWarning], list[Problem]]:
+    """Where the recorded angles do not turn at the nominal rate.
+
+    Parameters
+    ----------
+    log : SensorLog
+    motion : TableMotion
+    turned : sequence of Turned
+        What is used.
+    relative_rate_sigma : float
+        Stated for the table: three of it are allowed.
+    """
+    if not (motion.encoder and motion.nominal) or not turned:
+        return [], []
+    standing = [t for t in turned if not _moves(motion, t.stretch)]
+    if standing:
+        text = (
+            "table_angle_deg stands still while table_rate_deg_s says that the table turns: the "
+            "angle was taken from the rate"
+        )
+        return [ResultWarning("encoder_stands_still", text)], []
+    cells = [(recorded_rate(t.stretch, log.columns["time_s"]), t.rate) for t in turned]
+    off = np.array([slope / rate - 1.0 for (slope, _), rate in cells])
+    sigma = np.array([sd / abs(rate) for (_, sd), rate in cells])
+    worst = float(off[np.argmax(np.abs(off))])
+    if abs(worst) > CONTRADICTION:
+        return [], [
+            Problem(
+                "table_angle_deg and table_rate_deg_s contradict each other",
+                log.path,
+                said("the angle turns at {share:.4g} of the rate", share=1.0 + worst),
+                said("within {share:.0%}", share=CONTRADICTION),
+                "which of the two is in another unit? `units` COLUMN=UNIT states it",
+            )
+        ]
+    limit = np.maximum(3.0 * relative_rate_sigma, TABLE_CLOCKS) + 5.0 * sigma
+    if not np.any(np.abs(off) > limit):
+        return [], []
+    text = said(
+        "by table_angle_deg the table turned {mean:+.2g} faster than table_rate_deg_s on the "
+        "average, with a scatter of {sd:.2g}: the nominal rate was used. "
+        "--table-rate-relative-sigma puts this into the sigmas; a log without table_rate_deg_s is "
+        "calibrated by the recorded angle",
+        mean=float(off.mean()),
+        sd=float(np.std(off, ddof=1)) if off.size > 1 else 0.0,
+    )
+    return [ResultWarning("encoder_contradicts_rate", text)], []
+
+
+def _moves(motion: TableMotion, stretch: Steady) -> bool:
+    part = motion.angles[stretch.start : stretch.stop]
+    return bool(part[-1] != part[0])
 
 
 def usable(stretches: Sequence[Steady], *, where: str) -> tuple[list[Turned], list[Problem]]:

@@ -34,8 +34,9 @@ from surveyapp.core.sensors.rate.position_log import (
     placed_stretches,
     resting_of,
     sense_of,
+    unit_problems,
 )
-from surveyapp.core.sensors.rate.table_log import motion_of, sense_warnings
+from surveyapp.core.sensors.rate.table_log import encoder_told, motion_of, sense_warnings
 from surveyapp.core.sensors.rate.temperature_nodes import (
     FULL_RANK,
     Node,
@@ -94,8 +95,17 @@ def calibrate_temperature(log: SensorLog, options: TemperatureOptions) -> Calibr
         raise SurveyError(problems)
     placed, problems = placed_stretches(log, motion, numbers, ("position", CHAMBER))
     _, resting = resting_of(log, motion, placed)
-    means, warnings, wrong = sense_of(means_of(log, placed), where=log.path)
-    problems += [*wrong, *label_problems(resting, where=log.path)]
+    shown = means_of(log, placed)
+    means, warnings, wrong = sense_of(shown, where=log.path)
+    noted, told = encoder_told(
+        log,
+        motion,
+        [t for p in placed for t in p.turned],
+        relative_rate_sigma=options.relative_rate_sigma,
+    )
+    problems += [*wrong, *told]
+    problems += [] if problems else unit_problems(shown, where=log.path)
+    problems += label_problems(resting, where=log.path)
     if problems:
         raise SurveyError(problems)
     room = None
@@ -105,7 +115,7 @@ def calibrate_temperature(log: SensorLog, options: TemperatureOptions) -> Calibr
         if problems:
             raise SurveyError(problems)
     nodes = nodes_of(levels, means, resting, room, options=options)
-    return _calibration(log, nodes, options, [*sense_warnings(motion), *warnings])
+    return _calibration(log, nodes, options, [*sense_warnings(motion, warnings), *noted])
 
 
 def _outside(levels: Floats, wanted: Sequence[float], where: str) -> list[Problem]:

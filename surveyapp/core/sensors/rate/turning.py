@@ -8,11 +8,12 @@ calibrated.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
+from surveyapp_models.angles import wrap_pi_array
 from surveyapp_models.arrays import Floats
 
 TWO_PI = 2.0 * math.pi
@@ -25,6 +26,9 @@ LEAST_SAMPLES = 8
 RUN_UP_SIGMAS = 8.0
 """Samples at either end that lie farther from the fit are the table still running up: among
 1e5 samples of normal noise none does."""
+FAR_STEP = 0.5 * math.pi
+"""A table that should go so far between two samples may not have gone the shorter way round; a
+longer gap in the log also ends a stretch."""
 TURN_SLACK = 2e-3
 """Part of a turn that a nominal rate may lack of a whole one."""
 
@@ -64,11 +68,13 @@ class Steady:
         return Steady(self.start + first, self.start + last, self.rate, self.angles[first:last])
 
     def whole_turns(self) -> Steady | None:
-        """The beginning of the stretch that is whole turns; None below one."""
+        """The beginning of the stretch that is whole turns by its angles; None below one."""
         turns = math.floor(self.turns + TURN_SLACK)
         if turns < 1:
             return None
-        return self.cut(0, min(round(turns * TWO_PI / self.step), self.angles.size))
+        gone = np.maximum.accumulate(np.abs(self.angles - self.angles[0]))
+        step = float(np.median(np.abs(np.diff(self.angles))))
+        return self.cut(0, int(np.searchsorted(gone, turns * TWO_PI - 0.5 * step)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +122,7 @@ def table_motion(
         rates = np.deg2rad(np.asarray(rate_deg_s))
         middle = np.concatenate([[0.0], np.cumsum(0.5 * (rates[1:] + rates[:-1]) * gaps)])
         return TableMotion(rates, middle, encoder=False)
-    angles = np.unwrap(np.deg2rad(angle_deg))
+    angles = _unwrapped(np.deg2rad(angle_deg), time_s, rate_deg_s)
     measured = np.gradient(angles, time_s) if angles.size > 1 else np.zeros(angles.size)
     if rate_deg_s is None:
         return TableMotion(_calmed(measured), angles, encoder=True, nominal=False)
@@ -126,6 +132,28 @@ def table_motion(
     if unsigned:
         return TableMotion(np.copysign(rates, measured), angles, encoder=True)
     return TableMotion(rates if agrees else -rates, angles, encoder=True, reversed_sense=not agrees)
+
+
+def _unwrapped(angles: Floats, time_s: Floats, rate_deg_s: Floats | None) -> Floats:
+    """Angles of an encoder that go on beyond a turn.
+
+    From one sample to the next a table goes the shorter way round, unless its nominal rate says
+    that it went farther: through a gap of the log, or because it was sampled slowly. Then it went
+    on in the sense in which the encoder saw it go before.
+    """
+    if rate_deg_s is None or angles.size < 2:
+        return np.asarray(np.unwrap(angles))
+    rates = np.deg2rad(rate_deg_s)
+    expected = 0.5 * (rates[1:] + rates[:-1]) * np.diff(time_s)
+    steps = wrap_pi_array(np.diff(angles))
+    far = np.abs(expected) > FAR_STEP
+    if np.any(far):
+        seen = np.where(~far & (expected != 0.0), np.sign(steps), 0.0)
+        last = np.maximum.accumulate(np.where(seen != 0.0, np.arange(steps.size), -1))
+        sense = np.where(last >= 0, seen[last], np.sign(expected))
+        gone = sense * np.abs(expected)
+        steps = np.where(far, gone + wrap_pi_array(steps - gone), steps)
+    return np.concatenate([angles[:1], angles[0] + np.cumsum(steps)])
 
 
 def _calmed(values: Floats, width: int = 9) -> Floats:
@@ -155,6 +183,9 @@ def steady_stretches(motion: TableMotion, *, breaks: Floats | None = None) -> li
         return []
     turning = np.where(np.abs(rates) > STILL_SHARE * largest, np.sign(rates), 0.0)
     change = np.concatenate([[True], np.diff(turning) != 0.0])
+    gone = np.abs(np.diff(motion.angles))
+    usual = np.median(gone[turning[1:] != 0.0]) if np.any(turning[1:] != 0.0) else 0.0
+    change[1:] |= gone > FAR_STEP + 2.0 * usual
     jump = np.abs(np.diff(rates)) > 0.5 * np.maximum(np.abs(rates[1:]), np.abs(rates[:-1]))
     change[1:] |= jump
     if breaks is not None:
@@ -166,6 +197,8 @@ def steady_stretches(motion: TableMotion, *, breaks: Floats | None = None) -> li
             continue
         part = rates[first:last]
         calm = np.flatnonzero(np.abs(part - np.median(part)) <= PLATEAU * abs(np.median(part)))
+        if calm.size == 0:  # nothing but a run-up between two breaks
+            continue
         lo, hi = int(first + calm[0]), int(first + calm[-1] + 1)
         if hi - lo >= LEAST_SAMPLES:
             found.append(Steady(lo, hi, float(np.mean(rates[lo:hi])), motion.angles[lo:hi]))
@@ -238,6 +271,14 @@ def _design(angles: Floats) -> Floats:
     return np.column_stack([np.ones(angles.size), np.cos(angles), np.sin(angles)])
 
 
+def about_turns(stretch: Steady, values: Floats) -> Floats:
+    """Samples of a stretch about their mean and the earth rate that turns by, shape (n,)."""
+    part = values[stretch.start : stretch.stop]
+    design = _design(stretch.angles)
+    solution, *_ = np.linalg.lstsq(design, part, rcond=None)
+    return np.asarray(part - design @ solution)
+
+
 def mean_over_turns(stretch: Steady, values: Floats) -> TurnMean:
     """Mean of whole turns, the turning earth rate fitted beside it.
 
@@ -253,20 +294,22 @@ def mean_over_turns(stretch: Steady, values: Floats) -> TurnMean:
     """
     part = values[stretch.start : stretch.stop]
     design = _design(stretch.angles)
-    solution, *_ = np.linalg.lstsq(design, part, rcond=None)
+    q, r = np.linalg.qr(design)
+    solution = np.linalg.solve(r, q.T @ part)
     rest = part - design @ solution
     dof = max(part.size - 3, 1)
     noise = math.sqrt(float(rest @ rest) / dof)
-    return TurnMean(
-        float(solution[0]), noise, noise / math.sqrt(part.size), dof, part.size, stretch.turns
-    )
+    spread = float(np.linalg.norm(np.linalg.solve(r, np.eye(3))[0]))  # 1/sqrt(n) without a gap
+    return TurnMean(float(solution[0]), noise, noise * spread, dof, part.size, stretch.turns)
 
 
 def mean_over_arc(stretch: Steady, values: Floats) -> TurnMean:
-    """Plain mean over less than a turn: only the difference of the two ways is of use."""
+    """Plain mean over less than a turn: only the difference of the two ways is of use.
+
+    Its noise is judged about the earth rate that turns by, as over whole turns.
+    """
     part = values[stretch.start : stretch.stop]
-    angles = stretch.angles - stretch.angles.mean()
-    design = np.column_stack([np.ones(part.size), angles, angles**2])
+    design = _design(stretch.angles)
     solution, *_ = np.linalg.lstsq(design, part, rcond=None)
     rest = part - design @ solution
     dof = max(part.size - 3, 1)
@@ -279,6 +322,8 @@ def mean_over_arc(stretch: Steady, values: Floats) -> TurnMean:
 def common_arc(one: Steady, other: Steady) -> tuple[Steady, Steady] | None:
     """The rows of two stretches that pass the same arc in opposite senses; None if there is none.
 
+    Whole turns between them do not matter.
+
     Parameters
     ----------
     one, other : Steady
@@ -286,6 +331,9 @@ def common_arc(one: Steady, other: Steady) -> tuple[Steady, Steady] | None:
     """
     if one.rate * other.rate >= 0.0:
         return None
+    middles = [0.5 * float(s.angles.min() + s.angles.max()) for s in (one, other)]
+    turns = TWO_PI * round((middles[0] - middles[1]) / TWO_PI)
+    other = replace(other, angles=other.angles + turns)
     low = max(float(one.angles.min()), float(other.angles.min()))
     high = min(float(one.angles.max()), float(other.angles.max()))
     length = min(abs(float(s.angles[-1] - s.angles[0])) for s in (one, other))
