@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from surveyapp.diagnosis.action import Action
+from surveyapp.diagnosis.action import Action, Planner
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.subject import Subject
 from surveyapp.languages import said
@@ -130,6 +130,9 @@ class Case:
         Where the stated sigmas were found from the observations themselves.
     base_of : callable or None
         The base design of other rows; None = the mean of the record's own rows.
+    planner : callable or None
+        Makes the record with its actions where these are no further rows of the columns (a
+        ``next_rows.Planner``): when advice is asked for, as it costs.
     """
 
     subject: SubjectId
@@ -166,6 +169,7 @@ class Case:
     series: Floats | None = None
     reported: Floats | None = None
     own_scales: tuple[OwnScale, ...] = ()
+    planner: Callable[[], Planner | None] | None = None
 
     def __post_init__(self) -> None:
         """Hand out what effects may read so that they cannot write into it."""

@@ -17,7 +17,7 @@ from surveyapp.diagnosis.events import event_notes
 from surveyapp.diagnosis.fits import Fit, unit_variance
 from surveyapp.diagnosis.gate import GATE
 from surveyapp.diagnosis.held_out import confirm_rms, forecast, leave_one_out
-from surveyapp.diagnosis.later_visits import held_out_prediction
+from surveyapp.diagnosis.later_visits import held_out_prediction, is_campaign
 from surveyapp.diagnosis.ledger import ledger_entry
 from surveyapp.diagnosis.long_records.record import (
     LongRecord,
@@ -28,6 +28,7 @@ from surveyapp.diagnosis.long_records.record import (
 )
 from surveyapp.diagnosis.loop import DEFAULT_DRAWS, Search, rivals_delta, search
 from surveyapp.diagnosis.next_observation import advice, worth_in_words
+from surveyapp.diagnosis.next_rows import rows_advice
 from surveyapp.diagnosis.next_run import run_advice
 from surveyapp.diagnosis.outlook import Outlook
 from surveyapp.diagnosis.result import (
@@ -159,7 +160,9 @@ def _diagnosed(
 
 def _outlook(problem: Case, base: Fit, digest: str) -> Outlook | None:
     rng = np.random.default_rng(int(digest[:15], 16))
-    return run_advice(problem, base, rng) if problem.has_swing else advice(problem, rng)
+    if problem.has_swing:
+        return run_advice(problem, base, rng)
+    return advice(problem, rng) if is_campaign(problem) else rows_advice(problem, rng)
 
 
 def _widened(problem: Case, found: Search, averaged: Value, verdict: Verdict) -> Value:

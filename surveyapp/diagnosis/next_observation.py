@@ -177,17 +177,23 @@ def worth_in_words(outlook: Outlook, *, scale: float, unit: str) -> list[str]:
     if not outlook.actions:
         return []
     best = outlook.actions[0]
+    if outlook.unit:
+        scale, unit = outlook.scale, outlook.unit
     sign = '"' if unit == "arcsec" else joined("", (" ", term(unit)))
-    now = joined("", (f"+-{outlook.interval / scale:.1f}", sign))
+
+    def figure(value: float) -> str:
+        return format(value, ".1f" if unit == "arcsec" else ".3g")
+
+    now = joined("", (f"+-{figure(outlook.interval / scale)}", sign))
 
     def told(item: ActionResult) -> str:
         return said(
             "{text}: the likeliest cause would then stand at {separation:.0%} on "
-            "average, and {wanted} +-{interval95:.1f}{sign} (95 %)",
+            "average, and {wanted} +-{interval95}{sign} (95 %)",
             text=item.text,
             separation=item.separation,
             wanted=outlook.wanted,
-            interval95=item.interval95 / scale,
+            interval95=figure(item.interval95 / scale),
             sign=sign,
         )
 

@@ -75,6 +75,10 @@ class ActionResult:
         Expected loss of entropy of the causes [nat].
     interval95 : float
         Expected half-width of the final 95 % interval [SI].
+    unit : str
+        Printed unit of that interval; empty = that of the record.
+    own_scale : float
+        SI value of that unit; not used where it is empty.
     """
 
     action: str
@@ -82,9 +86,13 @@ class ActionResult:
     separation: float
     information: float
     interval95: float
+    unit: str = ""
+    own_scale: float = 1.0
 
     def to_dict(self, *, unit: str, scale: float) -> dict[str, Any]:
         """Keys of the JSON."""
+        if self.unit:
+            unit, scale = self.unit, self.own_scale
         return {
             "action": self.action,
             "text": self.text,
@@ -108,12 +116,18 @@ class Outlook:
         Best first.
     wanted : str
         Of what the interval is, followed by its width: ``north at``.
+    unit : str
+        Printed unit of the intervals; empty = that of the record.
+    scale : float
+        SI value of that unit; not used where it is empty.
     """
 
     now: float
     interval: float
     actions: tuple[ActionResult, ...]
     wanted: str
+    unit: str = ""
+    scale: float = 1.0
 
 
 def _small(value: float | None, scale: float) -> float | None:

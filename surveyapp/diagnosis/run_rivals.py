@@ -11,11 +11,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from surveyapp.diagnosis.action import Linear
 from surveyapp.diagnosis.candidates import Candidate, swing_columns
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.fits import Fit
+from surveyapp.diagnosis.linear_outlook import Rival, joined_rivals
 from surveyapp.diagnosis.run_average import (
     BASE_PRIOR,
     GROSS_SIZES,
@@ -74,34 +75,10 @@ class Design:
     others: Columns
     first: int
 
-
-@dataclass(frozen=True, slots=True)
-class Rival:
-    """Members of as many columns each, of all units and sizes.
-
-    Parameters
-    ----------
-    units : tuple of str
-        Of each member.
-    log_prior : ndarray, shape (m,)
-        Of each member.
-    columns : ndarray, shape (m, n + k, r)
-        What it does to the readings, in its prior standard deviations.
-    run, both : ndarray, shape (m, r)
-        What it does to north, the mean over the run and over run and action.
-    """
-
-    units: tuple[str, ...]
-    log_prior: Floats
-    columns: Floats
-    run: Floats
-    both: Floats
-
-    def some(self, chosen: NDArray[np.bool_]) -> Rival:
-        """Only the chosen members."""
-        parts = (part[chosen] for part in (self.log_prior, self.columns, self.run, self.both))
-        units = tuple(u for u, keep in zip(self.units, chosen.tolist(), strict=True) if keep)
-        return Rival(units, *parts)
+    @property
+    def rows(self) -> Linear:
+        """The rows; north is the coefficient of the first column."""
+        return Linear(self.flat, self.first, np.eye(self.flat.shape[1])[0])
 
 
 def design_of(case: Case, base: Fit, action: RunAction) -> Design:
@@ -161,24 +138,7 @@ def rivals_of(
         run, both = north[:, :n].mean(axis=1), north.mean(axis=1)
         names = (unit,) * len(columns)
         rivals += [Rival(names, prior, s * columns, s * run, s * both) for s in sizes]
-    return _joined(rivals)
-
-
-def _joined(rivals: Sequence[Rival]) -> list[Rival]:
-    """Members of as many columns in one: the algebra is done for all of them at once."""
-    found = []
-    for count in sorted({item.columns.shape[2] for item in rivals}):
-        own = [item for item in rivals if item.columns.shape[2] == count]
-        found.append(
-            Rival(
-                tuple(unit for item in own for unit in item.units),
-                np.concatenate([item.log_prior for item in own]),
-                np.concatenate([item.columns for item in own]),
-                np.concatenate([item.run for item in own]),
-                np.concatenate([item.both for item in own]),
-            )
-        )
-    return found
+    return joined_rivals(rivals)
 
 
 def _of_effect(candidate: Candidate, design: Design, action: RunAction) -> Moves:

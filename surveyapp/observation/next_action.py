@@ -16,7 +16,10 @@ SEED = 20260401
 
 
 def next_actions(project: Project, session: str) -> tuple[ActionResult, ...]:
-    """Actions after a reversal run, the one that tells most first; none where nothing can be said.
+    """Actions after a run, the one that tells most first; none where nothing can be said.
+
+    After turning points they are those of the run; an automatic gyro delivers azimuths, and what
+    is next is a determination of its constant: the actions of its campaign.
 
     Parameters
     ----------
@@ -31,6 +34,8 @@ def next_actions(project: Project, session: str) -> tuple[ActionResult, ...]:
     from surveyapp.diagnosis.subjects.choice import is_run, run_problem
 
     item = project.session(session)
+    if item.method == "automatic":
+        return _of_campaign(project, item.instrument)
     if not is_run(item):
         return ()
     try:
@@ -38,6 +43,21 @@ def next_actions(project: Project, session: str) -> tuple[ActionResult, ...]:
         card = project.instrument(item.instrument).card
         case = run_problem(item, card, latitude=position.latitude)
         outlook = run_advice(case, fit_members(case, ()), np.random.default_rng(SEED))
+    except SurveyError:
+        return ()
+    return () if outlook is None else outlook.actions
+
+
+def _of_campaign(project: Project, instrument: str) -> tuple[ActionResult, ...]:
+    """What another determination of the constant would tell, from four of them on."""
+    from surveyapp.diagnosis.next_observation import advice
+    from surveyapp.diagnosis.subjects.choice import campaign_problem
+    from surveyapp.workflows.computing import generator_of, oriented
+
+    try:
+        orientation = oriented(project).orientation
+        case, _ = campaign_problem(orientation, instrument)
+        outlook = advice(case, generator_of(project))
     except SurveyError:
         return ()
     return () if outlook is None else outlook.actions

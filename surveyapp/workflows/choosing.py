@@ -161,12 +161,19 @@ def _chosen_traverse(project: Project, request: Request, networks: Networks | No
             name=f"traverse {name}",
             atmosphere_applied=traverses[name].atmosphere_applied,
             extra=request.effects,
+            gyro_sigma=_gyro_sigma(project),
         )
 
     first = problem(request.traverse or "", "traverse")
     if request.confirm is None:
         return Chosen(first)
     return Chosen(first, problem(request.confirm, "confirm"))
+
+
+def _gyro_sigma(project: Project) -> float | None:
+    """The best stated sigma of a gyro azimuth [rad], for advice on traverses without one."""
+    stated = [item.card.sigma.azimuth for item in project.instruments]
+    return min((value for value in stated if value), default=None)
 
 
 def _run(orientation: Orientation, identity: str, option: str, effects: tuple[Effect, ...]) -> Case:

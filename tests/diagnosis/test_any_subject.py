@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from surveyapp.diagnosis.next_rows import rows_advice
 from surveyapp.diagnosis.subject import DiagnosedSubject, Record, case_of
 from surveyapp.errors import SurveyError
 
@@ -34,6 +35,19 @@ def test_the_toy_subject_finds_the_expansion_of_steel(toy: dict[str, Any]) -> No
     assert abs(found.value + 30.0e3 * 11.5e-6) < 4.0 * found.sigma
     assert result.heading == "tape 7"
     assert result.value_name == "the length"
+
+
+def test_what_the_toy_offers_to_do_next_is_weighed(toy: dict[str, Any]) -> None:
+    """Nothing warmer was measured: the one action tells most of what is open."""
+    rng = np.random.default_rng(1)
+    lengths = 30.0 + 2e-4 * rng.standard_normal(20)
+    record = Record(lengths, {"temperature_c": rng.uniform(15.0, 17.0, 20)}, identity="tape 7")
+    found = rows_advice(case_of(toy["TAPE"], record), rng)
+    assert found is not None
+    assert [item.action for item in found.actions] == ["warmer"]
+    assert found.actions[0].separation > found.now
+    assert toy["result"].actions[0].action == "warmer"
+    assert any("15 K warmer" in text for text in toy["result"].advice)
 
 
 def test_wrong_records_are_told_together(toy: dict[str, Any]) -> None:

@@ -117,21 +117,20 @@ def half_widths(weights: Floats, means: Floats, variance: Floats, dof: float) ->
     scale = np.sqrt(np.maximum(variance, 1e-12))
     low = np.zeros(weights.shape[0])
     high = (np.abs(offsets) + 6.0 * scale).max(axis=1)
-    above, under = np.full_like(low, PROBABILITY), np.full_like(low, PROBABILITY - 1.0)
     spread = np.sqrt((weights * (scale**2 + offsets**2)).sum(axis=1))
     guess = np.minimum(2.0 * spread, 0.999 * high)
     for _ in range(STEPS):
-        inside = student_cdf((guess[:, None] - offsets) / scale, dof)
-        inside -= student_cdf((-guess[:, None] - offsets) / scale, dof)
-        value = PROBABILITY - (weights * inside).sum(axis=1)
-        less = value > 0.0
-        # Illinois, as for one mixture
+        upper, one = _student((guess[:, None] - offsets) / scale, dof)
+        lower, other = _student((-guess[:, None] - offsets) / scale, dof)
+        missing = PROBABILITY - (weights * (upper - lower)).sum(axis=1)
+        less = missing > 0.0
         low, high = np.where(less, guess, low), np.where(less, high, guess)
-        above = np.where(less, value, 0.5 * above)
-        under = np.where(less, 0.5 * under, value)
-        if bool(np.all((np.abs(value) < NEAR) | (high - low <= NEAR * high))):
+        if bool(np.all((np.abs(missing) < NEAR) | (high - low <= NEAR * high))):
             break
-        guess = low + (high - low) * above / (above - under)
+        # Newton's method within a bracket, as for one mixture
+        slope = np.maximum((weights / scale * (one + other)).sum(axis=1), 1e-300)
+        step = guess + missing / slope
+        guess = np.where((low < step) & (step < high), step, 0.5 * (low + high))
     return np.asarray(guess)
 
 

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from surveyapp.core.network.observation_equations import equations, linearised, 
 from surveyapp.core.network.solving import solve_network
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.subjects.pointings import one_a_pointing
+from surveyapp.diagnosis.subjects.traverse_actions import Adjusted, planner_of
 from surveyapp.diagnosis.subjects.traverse_columns import gyro_sides, observation_columns
 from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.project import ResultWarning
@@ -63,6 +65,7 @@ def traverse(
     name: str = "",
     atmosphere_applied: bool | None = None,
     extra: tuple[Effect, ...] = (),
+    gyro_sigma: float | None = None,
 ) -> Case:
     """Make the problem of a network.
 
@@ -76,6 +79,8 @@ def traverse(
         Whether the instrument has corrected the distances; None = nobody says.
     extra : tuple of Effect
         The user's own; their basis is in the unit of the observations [rad] and [m].
+    gyro_sigma : float or None
+        Of a gyro azimuth of this office, for advice on a traverse without gyro sides [rad].
 
     Returns
     -------
@@ -90,10 +95,45 @@ def traverse(
     identity = name or network.name or "traverse"
     _refuse_many(network, identity)
     network, repeated = one_a_pointing(network)
+    adjusted, weakest = _adjusted(network, identity)
+    model, columns = adjusted.model, adjusted.columns
+    size = columns[TRANSFORM].shape[0]
+    effects = (*of_subject("traverse"), *extra)
+    base = np.zeros((size, 1))
+    base[0, 0] = 1.0
+    return Case(
+        subject="traverse",
+        title=said("traverse"),
+        value_name=said("the place of the least certain point"),
+        observations=adjusted.transform @ adjusted.right,
+        base=base,
+        base_names=(said("place of {weakest}", weakest=weakest),),
+        value_base=np.ones(1),
+        value_weights=np.zeros(size),
+        position=np.zeros(size),
+        columns=columns,
+        effects=tuple(_in_conditions(effect) for effect in effects),
+        sigma=np.ones(size),
+        unit="sigma",
+        scale=1.0,
+        identity=identity,
+        labels=(
+            said("place of {weakest}", weakest=weakest),
+            *[said("condition {i}", i=i) for i in range(1, size)],
+        ),
+        grid_labels={**_labels(model), **adjusted.labels},
+        warnings=(*repeated, *_warnings(atmosphere_applied, columns, weakest)),
+        planner=partial(planner_of, adjusted, effects, gyro_sigma),
+    )
+
+
+def _adjusted(network: Network, identity: str) -> tuple[Adjusted, str]:
+    """The adjusted network with its conditions, and the name of its least certain point."""
     model = compile_network(network)
     values = solve_network(network, model).values
     whitener, design, right = _whitened(model, values)
-    weakest, towards = _weakest_point(network, model, design)
+    inverse = np.asarray(np.linalg.pinv(design, rcond=RANK), dtype=np.float64)
+    weakest, towards = _weakest_point(network, model, inverse)
     transform = _conditions(design, towards)
     if transform.shape[0] < 2:
         raise SurveyError(
@@ -104,35 +144,22 @@ def traverse(
                 "a closure, a repetition, a fixed point or gyro side more",
             )
         )
-    size = transform.shape[0]
-    base = np.zeros((size, 1))
-    base[0, 0] = 1.0
     told = observation_columns(network, model, values)
     columns = {**told.columns, TRANSFORM: transform @ whitener}
     columns["own_sigma"] = _controlled(columns)
-    return Case(
-        subject="traverse",
-        title=said("traverse"),
-        value_name=said("the place of the least certain point"),
-        observations=transform @ right,
-        base=base,
-        base_names=(said("place of {weakest}", weakest=weakest),),
-        value_base=np.ones(1),
-        value_weights=np.zeros(size),
-        position=np.zeros(size),
+    found = Adjusted(
+        network=network,
+        model=model,
+        values=values,
+        whitener=whitener,
+        design=design,
+        right=right,
+        inverse=inverse,
+        transform=transform,
         columns=columns,
-        effects=tuple(_in_conditions(e) for e in (*of_subject("traverse"), *extra)),
-        sigma=np.ones(size),
-        unit="sigma",
-        scale=1.0,
-        identity=identity,
-        labels=(
-            said("place of {weakest}", weakest=weakest),
-            *[said("condition {i}", i=i) for i in range(1, size)],
-        ),
-        grid_labels={**_labels(model), **told.labels},
-        warnings=(*repeated, *_warnings(atmosphere_applied, columns, weakest)),
+        labels=told.labels,
     )
+    return found, weakest
 
 
 def _controlled(columns: Mapping[str, Floats]) -> Floats:
@@ -172,11 +199,10 @@ def _whitened(model: Model, values: Floats) -> tuple[Floats, Floats, Floats]:
     return whitener, design[:, :u], right
 
 
-def _weakest_point(network: Network, model: Model, design: Floats) -> tuple[str, Floats]:
+def _weakest_point(network: Network, model: Model, pseudo: Floats) -> tuple[str, Floats]:
     """Name of the least certain point, and the unit row that estimates its worst coordinate."""
-    pseudo = np.linalg.pinv(design, rcond=RANK)
     unknowns = model.unknown_of[: 3 * len(network.points)].reshape(-1, 3)
-    best: tuple[float, str, Floats] = (0.0, "", np.zeros(design.shape[0]))
+    best: tuple[float, str, Floats] = (0.0, "", np.zeros(pseudo.shape[1]))
     for point, own in zip(network.points, unknowns, strict=True):
         rows = pseudo[own[own >= 0]]
         if not len(rows):

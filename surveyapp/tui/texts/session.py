@@ -180,6 +180,16 @@ ACTIONS: Final = {
     "second_run": "2nd run in 4 h, set up anew",
     "other_observer": "2nd run by another observer",
 }
+NEXT_CAMPAIGN: Final = 'next: {action}: line in 30 d ±{interval}", cause {share}'
+ELSE_CAMPAIGN: Final = 'else: {action}: line in 30 d ±{interval}", cause {share}'
+CAMPAIGN_ACTIONS: Final = {
+    "repeat": "again now",
+    "tomorrow": "again tomorrow",
+    "warmer": "again 8 K warmer",
+    "colder": "again 8 K colder",
+    "other_line": "other known line",
+    "month": "again in 30 d",
+}
 RULE_TARGET: Final = 'rule book ±{interval}"'
 TARGET_SOURCE: Final = 'm {sigma}" x 1.96: {book}, {clause}'
 TARGET_UNCONFIRMED: Final = ", unconfirmed"

@@ -125,13 +125,20 @@ def outlook_text(progress: Progress, aim: Aim) -> str:
 
 
 def next_lines(actions: Sequence[ActionResult], shown: int = 2) -> list[str]:
-    """What to observe next, best first: how sure the cause would be, and the interval of north."""
+    """What to observe next, best first: how sure the cause would be, and the interval then.
+
+    The interval is that of north, or where determinations of a constant are next that of a line
+    in a month.
+    """
     lines = []
     for place, item in enumerate(actions[:shown]):
         pattern = texts.NEXT_ACTION if place == 0 else texts.ELSE_ACTION
+        if item.action in texts.CAMPAIGN_ACTIONS:
+            pattern = texts.NEXT_CAMPAIGN if place == 0 else texts.ELSE_CAMPAIGN
+        short = {**texts.ACTIONS, **texts.CAMPAIGN_ACTIONS}
         lines.append(
             pattern.format(
-                action=texts.ACTIONS.get(item.action, item.text),
+                action=short.get(item.action, item.text),
                 share=f"{item.separation:.0%}",
                 interval=seconds(item.interval95, 1),
             )
