@@ -9,8 +9,6 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-import numpy as np
-
 from surveyapp.api.project import SOFTWARE, Folder, open_project, require
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.noise import AllanResult, FilterResult
@@ -295,14 +293,12 @@ def filter_log(
     from surveyapp.workflows.filtering import filter_log as run
 
     opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
-    result, raw, filtered = run(
+    result, columns = run(
         opened.file, name=name, column=column, q=q, r=r, seed=seed, progress=progress
     )
     if out is not None:
         from surveyapp.io.sensor_logs.writing import write_columns
 
-        times = np.arange(raw.size) / result.before.rate_hz
-        columns = {"time_s": times, result.column: raw, f"filtered_{result.column}": filtered}
         write_columns(Path(out), columns, inputs=(opened.file.request.path,))
     return told_about(result, opened.subject)
 

@@ -233,7 +233,9 @@ def _span(book: FieldBook, *, epoch: bool) -> str:
     if not times:
         return said("a book with times of its rows")
     return said(
-        "samples from {times:g} to {times2:g} s of the book", times=min(times), times2=max(times)
+        "samples from {times:.12g} to {times2:.12g} s of the book",
+        times=min(times),
+        times2=max(times),
     )
 
 

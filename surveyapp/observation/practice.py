@@ -181,6 +181,8 @@ def begin(
                 said("{slowest:g} to {fastest:g}", slowest=SLOWEST, fastest=FASTEST),
             )
         )
+    if seed is not None and seed < 0:
+        raise SurveyError(Problem(said("the seed is negative"), "seed", str(seed), "0 or more"))
     path = Path(folder)
     if path.exists() and (not path.is_dir() or any(path.iterdir())):
         raise SurveyError(Problem(said("practice needs a folder of its own"), str(path)))

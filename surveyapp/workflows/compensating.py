@@ -140,6 +140,12 @@ def compensate_log(
     doubt = field_doubt(log, card, where=where) if kind == "compass" else None
     if doubt is not None:
         log = replace(log, warnings=(*log.warnings, ResultWarning("field_differs", doubt)))
+    if declination is not None and declination.sigma is None:
+        text = said(
+            "the declination has no sigma and counts as exact; that of a model has .31 to .50 "
+            "degrees: --declination D,SIGMA"
+        )
+        log = replace(log, warnings=(*log.warnings, ResultWarning("no_declination_sigma", text)))
     starts = range(0, log.size, BLOCK_ROWS)
     blocks = (log.rows(slice(start, start + BLOCK_ROWS)) for start in starts)
     return (_run(kind, block, card, (declination, where)) for block in blocks), log, card
@@ -223,6 +229,9 @@ def write_compensated(
     if card.temperature_c is not None and span is None:
         text = "the log holds no temperature: whether the card holds was not judged by it"
         warnings.append(ResultWarning("temperature_unknown", text))
+    if kind == "compass" and log.vector("acc") is None:
+        text = "no specific force: the headings are taken as level, not tilt-compensated"
+        warnings.append(ResultWarning("not_tilt_compensated", text))
     if "restricted" in card.notes:
         warnings.append(
             ResultWarning("restricted", said("the card {value}", value=card.notes["restricted"]))

@@ -43,7 +43,7 @@ def filter_log(
     r: float | None,
     seed: int = 1,
     progress: PartDone | None = None,
-) -> tuple[FilterResult, Floats, Floats]:
+) -> tuple[FilterResult, dict[str, Floats]]:
     """Filter one column.
 
     Parameters
@@ -62,8 +62,8 @@ def filter_log(
 
     Returns
     -------
-    tuple of FilterResult, ndarray, ndarray
-        The result, the raw and the filtered series.
+    tuple of FilterResult, dict of str to ndarray
+        The result, and the times of the log with the raw and the filtered series by column.
 
     Raises
     ------
@@ -71,17 +71,11 @@ def filter_log(
         For an unknown filter or column, and for variances that are not positive.
     """
     model_name = _known(name)
-    names = noise_columns(file, column)
-    if len(names) > 1:
-        hint = said("`column` C, one of: {names}", names=", ".join(names))
-        raise SurveyError(Problem("which column?", file.request.where, "", "one column", hint))
+    names = _one_column(file, column)
     log = read_columns(file, names, progress)
     series, unit = log.columns[names[0]], log.units[names[0]]
-    stated = r if r is not None else 0.5 * float(np.mean(np.diff(series) ** 2))
-    model = LocalLevel(q if q is not None else 1e-3 * stated, stated)
-    _check_model(model)
-    rng = np.random.default_rng(seed)
-    filtered = run_filter(model_name, series, model, rng)
+    model = _model(series, (q, r), seed)
+    filtered = run_filter(model_name, series, model, np.random.default_rng(seed))
     rate = log.rate_hz or 1.0
     factors = octaves(series.size)
     before = channel_of(names[0], unit, series, rate_hz=rate, factors=factors)
@@ -119,7 +113,20 @@ def filter_log(
         seed=seed,
         warnings=tuple(warnings),
     )
-    return result, series, filtered.estimate
+    times = log.columns.get("time_s", np.arange(series.size) / rate)
+    return result, {
+        "time_s": times,
+        names[0]: series,
+        f"filtered_{names[0]}": filtered.estimate,
+    }
+
+
+def _one_column(file: LogFile, column: str | None) -> tuple[str, ...]:
+    names = noise_columns(file, column)
+    if len(names) > 1:
+        hint = said("`column` C, one of: {names}", names=", ".join(names))
+        raise SurveyError(Problem("which column?", file.request.where, "", "one column", hint))
+    return tuple(names)
 
 
 def _known(name: str) -> FilterName:
@@ -130,7 +137,11 @@ def _known(name: str) -> FilterName:
     raise SurveyError(Problem("there is no such filter", "filter", name, hint=hint))
 
 
-def _check_model(model: LocalLevel) -> None:
+def _model(series: Floats, stated: tuple[float | None, float | None], seed: int) -> LocalLevel:
+    """The variances as stated, or from the differences of the series."""
+    q, r = stated
+    reading = r if r is not None else 0.5 * float(np.mean(np.diff(series) ** 2))
+    model = LocalLevel(q if q is not None else 1e-3 * reading, reading)
     problems = [
         Problem(
             said("{name} is no variance", name=name), name, f"{value:g}", "a finite number above 0"
@@ -138,8 +149,11 @@ def _check_model(model: LocalLevel) -> None:
         for name, value in (("q", model.q), ("r", model.r))
         if not math.isfinite(value) or value <= 0.0
     ]
+    if seed < 0:
+        problems.append(Problem("the seed is negative", "seed", str(seed), "0 or more"))
     if problems:
         raise SurveyError(problems)
+    return model
 
 
 def _told(after: AllanChannel) -> AllanChannel:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from surveyapp import api
 from surveyapp.core.sensors.rate.fog_north import FogNorth, Position, solve_north
 from surveyapp.core.simulate.rate.table_programmes import DEG_H
 from surveyapp_models.angles import ARCSEC, wrap_pi
@@ -118,3 +120,22 @@ def test_the_approximate_north_decides_between_the_two_roots() -> None:
     other = solve_north(four, latitude=0.6, approximate_north=north + 3.0, rate_sigma=1e-7)
     assert other.north is not None
     assert abs(wrap_pi(other.north - north)) > 3.0
+
+
+def test_a_north_far_from_the_stated_one_is_told(tmp_path: Path) -> None:
+    """At 91 degrees off the other root is the nearer one: nothing else would tell it."""
+    rows = positions(math.radians(123.0), math.radians(35.0), None)
+    lines = ["time_s,gyr_x_rad_s,horizontal_circle_deg,vertical_circle_deg,face"] + [
+        f"{60 * k},{p.rate!r},{math.degrees(p.alidade)!r},{math.degrees(p.vertical or 0.0)!r},"
+        + ("R" if p.plunged else "L")
+        for k, p in enumerate(rows)
+    ]
+    (tmp_path / "n.csv").write_text("\n".join(lines) + "\n")
+
+    def codes(stated: float) -> list[str]:
+        options = {"latitude": 35.0, "approximate_north_deg": stated, "rate_sigma_deg_h": 0.05}
+        found = api.north(tmp_path / "n.csv", method="fog-station", options=options)
+        return [w.code for w in found.warnings]
+
+    assert "approximate_north_far" in codes(214.0)
+    assert "approximate_north_far" not in codes(120.0)

@@ -243,3 +243,39 @@ def test_a_path_over_a_gap_while_moving_is_not_to_be_used() -> None:
         found = judge_motion(as_read(cut), MotionOptions(path=True))
         assert found.met == usable
         assert ("path_over_gap" in {w.code for w in found.warnings}) != usable
+
+
+def smooth_drive(rng: np.random.Generator, *, odometer: bool) -> tuple[SensorLog, Floats]:
+    """20 s of rest, .5 m/s2 for 4 s, 11 s at 2 m/s, braking, rest; white noise and no shaking."""
+    hz, truth = 50.0, np.repeat([0, 2, 1, 3, 0], [1000, 200, 550, 200, 1000])
+    push = np.choose(truth, [0.0, 0.0, 0.5, -0.5])
+    speed = np.cumsum(push) / hz
+    force = np.column_stack([np.full(truth.size, 0.03), push - 0.02, np.full(truth.size, 9.81)])
+    force += 0.02 * rng.normal(size=force.shape)
+    rate = np.array([1e-4, -2e-4, 1.5e-4]) + 1e-3 * rng.normal(size=force.shape)
+    columns = {"time_s": np.arange(truth.size) / hz}
+    columns |= {f"acc_{a}_m_s2": force[:, i] for i, a in enumerate("xyz")}
+    columns |= {f"gyr_{a}_rad_s": rate[:, i] for i, a in enumerate("xyz")}
+    if odometer:
+        columns["odometer_m"] = np.cumsum(speed) / hz
+    units = dict.fromkeys(columns, "")
+    return SensorLog("smooth", columns, units, truth.size, rate_hz=hz, path="smooth.csv"), truth
+
+
+@pytest.mark.parametrize("odometer", [True, False])
+def test_a_drive_without_shaking_is_no_rest(odometer: bool) -> None:
+    """A window's mean was taken out: constant force and constant speed looked like rest (71 %)."""
+    log, truth = smooth_drive(np.random.default_rng(5), odometer=odometer)
+    found = judge_motion(log, MotionOptions(path=True))
+    names = np.array(["stationary", "steady", "accelerating", "braking"])
+    given = np.array([""] * truth.size, dtype=object)
+    for segment in found.segments:
+        inside = (log.columns["time_s"] >= segment.start_s) & (
+            log.columns["time_s"] <= segment.end_s
+        )
+        given[inside] = segment.state
+    for code, name in enumerate(names):
+        assert np.mean(given[truth == code] == name) > 0.88, name
+    assert found.path is not None
+    assert max(found.path.sides_m) == pytest.approx(30.0, abs=0.5)
+    assert found.met

@@ -189,8 +189,11 @@ def test_a_saturated_axis_is_refused() -> None:
         calibrated(SimulatedLog(columns, log.texts, log.truth))
 
 
-def chamber(seed: int, *, latitude: float = 0.6) -> tuple[SimulatedLog, SimulatedLog]:
-    made = replace(unit(), table=Table(latitude))
+def chamber(
+    seed: int, *, latitude: float = 0.6, tilt_deg: float = 0.0
+) -> tuple[SimulatedLog, SimulatedLog]:
+    table = Table(latitude, tilt_along=math.radians(tilt_deg))
+    made = replace(unit(), table=table)
 
     def at(node: float) -> tuple[Triad, Triad]:
         t = (node - 20.0) / 30.0
@@ -274,3 +277,23 @@ def test_every_simulated_project_has_its_log_and_truth() -> None:
     files, truth = simulate_rate("rate", None, effects=(), rng=np.random.default_rng(1))
     assert set(files) == {"project.toml", "sensors/six-position.csv"}
     assert truth["simulated"] is True
+
+
+def test_a_tilted_table_and_a_chamber_that_is_read_often_change_nothing() -> None:
+    """Half a degree of tilt stands in the rests of the accelerometers: 1800" of misalignment."""
+    log, room = chamber(3, tilt_deg=0.5)
+    columns = dict(log.columns)
+    rng = np.random.default_rng(4)
+    read = columns["reference_temperature_c"] + 0.1 * rng.normal(size=columns["time_s"].size)
+    columns["reference_temperature_c"] = read
+    found = calibrate_temperature(
+        as_read(replace(log, columns=columns)),
+        TemperatureOptions(latitude=0.6, room=resting_rows(as_read(room))),
+    )
+    assert [round(node["temperature_c"]) for node in found.extra["nodes"]] == [-10, 5, 20, 30, 40]
+    for item in found.parameters:
+        if item.name.startswith("accelerometer_misalignment"):
+            assert item.value is not None
+            assert item.sigma is not None
+            error = item.value - float(str(room.truth[item.name]))
+            assert abs(error) < 4.0 * item.sigma, item.name

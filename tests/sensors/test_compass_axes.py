@@ -177,3 +177,19 @@ def test_without_a_turn_the_model_is_not_chosen(tmp_path: Path) -> None:
     assert [m.id for m in found.models] == ["none", "centre", "scales", "full", "misalignment"]
     turn = [found.parameter(f"misalignment_{a}") for a in "xyz"]
     assert [(t.value, t.sigma) for t in turn] == [(0.0, None)] * 3
+
+
+def test_five_rows_for_four_parameters_are_told(tmp_path: Path) -> None:
+    rng = np.random.default_rng(2)
+    own = rng.uniform(-600, 600, (30, 2))
+    table = np.column_stack(
+        [np.arange(30), own + rng.normal(0, 1, (30, 2)), own, rng.uniform(10, 30, 30)]
+    )
+    names = "time_s,tilt_along_arcsec,tilt_across_arcsec,ref_along_arcsec,ref_across_arcsec"
+    names += ",temperature_c"
+    few = api.calibrate("tilt", written(tmp_path / "few.csv", names, table[:5]))
+    text = next(w.text for w in few.warnings if w.code == "few_rows")
+    assert "few degrees of freedom, 1" in text
+    assert "13 sigma" in text
+    whole = api.calibrate("tilt", written(tmp_path / "whole.csv", names, table))
+    assert "few_rows" not in [w.code for w in whole.warnings]

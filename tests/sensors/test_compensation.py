@@ -146,3 +146,58 @@ def test_a_card_of_another_compass_is_told(tmp_path: Path) -> None:
         log = Path(made.folder) / "sensors/compass.csv"
         result = api.compensate("compass", log, card=card, out=tmp_path / "out.csv")
         assert ("field_differs" in [w.code for w in result.warnings]) is told
+
+
+def swung(path: Path, rng: np.random.Generator, *, rows: int) -> tuple[Path, Floats]:
+    """A level swing made by hand: deviation 1.5 - 2 sin psi + 3 cos psi, .3 uT per reading."""
+    psi = np.arange(rows) * 2.0 * np.pi / rows
+    shown = psi - np.radians(1.5 - 2.0 * np.sin(psi) + 3.0 * np.cos(psi))
+    level, down = 50.0 * math.cos(math.radians(65.0)), -50.0 * math.sin(math.radians(65.0))
+    field = np.column_stack([level * np.cos(shown), level * np.sin(shown), np.full(rows, down)])
+    field += 0.3 * rng.normal(size=field.shape)
+    table = np.column_stack([np.arange(rows), field, np.tile([0.0, 0.0, 9.8], (rows, 1))])
+    names = "time_s,mag_x_uT,mag_y_uT,mag_z_uT,acc_x_m_s2,acc_y_m_s2,acc_z_m_s2,heading_deg"
+    table = np.column_stack([table, np.degrees(psi)])
+    np.savetxt(path, table, delimiter=",", header=names, comments="")
+    return path, np.degrees(psi)
+
+
+def test_the_sigma_of_a_heading_by_a_swing_holds_the_noise_of_its_reading(tmp_path: Path) -> None:
+    rng = np.random.default_rng(4)
+    path, _ = swung(tmp_path / "swing.csv", rng, rows=72)
+    card, out = tmp_path / "swing.toml", tmp_path / "out.csv"
+    api.calibrate("compass", path, card=card)
+    path, truth = swung(tmp_path / "later.csv", rng, rows=200)
+    told = api.compensate("compass", path, card=card, out=out, declination="0")
+    assert "no_declination_sigma" in [w.code for w in told.warnings]
+    found = columns(out, "heading_deg", "heading_sigma_deg")
+    error = (found[:, 0] - truth + 180.0) % 360.0 - 180.0
+    assert 0.90 < np.mean(np.abs(error) < 1.96 * found[:, 1]) < 0.99
+
+
+def test_what_a_log_does_not_hold_widens_what_is_computed_from_it(tmp_path: Path) -> None:
+    folder, _ = simulated(tmp_path, "compass", "hard_iron=12")
+    card, out = tmp_path / "c.toml", tmp_path / "out.csv"
+    api.calibrate("compass", folder, card=card)
+    made = api.compensate("compass", folder, card=card, out=out)
+    table = columns(folder / "sensors/compass.csv", "time_s", "mag_x_uT", "mag_y_uT", "mag_z_uT")
+    bare = tmp_path / "bare.csv"
+    np.savetxt(bare, table, delimiter=",", header="time_s,mag_x_uT,mag_y_uT,mag_z_uT", comments="")
+    told = api.compensate("compass", bare, card=card, out=tmp_path / "bare_out.csv")
+    assert "not_tilt_compensated" in [w.code for w in told.warnings]
+    whole = columns(out, "heading_deg")[:, 0]
+    found = columns(tmp_path / "bare_out.csv", "heading_deg", "heading_sigma_deg")
+    error = (found[:, 0] - whole + 180.0) % 360.0 - 180.0
+    assert np.median(np.abs(error)) < 1.96 * np.median(found[:, 1])
+    assert made.heading_sigma_deg is not None
+
+    folder, _ = simulated(tmp_path, "tilt", "temperature=1")
+    card = tmp_path / "t.toml"
+    api.calibrate("tilt", folder, card=card)
+    names = ("time_s", "tilt_along_arcsec", "tilt_across_arcsec", "ref_along_arcsec")
+    table = columns(folder / "sensors/tilt.csv", *names)
+    np.savetxt(bare, table, delimiter=",", header=",".join(names), comments="")
+    api.compensate("tilt", bare, card=card, out=out)
+    found = columns(out, "tilt_along_arcsec", "sigma_along_arcsec")
+    error = found[:, 0] - table[:, 3]
+    assert np.sqrt(np.mean(error**2)) == pytest.approx(np.mean(found[:, 1]), rel=0.35)

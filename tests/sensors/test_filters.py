@@ -105,7 +105,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     path, out = tmp_path / "log.csv", tmp_path / "out.csv"
     series = 1e-3 * series_of(3000, q=1e-6)
     np.savetxt(
-        path, np.column_stack([np.arange(3000) * 0.01, series]), delimiter=",",
+        path, np.column_stack([100.0 + np.arange(3000) * 0.01, series]), delimiter=",",
         header="time_s,gyr_x_rad_s", comments="",
     )  # fmt: skip
     command = ["filter", str(path), "--filter", "kalman", "--q", "1e-9", "--r", "1e-6"]
@@ -120,8 +120,12 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert after["N"]["value"] is None
     assert after["N"]["reason"] in ("filtered", "no_power_law")
     assert result["divergence"]["diverged"] is False
-    assert out.read_text().splitlines()[0] == "time_s,gyr_x_rad_s,filtered_gyr_x_rad_s"
+    lines = out.read_text().splitlines()
+    assert lines[0] == "time_s,gyr_x_rad_s,filtered_gyr_x_rad_s"
+    assert lines[1].startswith("100,")
     assert main(["filter", str(path), "--filter", "all"]) == 0
     assert "p particle" in capsys.readouterr().out
-    assert main(["filter", str(path), "--q", "0", "--r", "-1"]) == 2
-    assert capsys.readouterr().err.count("no variance") == 2
+    assert main(["filter", str(path), "--q", "0", "--r", "-1", "--seed", "-1"]) == 2
+    told = capsys.readouterr().err
+    assert told.count("no variance") == 2
+    assert "--seed: the seed is negative" in told

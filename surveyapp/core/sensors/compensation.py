@@ -113,6 +113,8 @@ def compensate_compass(
         field = _corrected_field(points, card, where)
         heading = heading_of(field, up)
         sigma = _ellipsoid_sigma(card, field, up)
+        if up is None:
+            sigma = np.hypot(sigma, _unlevelled(card, field))
     reference = "MAGNETIC"
     if declination is not None:
         heading = (heading + declination.value) % (2.0 * math.pi)
@@ -193,13 +195,28 @@ def _ellipsoid_sigma(card: SensorCard, field: Floats, up: Floats | None) -> Floa
 
 
 def _swing_sigma(card: SensorCard, heading: Floats) -> Floats:
-    """Sigma of each heading from the covariance of A to E [rad]."""
+    """Sigma of each heading: of A to E by their covariance, and of one reading [rad]."""
+    reading = card.constants.get("reading_sigma_deg", 0.0)
     if card.covariance is None:
         largest = card.constants.get("heading_sigma_deg", 0.0)
-        return np.full(heading.size, math.radians(largest))
+        return np.full(heading.size, math.radians(math.hypot(largest, reading)))
     basis = deviation_basis(heading)
     variance = np.sum((basis @ card.covariance) * basis, axis=1)
-    return np.asarray(np.radians(np.sqrt(np.maximum(variance, 0.0))))
+    return np.asarray(np.radians(np.sqrt(np.maximum(variance, 0.0) + reading**2)))
+
+
+def _unlevelled(card: SensorCard, field: Floats) -> float:
+    """Sigma of a heading because no specific force tells the tilt [rad].
+
+    The dip of the readings departs from that of the calibration by the tilt along the meridian;
+    the tilt across it, taken for as large, turns the heading by its tangent of the dip.
+    """
+    dip = card.constants.get("dip_deg")
+    if dip is None:
+        return 0.0
+    found = np.arctan2(-field[:, 2], np.linalg.norm(field[:, :2], axis=1))
+    tilt = float(np.sqrt(np.mean((found - math.radians(dip)) ** 2)))
+    return abs(math.tan(math.radians(dip))) * tilt
 
 
 def compensate_tilt(log: SensorLog, card: SensorCard, *, where: str) -> Compensated:
@@ -216,11 +233,8 @@ def compensate_tilt(log: SensorLog, card: SensorCard, *, where: str) -> Compensa
     terms = ("zero", "scale", "cross")
     values = need(card, [f"{t}_{a}" for t in terms for a in AXES], where)
     reading = np.column_stack([log.columns[f"tilt_{a}_arcsec"] for a in AXES])
-    theta = np.zeros(log.size)
-    temperature = log.columns.get("temperature_c")
     slopes = [card.get(f"temperature_{a}") for a in AXES]
-    if temperature is not None and None not in slopes:
-        theta = temperature - card.constants.get("reference_temperature_c", 20.0)
+    theta, doubt = _warmth(log, card) if None not in slopes else (np.zeros(log.size),) * 2
     drift = np.column_stack([theta * (slope or 0.0) for slope in slopes])
     matrix = np.array(
         [
@@ -231,10 +245,26 @@ def compensate_tilt(log: SensorLog, card: SensorCard, *, where: str) -> Compensa
     zero = np.array([values["zero_along"], values["zero_across"]])
     true = np.linalg.solve(matrix, (reading - zero - drift).T).T
     sigma = _tilt_sigma(card, true, theta)
+    sigma = np.hypot(sigma, np.column_stack([doubt * (slope or 0.0) for slope in slopes]))
     columns: Columns = {"time_s": log.columns["time_s"]} if log.has("time_s") else {}
     columns |= {f"tilt_{a}_arcsec": true[:, i] for i, a in enumerate(AXES)}
     columns |= {f"sigma_{a}_arcsec": sigma[:, i] for i, a in enumerate(AXES)}
     return Compensated(columns)
+
+
+def _warmth(log: SensorLog, card: SensorCard) -> tuple[Floats, Floats]:
+    """Temperature above that of the zeros, and its sigma [K], shape (n,) each.
+
+    Where it was not recorded it is anywhere between those of the calibration.
+    """
+    reference = card.constants.get("reference_temperature_c", 20.0)
+    low, high = card.temperature_c or (reference, reference)
+    temperature = log.columns.get("temperature_c", np.full(log.size, np.nan))
+    known = np.isfinite(temperature)
+    return (
+        np.where(known, temperature, 0.5 * (low + high)) - reference,
+        np.where(known, 0.0, (high - low) / math.sqrt(12.0)),
+    )
 
 
 def _tilt_sigma(card: SensorCard, true: Floats, theta: Floats) -> Floats:

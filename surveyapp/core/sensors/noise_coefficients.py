@@ -19,6 +19,7 @@ from surveyapp.core.sensors.noise_spectrum import (
     fit_noise,
     fit_terms,
     spectrum_of,
+    unit_powers,
 )
 from surveyapp_models.arrays import Floats
 
@@ -37,6 +38,12 @@ USUAL_DISPERSION: Final = 0.77
 
 NO_POWER_LAW: Final = 10.0
 """Beyond it the spectrum is no sum of power laws, and its coefficients mean nothing."""
+
+RED_SHARE: Final = 0.15
+RED_SHAPE_KNOWN: Final = 0.1
+"""How flicker and walk fall off towards half the rate depends on how the sampler averages: where
+they have more than this share of the power there, the record is used up to a tenth of its rate,
+below which the shapes of all samplers agree within 2 %."""
 
 FLICKER_SLOPE: Final = 9.0 / math.pi
 """Variance of the slope of flicker noise: this times B^2 / T^2, (36/pi) times the integral of
@@ -68,6 +75,22 @@ def coefficients_of(
     """
     if series.size < FEWEST:
         return nulls("record_too_short")
+    found = _coefficients(series, interval, highest_hz)
+    if highest_hz is None and _red_at_the_top(found, interval):
+        return _coefficients(series, interval, RED_SHAPE_KNOWN / interval)
+    return found
+
+
+def _red_at_the_top(found: tuple[Coefficient, ...], interval: float) -> bool:
+    """Whether flicker or walk has a part in the power at half the rate."""
+    squares = np.array([(c.value or 0.0) ** 2 for c in found[:4]])
+    parts = squares * unit_powers(np.array([0.5 / interval]), interval)[0]
+    return float(parts[2:].sum()) > RED_SHARE * float(parts.sum())
+
+
+def _coefficients(
+    series: Floats, interval: float, highest_hz: float | None
+) -> tuple[Coefficient, ...]:
     spectrum = spectrum_of(series, interval=interval).below(highest_hz)
     if spectrum.power.size < FEWEST_BINS:
         return nulls("no_power_law")

@@ -168,9 +168,17 @@ def _result(
         sha256=log.sha256,
         covariance=_degrees_covariance(fit) if met else None,
         extra={"coverage_cells": [cells.tolist()]},
-        constants={"heading_sigma_deg": math.degrees(sigma)} if met else {},
+        constants={} if fit is None or not met else _constants(fit, sigma),
         temperature_c=_temperatures(log),
     )
+
+
+def _constants(fit: LinearFit, sigma: float) -> dict[str, float]:
+    """Largest sigma of the correction, and the scatter of one heading about it [deg]."""
+    return {
+        "heading_sigma_deg": math.degrees(sigma),
+        "reading_sigma_deg": math.degrees(fit.sigma0),
+    }
 
 
 def _degrees_covariance(fit: LinearFit | None) -> tuple[tuple[float, ...], ...] | None:

@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 
 from surveyapp.core.sensors.linear import Array, LinearFit, alternate_blocks, fit_linear, rms
+from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp.domain.calibration import (
     Calibration,
     CalibrationModel,
@@ -34,6 +35,9 @@ SCALES: Final = (0.2, 5.0)
 
 BLOCK_ROWS: Final = 7
 """Rows of a held-out block (levelling.md: tilt 7 rows)."""
+
+FEW_DOF: Final = 5
+"""Below so many degrees of freedom sigma itself is known to worse than a third."""
 
 GROSS: Final = 5.0
 """Residuals beyond so many sigma are told; the diagnosis names them."""
@@ -260,6 +264,16 @@ def _warnings(
             "the temperature is not recorded or does not vary: its coefficients stay undetermined"
         )
         found.append(ResultWarning("no_temperature", text))
+    dof = min(item.fit.dof for item in fits)
+    if dof < FEW_DOF:
+        text = said(
+            "{rows} rows leave few degrees of freedom, {dof}: a 95 % interval is {factor:.2g} "
+            "sigma, and none of them tells whether the model holds; take more rows",
+            rows=log.size,
+            dof=dof,
+            factor=student_quantile(0.975, max(dof, 1)),
+        )
+        found.append(ResultWarning("few_rows", text))
     for item in fits:
         if item.fit.x[1] < 0.0:
             text = said(

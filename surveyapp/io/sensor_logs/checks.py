@@ -339,8 +339,8 @@ def gap_warning(gaps: tuple[Gap, ...]) -> list[ResultWarning]:
         return []
     longest = max(gaps, key=lambda gap: gap.end_s - gap.start_s)
     text = counted(
-        "{count} gap in the record; the longest from {start_s:g} to {end_s:g} s.",
-        "{count} gaps in the record; the longest from {start_s:g} to {end_s:g} s.",
+        "{count} gap in the record; the longest from {start_s:.12g} to {end_s:.12g} s.",
+        "{count} gaps in the record; the longest from {start_s:.12g} to {end_s:.12g} s.",
         count=len(gaps),
         start_s=longest.start_s,
         end_s=longest.end_s,

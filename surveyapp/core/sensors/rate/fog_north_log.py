@@ -22,6 +22,8 @@ NEEDED = ("gyr_x_rad_s", "horizontal_circle_deg", "face")
 OPTIONAL = ("vertical_circle_deg", "temperature_c")
 OFF_LEVEL = 60.0 * ARCSEC
 """Distance of a reading from the constant above which the rule of the circle matters [rad]."""
+FAR = math.radians(30.0)
+"""Distance of north from the stated one above which the stated one is in doubt [rad]."""
 NOISE_SIGMAS = 10.0
 """Standard deviations of a row that two of them may differ by beside the earth rate; a gyro as
 noisy as the earth rate finds no north."""
@@ -190,7 +192,23 @@ def _warnings(
         if "north" in solved.undetermined:
             text += said("; two positions (plunging only) need --constant-deg")
         warnings.append(ResultWarning("undetermined", text))
+    if solved.north is not None:
+        warnings += _far_from_stated(wrap_pi(solved.north - options.approximate_north))
     if abs(options.latitude) > POLAR:
         text = "beyond 75 degrees of latitude the level earth rate is too small for mine surveying"
         warnings.append(ResultWarning("high_latitude", text))
     return warnings
+
+
+def _far_from_stated(difference: float) -> list[ResultWarning]:
+    """That the approximate north decides between two norths and fits neither."""
+    if abs(difference) <= FAR:
+        return []
+    text = said(
+        "north lies {degrees:.0f} degrees from the stated approximate north, and the other "
+        "possibility {others:.0f}: a wrong statement turns north by 180 degrees; check it with "
+        "a compass or a known line",
+        degrees=abs(math.degrees(difference)),
+        others=180.0 - abs(math.degrees(difference)),
+    )
+    return [ResultWarning("approximate_north_far", text)]

@@ -117,10 +117,10 @@ def _unseen(time: Floats, still: Mask, interval: float) -> ResultWarning | None:
         return None
     first = int(rows[0])
     text = counted(
-        "the record has a gap from {begin:.6g} to {end:.6g} s while moving: what was turned there "
-        "is not known, and the path after it is not to be used",
-        "the record has {count} gaps while moving, the first from {begin:.6g} to {end:.6g} s: what "
-        "was turned there is not known, and the path after it is not to be used",
+        "the record has a gap from {begin:.12g} to {end:.12g} s while moving: what was turned "
+        "there is not known, and the path after it is not to be used",
+        "the record has {count} gaps while moving, the first from {begin:.12g} to {end:.12g} s: "
+        "what was turned there is not known, and the path after it is not to be used",
         count=rows.size,
         begin=time[first],
         end=time[first + 1],

@@ -19,6 +19,7 @@ from surveyapp.core.sensors.rate.motion_states import (
     segments_of,
     thresholds_of,
 )
+from surveyapp.core.sensors.rate.smooth_motion import moving_smoothly
 from surveyapp.core.sensors.rate.still import (
     WINDOW_S,
     Gate,
@@ -136,6 +137,15 @@ def states_of(
         force, rate = piece.vectors(log, ACCELEROMETERS), piece.vectors(log, GYROS)
         values = statistic(force, rate, noise, window=window)
         rest = bridged(values <= gate.threshold, rate_hz=1.0 / interval)
+        rolled = log.columns.get("odometer_m")
+        rest &= ~moving_smoothly(
+            force,
+            rate,
+            rest,
+            noise=noise,
+            interval_s=interval,
+            odometer=None if rolled is None else rolled[piece.first : piece.last],
+        )
         other = bridged(
             norm_and_rate(force, rate, noise, false_alarm=false_alarm), rate_hz=1.0 / interval
         )

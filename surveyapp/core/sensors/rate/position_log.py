@@ -16,6 +16,7 @@ from surveyapp.core.sensors.rate.accelerometers import Resting
 from surveyapp.core.sensors.rate.six_position import PositionMeans, StaticMeans, position_means
 from surveyapp.core.sensors.rate.table_log import (
     Turned,
+    motion_of,
     red_noise_factor,
     saturated,
     stretches_of,
@@ -42,6 +43,8 @@ RATE_UNITS = {
 """What a gyro in another unit shows of a rate of one rad/s."""
 UNIT_SLACK = 0.15
 """Relative distance within which a response is taken for that of a unit."""
+FEWEST_AROUND = 8
+"""Rows of turning from which a sinusoid of the table's angle is fitted."""
 GUARD_ROWS = 3
 """Rows left out beside turning when the rest of a position is averaged."""
 
@@ -212,11 +215,12 @@ def sense_of(
 
 
 def resting_of(
-    log: SensorLog, motion: TableMotion, placed: Sequence[Placed]
+    log: SensorLog, motion: TableMotion, placed: Sequence[Placed], *, levelled: bool = False
 ) -> tuple[list[StaticMeans], list[tuple[int, Resting]]]:
     """Mean outputs at rest in each position: of the gyros, and of the accelerometers by group.
 
     Where a position has no rows at rest, the accelerometers are averaged over its whole turns.
+    ``levelled`` takes the tilt of the table out of them.
     """
     largest = float(np.abs(motion.rates).max(initial=0.0))
     rest = np.abs(motion.rates) <= REST_SHARE * largest
@@ -238,9 +242,33 @@ def resting_of(
                 [np.arange(t.stretch.start, t.stretch.stop) for t in place.turned]
             )
         if has_forces:
-            mean, sigma = _mean(log, ACCELEROMETERS, rows)
+            turned = [t.stretch for t in place.turned] if levelled else []
+            mean, sigma = _levelled(log, motion, rows, turned)
             resting.append((place.group, Resting(place.position, mean, sigma)))
     return static, resting
+
+
+def _levelled(
+    log: SensorLog, motion: TableMotion, rows: np.ndarray, turned: Sequence[Steady]
+) -> tuple[Floats, Floats]:
+    """Mean accelerometer outputs of rows without what a tilt of the table has in them, and sigma.
+
+    While it turns, the tilt goes round as a sinusoid of its angle, and turning itself adds a
+    constant; at rest the tilt stands still in the mean. What goes round is taken out at the angles
+    of the rows: half a degree of tilt would be half a degree of misalignment.
+    """
+    mean, sigma = _mean(log, ACCELEROMETERS, rows)
+    parts = [np.arange(t.start, t.stop) for t in turned]
+    around = np.concatenate(parts) if parts else np.zeros(0, dtype=np.intp)
+    angles = motion.angles[around]
+    if around.size < FEWEST_AROUND or float(np.ptp(angles)) < math.pi:
+        return mean, sigma
+    design = np.column_stack([np.ones(around.size), np.cos(angles), np.sin(angles)])
+    forces = np.column_stack([log.columns[c][around] for c in ACCELEROMETERS])
+    found = np.linalg.lstsq(design, forces, rcond=None)[0]
+    spread = np.std(forces - design @ found, axis=0, ddof=3)
+    here = np.array([np.cos(motion.angles[rows]).mean(), np.sin(motion.angles[rows]).mean()])
+    return mean - here @ found[1:], np.hypot(sigma, spread * math.sqrt(2.0 / around.size))
 
 
 def _rows_of(place: Placed, words: np.ndarray) -> np.ndarray:
@@ -304,13 +332,19 @@ def resting_rows(log: SensorLog) -> tuple[Resting, ...]:
     still = np.ones(log.size, dtype=bool)
     if "table_rate_deg_s" in log.columns:
         still = np.abs(log.columns["table_rate_deg_s"]) <= 1e-9
+    motion = motion_of(log) if "time_s" in log.columns else None
+    stretches: list[Steady] = []
+    if isinstance(motion, TableMotion):
+        stretches = stretches_of(log, motion, ("position",))
     words = np.array(log.texts["position"])
     found = []
     for word in POSITIONS:
         rows = np.flatnonzero((words == word) & still)
         if rows.size < 2:
             rows = np.flatnonzero(words == word)
-        if rows.size:
-            mean, sigma = _mean(log, ACCELEROMETERS, rows)
-            found.append(Resting(word, mean, sigma))
+        if rows.size and isinstance(motion, TableMotion):
+            turned = [s for s in stretches if words[s.start] == word]
+            found.append(Resting(word, *_levelled(log, motion, rows, turned)))
+        elif rows.size:
+            found.append(Resting(word, *_mean(log, ACCELEROMETERS, rows)))
     return tuple(found)

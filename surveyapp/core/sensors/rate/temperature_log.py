@@ -8,6 +8,7 @@ equations an axis for four unknowns, so their misalignments must come from a roo
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -90,11 +91,12 @@ def calibrate_temperature(log: SensorLog, options: TemperatureOptions) -> Calibr
     if isinstance(motion, Problem):
         raise SurveyError([*problems, motion])
     levels, numbers = node_numbers(log.columns[CHAMBER])
+    log = replace(log, columns={**log.columns, CHAMBER: levels[numbers]})
     problems += _outside(levels, options.predict_at, log.path)
     if problems:
         raise SurveyError(problems)
     placed, problems = placed_stretches(log, motion, numbers, ("position", CHAMBER))
-    _, resting = resting_of(log, motion, placed)
+    _, resting = resting_of(log, motion, placed, levelled=True)
     shown = means_of(log, placed)
     means, warnings, wrong = sense_of(shown, where=log.path)
     noted, told = encoder_told(
