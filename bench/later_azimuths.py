@@ -34,14 +34,15 @@ from bench._campaigns import (
 )
 from bench._programmes import GROUPS as PROGRAMMES
 from bench._programmes import draw_programme
-from surveyapp.core.prediction import unseen
-from surveyapp.core.prediction.average import averaged, members
+from bench._short_campaigns import CAUSES, LATER_DAYS, draw_short
+from surveyapp.core.prediction.average import averaged, members, predict
 from surveyapp.core.prediction.members import Members
 from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp.domain.priors import BASE, DEFAULT_PRIORS, DEFAULT_SHARES
 from surveyapp_models.arrays import Floats
 
 PAGE = Path(__file__).resolve().parent.parent / "docs/reference/later-azimuths.md"
+SOURCES = Path(__file__).resolve().parent.parent / "surveyapp/core/prediction"
 SIZES = (8, 12, 20, 45)
 RUNS = int(os.environ.get("SURVEYAPP_BENCH_RUNS", "200"))
 STRENGTH = (0.7, 5.0)
@@ -74,6 +75,22 @@ every determination.
 
 """
 
+
+SHORT_SIZES = (4, 8, 20)
+SHORT = """Campaigns of one day and of two (`bench/_short_campaigns.py`): what acts goes on at a
+pace of its own, a span of 13 to 220 days, which such a campaign cannot have seen. Coverage of a
+later azimuth and median half-width of the constant, a day, a month and four months after it.
+Together: each as often as the archive has taught (nothing that time moves: {clean:.0%})."""
+SHORT_SHARES = {
+    "drift": ("drift", "bend"),
+    "walk": ("walk",),
+    "ageing": ("slow",),
+    "season": ("slow",),
+    "day offsets": ("day",),
+    "step": ("step",),
+}
+"""What stands for which units of the prior; ``slow`` for two halves. All others move nothing by
+time and count as clean."""
 
 MORE = """Programmes of another make (`bench/_programmes.py`), on which the clean share was set:
 trips down the mine with determinations on the surface before and after, later visits in warm rock
@@ -140,8 +157,8 @@ def stored(group: str, name: str, n: int, place: int) -> Floats:
     """One line, read again where it was finished before with the same priors and runs."""
     if STORE is None:
         return one_line(group, name, n, place)
-    beyond = (unseen.SIZE, unseen.NEARBY)
-    key = repr((sorted(DEFAULT_SHARES.items()), DEFAULT_PRIORS.sizes, RUNS, STRENGTH, beyond))
+    sources = [file.read_text("utf-8") for file in sorted(SOURCES.glob("*.py"))]
+    key = repr((sorted(DEFAULT_SHARES.items()), DEFAULT_PRIORS.sizes, RUNS, STRENGTH, sources))
     digest = hashlib.sha256(key.encode()).hexdigest()[:12]
     file = Path(STORE) / f"{group}-{name}-{n}-{digest}.npy"
     if not file.exists():
@@ -169,6 +186,48 @@ def tasks() -> Iterator[tuple[str, str, int, int]]:
             for group, names in groups:
                 for place, name in enumerate(names):
                     yield group, name, n, place
+
+
+def short_shares() -> dict[str, float]:
+    """How often each cause of the short campaigns acts, if the prior is right."""
+    found = {}
+    for cause, units in SHORT_SHARES.items():
+        share = sum(DEFAULT_PRIORS.share(unit) for unit in units)
+        found[cause] = share / 2.0 if units == ("slow",) else share
+    return {"clean": 1.0 - sum(found.values()), **found}
+
+
+def short_line(cause: str, n: int, spread: int) -> tuple[Floats, Floats]:
+    """Coverage of the azimuth and median half-width of the constant at each later visit."""
+    place = list(CAUSES).index(cause)
+    holds, halves = [], []
+    for i in range(RUNS):
+        made = draw_short(cause, n, spread, np.random.default_rng([20261129, place, n, spread, i]))
+        found = predict(made.data, DEFAULT_PRIORS)
+        for t in range(len(LATER_DAYS)):
+            error = float(found.values[t] - made.truth[t]) + made.errors[t]
+            holds.append(abs(error) <= found.half_width(t, LINE_SIGMA**2))
+            halves.append(found.half_width(t))
+    shape = (RUNS, len(LATER_DAYS))
+    return np.reshape(holds, shape).mean(axis=0), np.median(np.reshape(halves, shape), axis=0)
+
+
+def short_table() -> list[str]:
+    """Lines of the campaigns of one and two days."""
+    shares = short_shares()
+    later = [f"{days:.0f} d" for days in LATER_DAYS]
+    lines = ["| cause | days | N | " + " | ".join(later) + " |", "|---" * (3 + len(later)) + "|"]
+    for spread in (1, 2):
+        for n in SHORT_SIZES:
+            whole = np.zeros(len(LATER_DAYS))
+            for cause in CAUSES:
+                holds, halves = short_line(cause, n, spread)
+                whole += shares[cause] * holds
+                cells = [f"{h:.2f} / {w:.1f}" for h, w in zip(holds, halves, strict=True)]
+                lines.append(f"| {cause} | {spread} | {n} | " + " | ".join(cells) + " |")
+            cells = [f"{h:.3f}" for h in whole]
+            lines.append(f"| together | {spread} | {n} | " + " | ".join(cells) + " |")
+    return lines
 
 
 def run() -> list[str]:
@@ -214,6 +273,10 @@ def run() -> list[str]:
         "",
         *head,
         *others,
+        "",
+        SHORT.format(clean=short_shares()["clean"]),
+        "",
+        *short_table(),
     ]
     low, high = STRENGTH
     PAGE.write_text(

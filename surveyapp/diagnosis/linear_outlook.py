@@ -34,6 +34,8 @@ class Rival:
     ----------
     units : tuple of str
         Of each member.
+    places : ndarray of int, shape (m,)
+        Of each member among those of its unit.
     log_prior : ndarray, shape (m,)
         Of each member.
     columns : ndarray, shape (m, n + k, r)
@@ -44,6 +46,7 @@ class Rival:
     """
 
     units: tuple[str, ...]
+    places: NDArray[np.intp]
     log_prior: Floats
     columns: Floats
     now: Floats
@@ -53,7 +56,7 @@ class Rival:
         """Only the chosen members."""
         parts = (part[chosen] for part in (self.log_prior, self.columns, self.now, self.then))
         units = tuple(u for u, keep in zip(self.units, chosen.tolist(), strict=True) if keep)
-        return Rival(units, *parts)
+        return Rival(units, self.places[chosen], *parts)
 
 
 def joined_rivals(rivals: Sequence[Rival]) -> list[Rival]:
@@ -64,6 +67,7 @@ def joined_rivals(rivals: Sequence[Rival]) -> list[Rival]:
         found.append(
             Rival(
                 tuple(unit for item in own for unit in item.units),
+                np.concatenate([item.places for item in own]),
                 np.concatenate([item.log_prior for item in own]),
                 np.concatenate([item.columns for item in own]),
                 np.concatenate([item.now for item in own]),
@@ -163,6 +167,15 @@ def weighed(y: Floats, flat: Floats, group: Rival, nu0: float) -> tuple[Floats, 
     part = _solved(group.columns, q, y[None, :], nu0)
     logs, top, _ = _log_weights([group], [part], nu)
     return np.exp(logs[0] - top), np.asarray(part.b[:, 0])
+
+
+def counting(state: State) -> dict[str, NDArray[np.intp]]:
+    """Places of the members that count, by unit."""
+    found: dict[str, set[int]] = {}
+    for group in state.groups:
+        for unit, place in zip(group.units, group.places.tolist(), strict=True):
+            found.setdefault(unit, set()).add(place)
+    return {unit: np.array(sorted(places), dtype=np.intp) for unit, places in found.items()}
 
 
 @dataclass(frozen=True, slots=True)

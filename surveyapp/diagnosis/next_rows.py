@@ -122,7 +122,7 @@ def _kept(case: Case, planner: Planner, nu0: float) -> list[Kept]:
         stack = np.stack([np.tile(base, width), *(columns[i] for i in own)])
         prior_of = np.array([math.log(BASE_PRIOR), *(names[i][4] for i in own)])
         nothing = np.zeros((len(stack), width))
-        group = Rival(("",) * len(stack), prior_of, stack, nothing, nothing)
+        group = Rival(("",) * len(stack), np.arange(len(stack)), prior_of, stack, nothing, nothing)
         weights, means = weighed(planner.y, planner.flat, group, nu0)
         relative = weights / max(float(weights[0]), 1e-300)
         for place, i in enumerate(own, start=1):
@@ -146,7 +146,8 @@ def _rivals(plan: Plan, kept: Sequence[Kept]) -> list[Rival]:
     for item, columns, adds in zip(kept, plan.columns, plan.adds, strict=True):
         own = (adds * item.scale)[None]
         x = (columns * item.scale)[None]
-        found.append(Rival((item.unit,), np.array([item.log_prior]), x, own, own))
+        prior = np.array([item.log_prior])
+        found.append(Rival((item.unit,), np.zeros(1, dtype=np.intp), prior, x, own, own))
     return joined_rivals(found)
 
 

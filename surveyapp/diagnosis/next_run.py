@@ -11,11 +11,12 @@ Source: prediction.md D with the members of B; Lindley, D. V. (1956), Ann. Math.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from surveyapp.diagnosis.candidates import single_effects
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.fits import Fit
-from surveyapp.diagnosis.linear_outlook import State, worth
+from surveyapp.diagnosis.linear_outlook import State, counting, worth
 from surveyapp.diagnosis.outlook import Outlook
 from surveyapp.diagnosis.run_average import reading_noise
 from surveyapp.diagnosis.run_rivals import SLIPS, RunAction, design_of, rivals_of
@@ -51,13 +52,15 @@ def run_advice(case: Case, base: Fit, rng: np.random.Generator) -> Outlook | Non
         return None
     noise, candidates = reading_noise(case, base), single_effects(case, base.theta)
     now: tuple[float, float] | None = None
+    only: dict[str, NDArray[np.intp]] | None = None
     results = []
     for action in RUN_ACTIONS:
         design = design_of(case, base, action)
-        groups = rivals_of(case, candidates, design, action)
+        # the run weighs the members before any action: later actions need those that count only
+        groups = rivals_of(case, candidates, (design, action), only=only)
         y = base.residual / noise[0]
         state = State.of(y, design.rows, groups, noise[1], quiet=SLIPS, stands=now)
-        now = state.stands
+        now, only = state.stands, only or counting(state)
         results.append(worth(state, (action.id, action.text), rng, sigma=noise[0]))
     results.sort(key=lambda item: (-item.information, item.interval95))
     assert now is not None

@@ -7,10 +7,11 @@ where a step left it until the instrument is set up anew; what an observer does 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from surveyapp.diagnosis.action import Linear
 from surveyapp.diagnosis.candidates import Candidate, swing_columns
@@ -19,6 +20,7 @@ from surveyapp.diagnosis.fits import Fit
 from surveyapp.diagnosis.linear_outlook import Rival, joined_rivals
 from surveyapp.diagnosis.run_average import (
     BASE_PRIOR,
+    CORRELATIONS,
     GROSS_SIZES,
     MOST_UNNAMED,
     OTHER_SHARE,
@@ -38,6 +40,7 @@ GAP_HALF_SWINGS = 6.0
 OF_OBSERVER = frozenset({"dry_friction"})
 """Laws of the amplitude that the following of an observer makes too."""
 SLIPS = frozenset({"gross_error", "two gross errors"})
+Places = NDArray[np.intp]
 Moves = tuple[str, Floats, Floats]
 """Unit, columns (m, n + k, r), and what north itself does in each row (same shape)."""
 
@@ -111,45 +114,101 @@ def design_of(case: Case, base: Fit, action: RunAction) -> Design:
 
 
 def rivals_of(
-    case: Case, candidates: Sequence[Candidate], design: Design, action: RunAction
+    case: Case,
+    candidates: Sequence[Candidate],
+    ahead: tuple[Design, RunAction],
+    *,
+    only: Mapping[str, Places] | None = None,
 ) -> list[Rival]:
-    """Every member of the average over a run and an action."""
+    """Members of the average over a run and an action.
+
+    Parameters
+    ----------
+    case : Case
+    candidates : sequence of Candidate
+    ahead : tuple
+        Rows of the run and of the action, and the action.
+    only : mapping, optional
+        Places of the members of each unit that are wanted; absent: all.
+    """
+    design, action = ahead
     size, n = design.flat.shape[0], case.size
-    found: list[Moves] = []
-    for candidate in candidates:
-        if not candidate.points:
-            continue
-        if candidate.is_slip:
-            found += _slips(n, size)
-            continue
-        found.append(_of_effect(candidate, design, action))
-    found += _shifts(case, size, action)
-    found.append(_wandering(case, size, action))
-    if n <= MOST_UNNAMED:
-        found.append(_correlated(case, size, action))
-    total = sum(SHARES.get(unit, OTHER_SHARE) for unit, _, _ in found)
-    nothing = np.zeros((1, 1))
+    counts = _counts(case, candidates)
+    wanted = {
+        unit: np.arange(count) if only is None else only.get(unit, np.zeros(0, dtype=np.intp))
+        for unit, count in counts.items()
+    }
+    found: list[Moves] = [
+        _of_effect(candidate, design, action, wanted[candidate.id])
+        for candidate in candidates
+        if candidate.points and not candidate.is_slip and wanted[candidate.id].size
+    ]
+    for unit, made in _others(case, size, action).items():
+        if unit in wanted and wanted[unit].size:
+            columns, north = made()
+            found.append((unit, columns[wanted[unit]], north[wanted[unit]]))
+    total = sum(SHARES.get(unit, OTHER_SHARE) for unit in counts)
+    nothing, first = np.zeros((1, 1)), np.zeros(1, dtype=np.intp)
     base = np.full(1, math.log(BASE_PRIOR))
-    rivals = [Rival(("base",), base, np.zeros((1, size, 1)), nothing, nothing)]
+    rivals = [Rival(("base",), first, base, np.zeros((1, size, 1)), nothing, nothing)]
     for unit, columns, north in found:
         sizes = GROSS_SIZES if unit in SLIPS else SIZES
         share = (1.0 - BASE_PRIOR) * SHARES.get(unit, OTHER_SHARE) / total
-        prior = np.full(len(columns), math.log(share / len(sizes) / len(columns)))
+        prior = np.full(len(columns), math.log(share / len(sizes) / counts[unit]))
         run, both = north[:, :n].mean(axis=1), north.mean(axis=1)
         names = (unit,) * len(columns)
-        rivals += [Rival(names, prior, s * columns, s * run, s * both) for s in sizes]
+        rivals += [Rival(names, wanted[unit], prior, s * columns, s * run, s * both) for s in sizes]
     return joined_rivals(rivals)
 
 
-def _of_effect(candidate: Candidate, design: Design, action: RunAction) -> Moves:
-    """Columns of an effect of the catalogue at each of its grid points, 1 at its largest."""
+def _counts(case: Case, candidates: Sequence[Candidate]) -> dict[str, int]:
+    """Members of each unit in one size."""
+    n = case.size
+    found: dict[str, int] = {}
+    pairs = n <= MOST_FOR_PAIRS
+    for candidate in candidates:
+        if candidate.points and candidate.is_slip:
+            found["gross_error"] = n
+            if pairs:
+                found["two gross errors"] = n * (n - 1) // 2
+        elif candidate.points:
+            found[candidate.id] = len(_points_of(candidate))
+    if pairs:
+        found["two shifts"] = (n - 1) * (n - 2) // 2
+    found["wandering"] = 1
+    if n <= MOST_UNNAMED:
+        found["correlated"] = len(CORRELATIONS)
+    return found
+
+
+def _others(
+    case: Case, size: int, action: RunAction
+) -> dict[str, Callable[[], tuple[Floats, Floats]]]:
+    """What makes the members that are no effect of the catalogue."""
+    n = case.size
+    return {
+        "gross_error": lambda: _slips(n, size),
+        "two gross errors": lambda: _two_slips(n, size),
+        "two shifts": lambda: _shifts(case, size, action),
+        "wandering": lambda: _wandering(case, size, action),
+        "correlated": lambda: _correlated(case, size, action),
+    }
+
+
+def _points_of(candidate: Candidate) -> tuple[Mapping[str, float], ...]:
+    """Grid points of an effect that are members."""
+    return candidate.points[:: 1 + (len(candidate.points) - 1) // MOST_POINTS]
+
+
+def _of_effect(candidate: Candidate, design: Design, action: RunAction, places: Places) -> Moves:
+    """Columns of an effect of the catalogue at some of its grid points, 1 at its largest."""
     effect = candidate.effect
     assert effect is not None
     n = design.first
     columns, north = [], []
-    stride = 1 + (len(candidate.points) - 1) // MOST_POINTS
-    for point in candidate.points[::stride]:
-        x, mid = _both(effect, design, action, dict(point))
+    points = _points_of(candidate)
+    for place in places.tolist():
+        x, mid = _both(effect, design, action, dict(points[place]))
         scale = max(float(np.max(np.abs(x[:n]))), 1e-300)
         if action.other_observer and candidate.id in OF_OBSERVER:
             x = _apart(x, n)
@@ -193,33 +252,32 @@ def _apart(x: Floats, n: int) -> Floats:
     return np.hstack([x * first, x * ~first])
 
 
-def _slips(n: int, size: int) -> list[Moves]:
+def _slips(n: int, size: int) -> tuple[Floats, Floats]:
     """Slips among the points that are there: none of them recurs."""
     one = np.zeros((n, size, 1))
     one[np.arange(n), np.arange(n), 0] = 1.0
-    found: list[Moves] = [("gross_error", one, np.zeros_like(one))]
-    if n <= MOST_FOR_PAIRS:
-        i, j = np.triu_indices(n, 1)
-        two = np.zeros((i.size, size, 2))
-        two[np.arange(i.size), i, 0] = two[np.arange(i.size), j, 1] = 1.0
-        found.append(("two gross errors", two, np.zeros_like(two)))
-    return found
+    return one, np.zeros_like(one)
 
 
-def _shifts(case: Case, size: int, action: RunAction) -> list[Moves]:
+def _two_slips(n: int, size: int) -> tuple[Floats, Floats]:
+    i, j = np.triu_indices(n, 1)
+    two = np.zeros((i.size, size, 2))
+    two[np.arange(i.size), i, 0] = two[np.arange(i.size), j, 1] = 1.0
+    return two, np.zeros_like(two)
+
+
+def _shifts(case: Case, size: int, action: RunAction) -> tuple[Floats, Floats]:
     """Two shifts of north; it stays where they left it until the instrument is set up anew."""
     n = case.size
-    if n > MOST_FOR_PAIRS:
-        return []
     steps = (np.arange(n)[None, :] >= np.arange(1, n)[:, None]).astype(np.float64)
     after = np.zeros if action.anew and action.later else np.ones
     steps = np.hstack([steps, after((n - 1, size - n))])
     i, j = np.triu_indices(n - 1, 1)
     columns = np.stack([steps[i], steps[j]], axis=2)
-    return [("two shifts", columns, columns)]
+    return columns, columns
 
 
-def _wandering(case: Case, size: int, action: RunAction) -> Moves:
+def _wandering(case: Case, size: int, action: RunAction) -> tuple[Floats, Floats]:
     """A walk of north, 1 at the end of the run; it goes on unless the instrument is set up anew."""
     n = case.size
     own = np.arange(n, dtype=np.float64) / (n - 1)
@@ -234,10 +292,10 @@ def _wandering(case: Case, size: int, action: RunAction) -> Moves:
     values, vectors = np.linalg.eigh(walk)
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     root = root[:, values > 1e-9 * values[-1]]
-    return "wandering", root[None], root[None]
+    return root[None], root[None]
 
 
-def _correlated(case: Case, size: int, action: RunAction) -> Moves:
+def _correlated(case: Case, size: int, action: RunAction) -> tuple[Floats, Floats]:
     """Readings that err alike from one to the next; those of a new run know nothing of the first.
 
     Two more points go on where the run ended; north does not move.
@@ -251,4 +309,4 @@ def _correlated(case: Case, size: int, action: RunAction) -> Moves:
         own, other = correlated_roots(case.position), correlated_roots(more)
         roots = np.zeros((len(own), size, size))
         roots[:, :n, :n], roots[:, n:, n:] = own, other
-    return "correlated", roots, np.zeros_like(roots)
+    return roots, np.zeros_like(roots)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from surveyapp.core.geodesy import open_mine_grid
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.decimals import typed_number, typed_words
 from surveyapp.io.grid_tables import read_mine_grid
 from surveyapp.io.tables import Findings, Table, parse_toml
 from surveyapp.io.tomltext import toml_value
@@ -34,9 +35,9 @@ def mine_grid_line(text: str, *, crs: str | None, unit: AngleUnit) -> str:
     SurveyError
         If it is no mine grid.
     """
-    parts = text.replace(",", " ").split()
+    parts = typed_words(text)
     try:
-        numbers = [float(part) for part in parts[1:]]
+        numbers = [typed_number(part) for part in parts[1:]]
     except ValueError:
         numbers = []
     if len(parts) not in NUMBERS or len(numbers) != len(parts) - 1:
@@ -46,7 +47,7 @@ def mine_grid_line(text: str, *, crs: str | None, unit: AngleUnit) -> str:
                 "mine grid",
                 text,
                 EXPECTED,
-                "for example 12-00-00 1000 2000 47.0 8.0 5; decimals are written with a point",
+                "for example 12-00-00 1000 2000 47.0 8.0 5",
             )
         )
     names = ("e", "n", "base_e", "base_n") if crs is not None else ("e", "n", "lat", "lon")

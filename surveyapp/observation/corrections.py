@@ -14,6 +14,7 @@ from typing import Any, Final, Literal
 
 from surveyapp import api
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.decimals import typed_number
 from surveyapp.io.files import read_text, shown
 from surveyapp.io.filing.dependencies import dependencies, project_data, rows_of
 from surveyapp.io.filing.ledger import read_ledger
@@ -237,7 +238,7 @@ def _value(item: CorrectionField, text: str) -> object:
     if not plain:
         return None
     if item.kind == "number":
-        return float(plain.replace(",", "."))
+        return typed_number(plain)
     if item.kind == "date":
         return dt.date.fromisoformat(plain)
     return True if item.kind == "yes" else plain

@@ -16,7 +16,12 @@ from surveyapp.core.observing.doubts import Question
 from surveyapp.core.observing.progress import Progress
 from surveyapp.core.observing.retyped import Placed, open_strike, place_in_swing, seconds_between
 from surveyapp.core.observing.steps import Expected, Step, kinds_of, next_sight
-from surveyapp.core.observing.typed_rows import EntryError, complete_angle, complete_number
+from surveyapp.core.observing.typed_rows import (
+    EntryError,
+    complete_angle,
+    complete_number,
+    plain_signs,
+)
 from surveyapp.domain.readings import (
     QUANTITY,
     Dimension,
@@ -40,13 +45,14 @@ LARGEST: Final = {
     Dimension.SUPPLY: ("V", 1e5),
 }
 """Unit and largest possible magnitude of what is no angle."""
-_SUPPLY: Final = re.compile(r"(.*?)\s*(mA|Hz|V)?", re.IGNORECASE)
-_SUPPLY_UNITS: Final = {"ma": "mA", "hz": "Hz", "v": "V"}
+_SUPPLY: Final = re.compile(r"(.*?)\s*(mA|Hz|V|мА|Гц|В)?", re.IGNORECASE)
+_SUPPLY_UNITS: Final = {"ma": "mA", "hz": "Hz", "v": "V", "ма": "mA", "гц": "Hz", "в": "V"}
+"""As they are typed, in Latin and in Cyrillic letters."""
 SWINGS: Final = (*TURNING, ReadingKind.TRANSIT)
 SHORTEST_HALF_SWING_S: Final = 60.0
 TYPED_UP_S: Final = 5.0
 """Nobody reads two turning points within this time: such a row is typed up, its moment unknown."""
-_AGO: Final = re.compile(r"-\s*(\d+(?:\.\d*)?)\s*s?")
+_AGO: Final = re.compile(r"[-\u2212]\s*(\d+(?:\.\d*)?)\s*s?")
 _TIME: Final = re.compile(r"(\d{1,2}):(\d{2})(?::(\d{2}(?:\.\d*)?))?")
 
 
@@ -203,15 +209,15 @@ def understand(
     EntryError
         If the text is impossible; it says what would be accepted.
     """
-    reading, _, moment = text.partition("@")
-    stated = bool(moment.strip())
-    if stated:
-        stamp = _corrected(observation, stamp, moment.strip())
-    if reading.count(",") == 1 and "." not in reading:
-        reading = reading.replace(",", ".")  # the book keeps points
     quantity = QUANTITY[what.kind]
     if quantity is Dimension.NONE:
         return _note(text, what, stamp)
+    reading, _, moment = plain_signs(text).partition("@")
+    stated = bool(moment.strip())
+    if stated:
+        stamp = _corrected(observation, stamp, moment.strip().replace(",", "."))
+    if reading.count(",") == 1 and "." not in reading:
+        reading = reading.replace(",", ".")  # the book keeps points
     if quantity is Dimension.ANGLE:
         packed = observation.project.angle_typing == PACKED
         near = what.near

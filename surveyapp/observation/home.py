@@ -5,12 +5,8 @@ Everything a form writes stands in project.toml; editing that by hand is as good
 
 from __future__ import annotations
 
-import csv
-import io
 import os
 import shutil
-from collections import Counter
-from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
@@ -18,12 +14,14 @@ from typing import Final
 from surveyapp import api
 from surveyapp.domain.project import Method, Purpose
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.decimals import typed_number, typed_words
 from surveyapp.io.filing.dependencies import project_data, rows_of
 from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.io.guarded import can_name_file
 from surveyapp.io.settings import Settings, read_settings, write_settings
 from surveyapp.languages import said
 from surveyapp.observation.owner_entries import OwnerEntries
+from surveyapp.observation.station_lines import NewStation
 
 OBSERVATIONS: Final = "observations"
 LONGEST_ID: Final = 80
@@ -38,18 +36,6 @@ class GridChoice:
 
     code: str
     name: str
-
-
-@dataclass(frozen=True, slots=True)
-class NewStation:
-    """A station as typed; what is empty stays away."""
-
-    name: str
-    e: float | None = None
-    n: float | None = None
-    lat: float | None = None
-    lon: float | None = None
-    h: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,79 +147,6 @@ def find_grids(text: str, stations: tuple[NewStation, ...] = ()) -> tuple[GridCh
     return tuple(GridChoice(code, name) for code, name in found)
 
 
-def read_stations(text: str) -> tuple[NewStation, ...]:
-    """Stations from typed or pasted text.
-
-    Parameters
-    ----------
-    text : str
-        One station a line: name, east, north, and perhaps height, separated by commas, semicolons,
-        tabs or blanks. A first line that names the columns (name, e, n, lat, lon, h) decides their
-        order; with lat and lon, degrees are meant. Or the path of such a CSV file alone.
-
-    Raises
-    ------
-    SurveyError
-        With every line that makes no sense.
-    """
-    if len(text.split("\n")) == 1 and text.strip().lower().endswith((".csv", ".txt")):
-        from surveyapp.io.files import read_text
-
-        path = Path(text.strip()).expanduser()
-        text = read_text(path, where=path.name)
-    columns = ["name", "e", "n", "h"]
-    stations: list[NewStation] = []
-    problems: list[Problem] = []
-    for number, line in enumerate(text.splitlines(), start=1):
-        cells = _cells(line)
-        if not cells:
-            continue
-        lowered = [cell.lower() for cell in cells]
-        if not stations and "name" in lowered:
-            columns = lowered
-            continue
-        try:
-            stations.append(_station(cells, columns))
-        except ValueError as error:
-            place = said("stations, line {number}", number=number)
-            expected, hint = "name, east, north, height", str(error)
-            problems.append(Problem("this is no station", place, line.strip(), expected, hint))
-    counts = Counter(station.name for station in stations)
-    problems += [
-        Problem(said("a station stands twice"), "stations", name, said("each name once"))
-        for name in sorted(name for name, count in counts.items() if count > 1)
-    ]
-    if problems:
-        raise SurveyError(problems)
-    return tuple(stations)
-
-
-def _cells(line: str) -> list[str]:
-    for separator in (";", "\t", ","):
-        if separator in line:
-            with suppress(csv.Error):
-                row = next(csv.reader(io.StringIO(line.strip()), delimiter=separator), [])
-                return [cell.strip() for cell in row]
-            return [line, "no number"]
-    return line.split()
-
-
-def _station(cells: list[str], columns: list[str]) -> NewStation:
-    row = dict(zip(columns, cells, strict=False))
-    name = row.get("name", "")
-    if not name:
-        raise ValueError(said("the name is missing"))
-    known = ("e", "n", "lat", "lon", "h")
-    numbers = {key: float(row[key]) for key in known if row.get(key)}
-    pairs = (("e", "n"), ("lat", "lon"))
-    for first, second in pairs:
-        if (first in numbers) != (second in numbers):
-            raise ValueError(
-                said("{first} and {second} belong together", first=first, second=second)
-            )
-    return NewStation(name, **numbers)
-
-
 def create_project(form: NewProject) -> str:
     """Make the project folder that a form describes, and return it.
 
@@ -296,7 +209,7 @@ def _constant(text: str) -> dict[str, float] | None:
     if not text.strip():
         return None
     try:
-        value, sigma = (float(part) for part in text.replace(",", " ").replace("±", " ").split())
+        value, sigma = (typed_number(part) for part in typed_words(text.replace("±", " ")))
     except ValueError:
         raise SurveyError(
             Problem(
@@ -304,7 +217,6 @@ def _constant(text: str) -> dict[str, float] | None:
                 "constant",
                 text,
                 said("constant and sigma in arc-seconds, like -9.7 3.0"),
-                said("decimals are written with a point"),
             )
         ) from None
     return {"arcsec": value, "sigma_arcsec": sigma}

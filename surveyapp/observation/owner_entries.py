@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.decimals import typed_number, typed_words
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,11 +62,11 @@ def _numbers(
     if not text.strip():
         return []
     try:
-        values = [float(part) for part in text.split()]
+        values = [typed_number(part) for part in typed_words(text)]
     except ValueError:
         values = []
     if len(values) in counts:
         return values
-    hint = "Numbers with a decimal point, blanks between them."
+    hint = "Numbers with blanks between them."
     problems.append(Problem("not the numbers that are asked for", where, text, expected, hint))
     return []

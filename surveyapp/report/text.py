@@ -276,10 +276,13 @@ def _figure(figure: Figure) -> str:
         if isinstance(item, Marker):
             put(*item.at, _MARK[item.shape])
         elif isinstance(item, Label) and not item.upright:
-            shift = {"start": 0.0, "middle": 0.5, "end": 1.0}[item.anchor] * len(item.text)
-            first = math.floor(item.at[0] / _MM_PER_COLUMN - shift + 0.5)
-            for index, character in enumerate(item.text):
-                put((first + index) * _MM_PER_COLUMN, item.at[1], character)
+            shift = {"start": 0.0, "middle": 0.5, "end": 1.0}[item.anchor]
+            first = item.at[0] / _MM_PER_COLUMN - shift * display_width(item.text)
+            column = math.floor(first + 0.5)
+            for character in item.text:
+                for ink in (character, "")[: display_width(character)]:  # a wide one fills two
+                    put(column * _MM_PER_COLUMN, item.at[1], ink)
+                    column += 1
     return "\n".join([figure.title, *("".join(row).rstrip() for row in canvas)])
 
 

@@ -58,6 +58,7 @@ class SurveyApp(App[int]):
     TITLE = texts.APP_TITLE
     ENABLE_COMMAND_PALETTE = True
     HORIZONTAL_BREAKPOINTS = [(0, "-tiny"), (70, "-narrow"), (110, "-wide")]  # noqa: RUF012
+    VERTICAL_BREAKPOINTS = [(0, "-low"), (22, "-high")]  # noqa: RUF012
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("f1", "help", texts.KEY_HELP),
         Binding("f9", "next_theme", texts.KEY_THEME, show=False),

@@ -179,15 +179,22 @@ class Desk:
         was = self.pending
         if was is None:
             return ""
-        reason = ""
+        kind = texts.KIND_NAMES[was.kind].split(",")[0]
+        told = {"text": was.text, "kind": kind, "key": key}
         try:
             self._check_place()
-            self._understand(was.text)
-        except (NotWrittenError, EntryError) as error:
-            reason = str(error).removeprefix(texts.NOT_WRITTEN_YET)
-        pattern = texts.PENDING_REFUSED if reason else texts.PENDING
-        kind = texts.KIND_NAMES[was.kind].split(",")[0]
-        return pattern.format(text=was.text, kind=kind, key=key, reason=reason)
+            found = self._understand(was.text)
+        except EntryError as error:
+            return texts.PENDING_REFUSED.format(**told, reason=shown(error.what))
+        except NotWrittenError as error:
+            if self.observation.writable:
+                return str(error)  # which says what helps
+            return texts.PENDING_REFUSED.format(**told, reason=str(error).rstrip("."))
+        if found.questions and self.asked != was.text:
+            self.asked = was.text  # it is asked now: Enter keeps it
+            question = " ".join(question_text(item) for item in found.questions)
+            return texts.PENDING_ASKED.format(**told, question=question)
+        return texts.PENDING.format(**told)
 
     def _check_place(self) -> None:
         """Refuse a text where its kind is not taken, before it is understood."""

@@ -36,7 +36,6 @@ from surveyapp.io.sensor_logs.reading import LogRequest, Need, read_log
 from surveyapp.io.sensor_logs.writing import columns_text, write_columns
 from surveyapp.io.tomltext import atomic_write
 from surveyapp.io.writing import append_table
-from surveyapp.languages import said
 
 _BAD_IN_ID: Final = "'. "
 
@@ -197,7 +196,7 @@ def write_typed_log(folder: Path, state: ProgrammeState) -> str:
         raise SurveyError(Problem("nothing was read yet", run.path))
     names = list(dict.fromkeys(name for row in rows for name in row))
     columns = {name: _cells(rows, name) for name in names}
-    identity, name = run.id, said("sensors/{id}.csv", id=run.id)
+    identity, name = run.id, f"sensors/{run.id}.csv"
     with ProjectLock(folder) as lock:
         if not lock.writable:
             what = "the project is closed, or written by somebody else"

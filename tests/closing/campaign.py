@@ -26,6 +26,7 @@ from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.filing.ledger import append_entry, read_ledger
 from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.observation import home, practice
+from surveyapp.observation.station_lines import NewStation
 from surveyapp.workflows import adopting
 from tests.closing.killed import run_killed, state_of
 from tests.tui.helpers_tui import make_calibrations, make_project
@@ -103,7 +104,7 @@ def _own(name: str) -> Callable[[Path], Path]:
 
 
 def _new(folder: Path) -> None:
-    stations = (home.NewStation("A", e=1.0, n=2.0), home.NewStation("B", e=1.0, n=90.0))
+    stations = (NewStation("A", e=1.0, n=2.0), NewStation("B", e=1.0, n=90.0))
     instruments = (("G1", "wild-gak1", "7"),)
     home.create_project(
         home.NewProject(

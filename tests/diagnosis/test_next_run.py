@@ -74,7 +74,7 @@ def test_events_do_not_recur_and_the_instrument_does() -> None:
     for action in RUN_ACTIONS:
         design = design_of(case, base, action)
         columns: dict[str, list[float]] = {}
-        for rival in rivals_of(case, single_effects(case, base.theta), design, action):
+        for rival in rivals_of(case, single_effects(case, base.theta), (design, action)):
             largest = np.abs(rival.columns[:, n:]).max(axis=(1, 2))
             for unit, size in zip(rival.units, largest.tolist(), strict=True):
                 columns.setdefault(unit, []).append(size)

@@ -11,7 +11,7 @@ from bench._campaigns import ABSENT, CATALOGUE, CLEAN, LATER, LINE_SIGMA, WANDER
 from surveyapp.core.prediction.average import Determinations, members, predict
 from surveyapp.core.prediction.kernels import clock, kernels, step_columns
 from surveyapp.core.prediction.learning import evidence_of, learned
-from surveyapp.core.statistics.mixture import Mixture, student_cdf
+from surveyapp.core.statistics.mixture import Mixture, student
 from surveyapp.domain.priors import AMPLITUDES, DEFAULT_PRIORS, NU0, UNITS, Priors
 from surveyapp_models.arrays import Floats
 
@@ -113,7 +113,7 @@ def test_the_clock_of_a_short_campaign_slows_down() -> None:
 def test_student_approximation(dof: float) -> None:
     t = np.linspace(-8.0, 8.0, 81)
     exact = stats.norm.cdf(t) if math.isinf(dof) else stats.t.cdf(t, dof)
-    assert np.max(np.abs(student_cdf(t, dof) - exact)) < 6e-4
+    assert np.max(np.abs(student(t, dof)[0] - exact)) < 6e-4
 
 
 def test_half_width_of_a_mixture_holds_its_share() -> None:

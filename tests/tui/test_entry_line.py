@@ -19,10 +19,11 @@ from surveyapp.core.observing.typed_rows import EntryError
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.errors import SurveyError
 from surveyapp.observation.entry import expected, understand
-from surveyapp.observation.session import NewRow, SessionDesk
+from surveyapp.observation.session import NewRow, SessionDesk, progress
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.entry_desk import Desk, NotWrittenError
 from surveyapp.tui.screens.session import SessionScreen
+from surveyapp.tui.views.progress import countdown_text, forecast_text
 from surveyapp.tui.widgets.entry import EntryLine
 from tests.tui.helpers_tui import SMALL, Clock, make_project, rows_on_disk
 
@@ -133,6 +134,19 @@ def test_a_moment_before_the_point_above_is_refused_and_elapsed_follows(tmp_path
     assert float(row["elapsed_s"]) == pytest.approx(3 * HALF_SWING_S, abs=0.002)
 
 
+def test_a_row_without_a_moment_between_hides_no_moment_that_goes_back(tmp_path: Path) -> None:
+    desk, clock, _ = desk_at(tmp_path)
+    type_points(desk, clock, POINTS[:1])
+    clock.pass_by(1.0 - HALF_SWING_S)
+    desk.typing(POINTS[1])
+    assert "without a moment" in desk.enter(POINTS[1])
+    for text in ("101-59-08@-20", "101-59-08@07:00:00"):
+        desk.typing(text)
+        for _ in range(2):
+            with pytest.raises(NotWrittenError, match="does not lie behind"):
+                desk.enter(text)
+
+
 def test_another_reading_of_an_earlier_moment_is_asked_about(tmp_path: Path) -> None:
     desk, clock, folder = desk_at(tmp_path, Step.RUN_UP)
     desk.typing("12.4")
@@ -238,6 +252,30 @@ def test_after_one_turning_point_no_side_is_announced(tmp_path: Path) -> None:
         assert desk.what().side is None, method
         assert " R" not in desk.prompt()
         assert " L" not in desk.prompt()
+        judged = progress(seen.project, "r1")
+        assert countdown_text(judged, 100.0).startswith("next point in 1:40")
+        assert countdown_text(judged, None) == "next point overdue (F5: missed)"
+        assert forecast_text(judged, desk.unit) == ""
+
+
+def test_a_key_asks_about_a_doubtful_text_and_enter_keeps_it_as_is_said(tmp_path: Path) -> None:
+    desk, _, folder = desk_at(tmp_path, Step.RUN_UP)
+    desk.kind = ReadingKind.SUPPLY
+    desk.typing("163")
+    said = desk.obstacle("F8")
+    assert "outside of 1 V to 130 V. Enter keeps it, Ctrl+Z clears it, then F8" in said
+    assert desk.enter("163").startswith("on disk")
+    assert rows_on_disk(folder)[-1]["kind"] == "supply"
+
+
+def test_a_sight_read_as_the_other_face_is_asked_about_as_such(tmp_path: Path) -> None:
+    desk, clock, _ = desk_at(tmp_path, Step.SIGHTS_BEFORE)
+    assert doubts(desk, "179-01-56") == []
+    type_points(desk, clock, ("179-01-56",))
+    assert doubts(desk, "179-01-57") == [Doubt.SIGHT_FACE]
+    type_points(desk, clock, ("359-02-12",))
+    assert doubts(desk, "359-02-12") == [Doubt.SIGHT_FACE]
+    assert doubts(desk, "179-21-56") == [Doubt.SIGHT_MOVED]
 
 
 def test_a_strike_is_taken_back_and_both_stay_in_the_book(tmp_path: Path) -> None:
@@ -283,14 +321,43 @@ def test_a_point_typed_anew_at_once_keeps_the_moment_of_the_first(tmp_path: Path
 
 
 @pytest.mark.parametrize(
-    ("text", "value"), [("179-01-56,5", "179-01-56.5"), ("1,25", "1.25"), ("-,5", "-.5")]
+    ("text", "value"),
+    [
+        ("179-01-56,5", "179-01-56.5"),
+        ("179-01-56,5@-0,5", "179-01-56.5"),
+        ("1,25", "1.25"),
+        ("-,5", "-.5"),
+    ],
 )
 def test_a_comma_is_a_decimal_sign_in_the_line(tmp_path: Path, text: str, value: str) -> None:
     step = Step.SIGHTS_BEFORE if "-01-" in text else Step.ZERO_BEFORE
-    desk, _, folder = desk_at(tmp_path, step)
+    desk, clock, folder = desk_at(tmp_path, step)
+    clock.pass_by(2.0)
     desk.typing(text)
     desk.enter(text)
-    assert rows_on_disk(folder)[-1]["value"] == value
+    row = rows_on_disk(folder)[-1]
+    assert row["value"] == value
+    assert row["elapsed_s"] == ("1.500" if "@" in text else "2.000")
+
+
+@pytest.mark.parametrize(
+    ("text", "value", "unit"),
+    [
+        ("24,1 \u0412", "24.1", "V"),
+        ("400 \u0413\u0446", "400", "Hz"),
+        ("\uff12\uff14\uff0c\uff11", "24.1", "V"),
+        ("\u0662\u0664", "24", "V"),  # stood in the book as it was typed
+    ],
+)
+def test_a_supply_typed_on_any_keyboard_stands_in_the_book_as_numbers(
+    tmp_path: Path, text: str, value: str, unit: str
+) -> None:
+    desk, _, folder = desk_at(tmp_path, Step.RUN_UP)
+    desk.kind = ReadingKind.SUPPLY
+    desk.typing(text)
+    assert desk.enter(text).startswith("on disk")
+    row = rows_on_disk(folder)[-1]
+    assert (row["value"], row["unit"]) == (value, unit)
 
 
 def test_two_commas_are_no_number(tmp_path: Path) -> None:

@@ -15,6 +15,7 @@ from surveyapp.core.simulate.session import book_text
 from surveyapp.domain.readings import Face
 from surveyapp.errors import SurveyError
 from surveyapp.observation import home as api_home
+from surveyapp.observation.station_lines import NewStation, read_stations
 from surveyapp.report.numbers import signed_angle
 from surveyapp.tui import screens
 from surveyapp.tui.app import SurveyApp
@@ -211,7 +212,7 @@ def test_no_degrees_are_dropped_from_a_difference(angle: str, text: str) -> None
 
 
 def test_grids_lie_where_east_and_north_lie() -> None:
-    here = (api_home.NewStation("A", e=37_431_630.0, n=3_811_452.0),)
+    here = (NewStation("A", e=37_431_630.0, n=3_811_452.0),)
     codes = {grid.code for grid in api_home.find_grids("CGCS2000 3-degree", here)}
     assert "EPSG:4525" in codes  # zone 37, its number in the easting
     assert "EPSG:4546" not in codes  # the same meridian without it
@@ -239,7 +240,7 @@ async def test_the_sound_is_switched_and_remembered(monkeypatch: pytest.MonkeyPa
 
 @pytest.mark.parametrize("words", ["portugal bonne", "utm grid system", "faroe"])
 def test_a_grid_of_the_register_that_cannot_be_computed_with_is_not_offered(words: str) -> None:
-    here = api_home.read_stations("K1 180000 240000")
+    here = read_stations("K1 180000 240000")
     assert api_home.find_grids(words, here) == ()
 
 

@@ -11,7 +11,10 @@ from textual.widgets import Input, OptionList, Select, Static, TextArea
 
 from surveyapp import api
 from surveyapp.errors import SurveyError
+from surveyapp.io.decimals import typed_number, typed_words
 from surveyapp.observation import home as api_home
+from surveyapp.observation.owner_entries import OwnerEntries
+from surveyapp.observation.station_lines import NewStation, read_stations
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.home import HomeScreen
 from surveyapp.tui.screens.new_project import NewProjectScreen
@@ -101,15 +104,45 @@ async def test_a_form_with_faults_makes_nothing_and_says_why(tmp_path: Path) -> 
 
 
 def test_stations_are_read_as_surveyors_write_them(tmp_path: Path) -> None:
-    expected = (api_home.NewStation("A", e=1.5, n=2.5, h=3.0), api_home.NewStation("B"))
-    assert api_home.read_stations("A 1.5 2.5 3\nB") == expected
-    assert api_home.read_stations("A,1.5,2.5,3\nB,,,") == expected
-    assert api_home.read_stations("Name;N;E;H\nA;2.5;1.5;3\nB;;;") == expected
+    expected = (NewStation("A", e=1.5, n=2.5, h=3.0), NewStation("B"))
+    assert read_stations("A 1.5 2.5 3\nB") == expected
+    assert read_stations("A,1.5,2.5,3\nB,,,") == expected
+    assert read_stations("Name;N;E;H\nA;2.5;1.5;3\nB;;;") == expected
     file = tmp_path / "points.csv"
     file.write_text("A,1.5,2.5,3\nB\n", encoding="utf-8")
-    assert api_home.read_stations(str(file)) == expected
+    assert read_stations(str(file)) == expected
     with pytest.raises(SurveyError, match="twice"):
-        api_home.read_stations("A 1 2\nA 1 2")
+        read_stations("A 1 2\nA 1 2")
+
+
+def test_a_decimal_comma_in_a_form_is_one_and_never_another_column() -> None:
+    expected = (NewStation("A", e=1.5, n=2.5, h=3.0),)
+    for line in ("A; 1,5; 2,5; 3", "A\t1,5\t2,5\t3", "A 1,5 2,5 3,0", "A, 1.5, 2.5, 3"):
+        assert read_stations(line) == expected
+    with pytest.raises(SurveyError, match="more values than its 4 columns"):
+        read_stations("3083,431630,663,3811452,311")  # east and north 431630 and 663 before
+    with pytest.raises(SurveyError, match="east is no number"):
+        read_stations("A east north")
+    owner = OwnerEntries("600,5", "425,4 388,3 47,0", "0,2").overrides()
+    period = {"latitude_deg": 47.0, "tracking_s": 425.4, "clamped_s": 388.3}
+    assert owner == {
+        "scale_value_arcsec": 600.5,
+        "period": period,
+        "torsion": {"lambda": 0.2},
+    }
+    words = ["12-00-00", "1000", "2000", "47.0", "8.0"]
+    assert typed_words("12-00-00, 1000, 2000, 47.0, 8.0") == words
+    assert typed_words("12-00-00,1000,2000,47.0,8.0") == words
+    assert typed_words("12-00-00 1000,5 2000,5") == ["12-00-00", "1000.5", "2000.5"]
+    for text in ("nan", "inf", "1_000", "1,2,3", "1.2,3", "", "1e999"):
+        with pytest.raises(ValueError, match="is no number"):
+            typed_number(text)
+    assert [typed_number(text) for text in ("-9,7", "\u22129.7", ",5", "1e3")] == [
+        -9.7,
+        -9.7,
+        0.5,
+        1e3,
+    ]
 
 
 def test_a_session_that_cannot_stand_leaves_the_project_as_it_was(tmp_path: Path) -> None:
@@ -144,7 +177,7 @@ def test_a_long_list_of_stations_is_no_burden(tmp_path: Path) -> None:
     from surveyapp.io import writing
 
     text = "name,e,n\n" + "\n".join(f"P{k},{431000 + k},{3811000 + k}" for k in range(2000))
-    stations = api_home.read_stations(text)
+    stations = read_stations(text)
     assert len(stations) == 2000
     written: list[int] = []
     real = writing.atomic_write
@@ -166,7 +199,7 @@ def test_a_long_list_of_stations_is_no_burden(tmp_path: Path) -> None:
     assert [s.name for s in project.stations] == [f"P{k}" for k in range(2000)]
     twice = text + "\nP7,1,2"
     with pytest.raises(SurveyError, match="P7"):
-        api_home.read_stations(twice)
+        read_stations(twice)
 
 
 @pytest.mark.parametrize("identity", ["../x", "a/b", "/x", "..", ".x", "con:", "a\nb", "x" * 300])
@@ -174,7 +207,7 @@ def test_an_id_that_names_no_file_is_refused_and_nothing_is_made(
     tmp_path: Path, identity: str
 ) -> None:
     folder = tmp_path / "p"
-    stations = (api_home.NewStation("测站"), api_home.NewStation("B"))
+    stations = (NewStation("测站"), NewStation("B"))
     form = api_home.NewProject(
         folder=str(folder), name="p", stations=stations, instruments=(("G1", "wild-gak1", ""),)
     )

@@ -12,6 +12,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
 from surveyapp.core.geodesy.grid import Grid
+from surveyapp.core.geodesy.library import load_pyproj
 from surveyapp.core.geodesy.plane import Plane, axes_of
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
@@ -71,6 +72,7 @@ def _is_transverse(method: str) -> bool:
 
 
 def _read(text: str) -> CRS:
+    load_pyproj()
     import pyproj
     from pyproj import CRS
     from pyproj.exceptions import CRSError, ProjError
@@ -98,6 +100,7 @@ def _horizontal(crs: CRS) -> CRS:
 
 
 def _plane(crs: CRS, named: str) -> Plane:
+    load_pyproj()
     from pyproj import Transformer
     from pyproj.exceptions import CRSError, ProjError
 
@@ -151,6 +154,7 @@ def find_projected(
     tuple of (str, str)
         Code such as ``EPSG:4546`` and official name.
     """
+    load_pyproj()
     from pyproj.aoi import AreaOfInterest
     from pyproj.database import query_crs_info
     from pyproj.enums import PJType

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from surveyapp.core.observing.forecast import (
     fit_timing,
     forecast_reading,
     period_share,
+    side_unknown,
 )
 from surveyapp.core.observing.passage_forecast import (
     Known,
@@ -251,10 +253,10 @@ def _next(
     moment, spread = (None, None) if timing is None else timing.moment(float(index))
     if passing is not None:
         moment, spread = passing.turning(index)
-    right = (first_side(swing) > 0.0) == (index % 2 == 0)
+    side: Literal["L", "R"] = "R" if (first_side(swing) > 0.0) == (index % 2 == 0) else "L"
     return PointForecast(
         index=index,
-        side="R" if right else "L",
+        side="" if side_unknown([row for _, row in standing.rows.readings]) else side,
         reading=reading,
         half_width=half_width,
         moment_s=moment,

@@ -38,6 +38,7 @@ class Doubt(StrEnum):
     WRONG_SIDE = "wrong_side"
     FACES_CONTRADICT = "faces_contradict"
     SIGHT_MOVED = "sight_moved"
+    SIGHT_FACE = "sight_face"
     COLLIMATION_JUMP = "collimation_jump"
     ZENITHS_CONTRADICT = "zeniths_contradict"
     CLAMP_MOVED = "clamp_moved"
@@ -146,14 +147,18 @@ def doubt_sight(
     if same:
         difference = wrap_pi(reading - same[-1])
         if abs(difference) > SIGHT_LIMIT:
-            return (Question(Doubt.SIGHT_MOVED, difference, SIGHT_LIMIT),)
+            turned = abs(wrap_pi(difference - math.pi)) <= FACES_LIMIT
+            doubt = Doubt.SIGHT_FACE if turned else Doubt.SIGHT_MOVED
+            return (Question(doubt, difference, SIGHT_LIMIT),)
     other = _readings(series, _opposite(face))
     if not other:
         return ()
     sign = 1.0 if face is Face.LEFT else -1.0
     twice = sign * wrap_pi(reading - other[-1] - math.pi)
     if abs(twice) > FACES_LIMIT:
-        return (Question(Doubt.FACES_CONTRADICT, twice, FACES_LIMIT),)
+        turned = abs(wrap_pi(twice - math.pi)) <= FACES_LIMIT
+        doubt = Doubt.SIGHT_FACE if turned else Doubt.FACES_CONTRADICT
+        return (Question(doubt, twice, FACES_LIMIT),)
     left, right = _readings(earlier, Face.LEFT), _readings(earlier, Face.RIGHT)
     if left and right:
         jump = wrap_pi(twice - wrap_pi(left[-1] - right[-1] - math.pi))

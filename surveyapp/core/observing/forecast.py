@@ -8,6 +8,7 @@ observation with its own sigma. Nothing here knows a clock or a screen.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, Literal
 
@@ -15,6 +16,7 @@ import numpy as np
 
 from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp.core.swing.gyrofit import DampedFit, fit_damped_swing
+from surveyapp.domain.readings import Reading
 from surveyapp_models.arrays import Floats
 
 LOG_DECREMENT: Final = 0.015
@@ -42,7 +44,7 @@ class PointForecast:
     index : int
         Its number, the first point being 0, missed ones counted.
     side : str
-        R or L.
+        R or L; empty where one reading alone tells none.
     reading : float or None
         Relative to the readings' origin, in their unit; None before there are two points.
     half_width : float or None
@@ -54,11 +56,16 @@ class PointForecast:
     """
 
     index: int
-    side: Literal["L", "R"]
+    side: Literal["L", "R", ""]
     reading: float | None
     half_width: float | None
     moment_s: float | None
     moment_half_width_s: float | None
+
+
+def side_unknown(points: Sequence[Reading]) -> bool:
+    """Whether nothing tells the sides yet: one reading may be either end, unless it is labelled."""
+    return len(points) < 2 and all(point.side is None for point in points)
 
 
 @dataclass(frozen=True, slots=True)

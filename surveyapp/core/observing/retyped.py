@@ -6,6 +6,7 @@ was read then and only typed wrongly.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from surveyapp.core.book.strikes import find_strikes, live_rows
@@ -80,6 +81,11 @@ def open_strike(book: FieldBook, kind: ReadingKind) -> Reading | None:
     if last != swing[-1].seq:
         return None
     return next(row for row in book.rows if row.seq == last)
+
+
+def nearest_with_moment(above: Sequence[Reading], row: Reading) -> Reading | None:
+    """The nearest row above whose clock another row shares; rows without a moment lie between."""
+    return next((item for item in reversed(above) if seconds_between(item, row) is not None), None)
 
 
 def seconds_between(earlier: Reading, later: Reading) -> float | None:

@@ -17,6 +17,7 @@ from surveyapp.core.observing.forecast import (
     fit_timing,
     forecast_reading,
     period_share,
+    side_unknown,
 )
 from surveyapp.core.observing.progress import Progress
 from surveyapp.core.observing.run_alert import Alert, find_trouble
@@ -164,7 +165,7 @@ def _forecast(
     right = (float(sides[-1]) > 0.0) != bool(flips)
     forecast = PointForecast(
         index=next_index,
-        side="R" if right else "L",
+        side="" if side_unknown(rows) else "R" if right else "L",
         reading=reading,
         half_width=half_width,
         moment_s=moment,

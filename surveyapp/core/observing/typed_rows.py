@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 import re
+import unicodedata
 from dataclasses import dataclass
 from typing import Final
 
@@ -23,7 +24,7 @@ from surveyapp_models.angles import (
     wrap_two_pi,
 )
 
-__all__ = ["Entry", "EntryError", "complete_angle", "complete_number"]
+__all__ = ["Entry", "EntryError", "complete_angle", "complete_number", "plain_signs"]
 
 
 class EntryError(ValueError):
@@ -64,6 +65,7 @@ class Entry:
     completed: bool = False
 
 
+_SIGNS: Final = {"\u3002": ".", "\u3000": " ", "\u2212": "-", "\u2013": "-"}
 _SECONDS: Final = re.compile(r"\d{1,2}(?:\.\d*)?")
 _MINUTES_SECONDS: Final = re.compile(r"(\d{1,2})[-:'′ ]+(\d{1,2}(?:\.\d*)?)[\"″]?")
 _PACKED: Final = re.compile(r"(\d{1,3})\.(\d{2})(\d{2})(\d*)")
@@ -75,6 +77,23 @@ _SUFFIX: Final = {
     "deg": AngleUnit.DEG,
 }
 _SUFFIXED: Final = re.compile(r"(.*?[\d.])\s*(gon|deg|g|d)")
+
+
+def plain_signs(text: str) -> str:
+    """Digits and signs of any keyboard as those of the book.
+
+    Digits of every script, the full-width signs of a Chinese keyboard and its full stop; letters
+    stay what they are.
+    """
+    plain = []
+    for character in text:
+        if character.isdecimal():
+            plain.append(str(unicodedata.decimal(character)))
+        elif "\uff01" <= character <= "\uff5e":
+            plain.append(chr(ord(character) - 0xFEE0))
+        else:
+            plain.append(_SIGNS.get(character, character))
+    return "".join(plain)
 
 
 def complete_angle(

@@ -12,7 +12,7 @@ Learning, 4.2.1 (Matern 3/2) and 4.3 (integrated random walk).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,6 +20,12 @@ from surveyapp_models.arrays import Floats
 
 SHORT_SPAN_DAYS = 30.0
 """A change seen within a shorter campaign is not taken to go on at that rate for months."""
+ARCHIVE_SPAN_DAYS = 50.0
+"""Median span of the campaigns from which the priors were learned: the pace of what a shorter
+campaign cannot have seen."""
+LEAST_OWN_SHARE = 0.05
+"""One in twenty of these campaigns is shorter than 13 days, a quarter than 28: so much of what the
+archive has taught has the pace of such a campaign, and the square of its span in theirs between."""
 TEMPERATURE_UNIT_K = 8.0
 LATITUDE_UNIT = 8.0
 """An effect of the latitude of size 1 changes by 1/8 sigma where its secant changes by 1."""
@@ -61,10 +67,13 @@ class Kernel:
     unit : str
     matrix : ndarray, shape (n + q, n + q)
         Between determinations and later visits.
+    share : float
+        Of its unit's prior, beside the other shapes of the unit.
     """
 
     unit: str
     matrix: Floats
+    share: float = 1.0
 
 
 def clock(days: Floats, n: int) -> Floats:
@@ -86,6 +95,25 @@ def clock(days: Floats, n: int) -> Floats:
         return np.asarray(np.minimum(beyond, 1.0) + slow * np.maximum(beyond - 1.0, 0.0))
 
     return np.asarray(inside + on(over) - on(under))
+
+
+def clocks(days: Floats, n: int) -> tuple[tuple[float, Floats], ...]:
+    """The clock of the campaign, and beside it for a short one that of the archive's campaigns.
+
+    Each with its share.
+
+    Determinations of a day or two say nothing of what an instrument does in a month or a season.
+    That is known from longer campaigns only: it goes at their pace, unseen here.
+    """
+    first, last = float(days[:n].min()), float(days[:n].max())
+    span = last - first
+    if span >= SHORT_SPAN_DAYS:
+        return ((1.0, clock(days, n)),)
+    season = np.asarray((days - first) / ARCHIVE_SPAN_DAYS)
+    if span <= 0.0:
+        return ((1.0, season),)
+    own = max(LEAST_OWN_SHARE, (span / ARCHIVE_SPAN_DAYS) ** 2)
+    return (own, clock(days, n)), (1.0 - own, season)
 
 
 def telling(columns: Mapping[str, Floats]) -> dict[str, Floats]:
@@ -123,7 +151,13 @@ def _of_time(columns: Mapping[str, Floats], n: int) -> list[Kernel]:
     days = columns.get("elapsed_days")
     if days is None or not np.isfinite(days).all():
         return []
-    u = clock(days, n)
+    return [
+        replace(kernel, share=share) for share, u in clocks(days, n) for kernel in _of_clock(u, n)
+    ]
+
+
+def _of_clock(u: Floats, n: int) -> list[Kernel]:
+    """What changes with time, as a clock tells it."""
     found = [Kernel("walk", _two_sided(u, np.minimum))]
     gaps = np.abs(u[:, None] - u[None, :])
     for length in SLOW_LENGTHS:

@@ -13,15 +13,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surveyapp.core.prediction.kernels import PAIRED, Kernel, kernels, step_columns
+from surveyapp.core.prediction.kernels import kernels, step_columns
+from surveyapp.core.prediction.plans import pairs, singles
 from surveyapp.core.prediction.unseen import unseen
 from surveyapp.domain.priors import (
     AMPLITUDES,
     BASE,
     GROSS,
     NU0,
-    PAIR_AMPLITUDES,
-    PAIRS,
     STEP,
     Priors,
 )
@@ -34,8 +33,6 @@ LEAST_NOISE = 1e-6
 NEGLIGIBLE = 1e-5
 CHUNK = 64
 """Members that are factored at once: as many as fit into the cache."""
-ALIKE = frozenset({("temperature", "curve")})
-"""Pairs that would be one cause twice."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +88,8 @@ class _Terms:
         Which of ``AMPLITUDES``; -1 where a member has no size of its own.
     numbers : tuple of int
         By which ``Determinations.chosen`` knows a member; -1 where it always counts.
+    causes : tuple of tuple of str
+        What is in it: of a pair both.
     """
 
     log_prior: Floats
@@ -100,6 +99,7 @@ class _Terms:
     units: tuple[str, ...]
     sizes: tuple[int, ...]
     numbers: tuple[int, ...]
+    causes: tuple[tuple[str, ...], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,7 +179,10 @@ def members(data: Determinations, priors: Priors) -> Members:
     carried = to[:, :, 2:b] + rest[:, :, None] * (
         terms.products[:, None, 0, 2:b] / one[:, None, None]
     )
-    extra = unseen(data.columns, n, data.targets, priors)
+    extra = np.zeros_like(inner)
+    for part in unseen(data.columns, y, d, data.targets, priors=priors):
+        without = np.array([part.causes.isdisjoint(own) for own in terms.causes])
+        extra[without] += part.covariance
     inner = inner + extra
     found = Members(
         units=terms.units,
@@ -235,6 +238,7 @@ def _joined(parts: list[_Terms]) -> _Terms:
         tuple(u for p in parts for u in p.units),
         tuple(k for p in parts for k in p.sizes),
         tuple(k for p in parts for k in p.numbers),
+        tuple(c for p in parts for c in p.causes),
     )
 
 
@@ -286,6 +290,7 @@ def _rank_one(
         (unit,) * len(x),
         (size,) * len(x),
         (-1,) * len(x),
+        ((unit,),) * len(x),
     )
 
 
@@ -296,7 +301,7 @@ def _dense(data: Determinations, priors: Priors, d: Floats, fixed: Floats) -> It
     own = np.stack([k.matrix[:n, :n] for k in found])
     cross = np.stack([targets @ k.matrix[:, :n] for k in found])
     ends = np.stack([targets @ k.matrix @ targets.T for k in found])
-    whole = [*_singles(found, priors), *_pairs(found, priors)]
+    whole = [*singles(found, priors), *pairs(found, priors)]
     plan = [
         (number, item)
         for number, item in enumerate(whole)
@@ -320,55 +325,8 @@ def _dense(data: Determinations, priors: Priors, d: Floats, fixed: Floats) -> It
             tuple(item.unit for _, item in part),
             tuple(item.size for _, item in part),
             tuple(number for number, _ in part),
+            tuple(tuple(found[place].unit for place, _ in item.causes) for _, item in part),
         )
-
-
-@dataclass(frozen=True, slots=True)
-class _Plan:
-    """A member to be factored: its unit, prior and size, and (kernel, variance) of its causes."""
-
-    unit: str
-    prior: float
-    size: int
-    causes: tuple[tuple[int, float], ...]
-
-
-def _singles(found: tuple[Kernel, ...], priors: Priors) -> list[_Plan]:
-    count: dict[str, int] = {}
-    for kernel in found:
-        count[kernel.unit] = count.get(kernel.unit, 0) + 1
-    return [
-        _Plan(
-            kernel.unit,
-            priors.share(kernel.unit) * size / count[kernel.unit],
-            k,
-            ((place, a * a),),
-        )
-        for place, kernel in enumerate(found)
-        for k, (a, size) in enumerate(zip(AMPLITUDES, priors.sizes, strict=True))
-        if priors.share(kernel.unit) * size > 0.0
-    ]
-
-
-def _pairs(found: tuple[Kernel, ...], priors: Priors) -> list[_Plan]:
-    by_pair: dict[tuple[str, str], list[tuple[int, int]]] = {}
-    usable = [i for i, k in enumerate(found) if k.unit in PAIRED and priors.share(k.unit) > 0.0]
-    for i in usable:
-        for j in usable:
-            pair = (found[i].unit, found[j].unit)
-            if i < j and pair[0] != pair[1] and pair not in ALIKE and pair[::-1] not in ALIKE:
-                by_pair.setdefault(pair, []).append((i, j))
-    share = priors.share(PAIRS)
-    if not by_pair or share <= 0.0:
-        return []
-    each = share / len(by_pair) / len(PAIR_AMPLITUDES) ** 2
-    return [
-        _Plan(PAIRS, each / len(shapes), -1, ((i, a * a), (j, b * b)))
-        for shapes in by_pair.values()
-        for i, j in shapes
-        for a in PAIR_AMPLITUDES
-        for b in PAIR_AMPLITUDES
-    ]
 
 
 def _bordered(a: Floats, k: Floats, fixed: Floats) -> tuple[Floats, Floats]:

@@ -1,34 +1,52 @@
 """What nobody has seen: a later visit outside the range in which the determinations were made.
 
-Inside their range determinations say that a cause is small; beyond it they say nothing. Every
-member of the average, the base too, is given an effect there that begins at the edge of the range.
-It changes no evidence, only the interval.
+Inside their range determinations say that a cause does little; beyond it a member without that
+cause claims that it does nothing at all. To such members, the base too, the second moment of the
+coefficient is added that the determinations allow, times the distance from the edge of the range:
+as if every instrument had an effect of the size that the archive has taught, which these
+determinations have not shown. Many of them over a wide range allow little. It changes no evidence,
+only the interval; nothing in it is chosen.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from surveyapp.core.prediction.kernels import COVARIATE_UNITS, TEMPERATURE_UNIT_K
-from surveyapp.domain.priors import Priors
+from surveyapp.domain.priors import AMPLITUDES, Priors
 from surveyapp_models.arrays import Floats
 
-SIZE = 1.5
-"""Standard deviation of the effect in those of a determination, where the column lies one unit
-(8 K) further out: the middle of the sizes (``AMPLITUDES``)."""
-NEARBY = 0.375
-"""Of the unit (3 K): so far outside nothing is told and nothing widened."""
-CAUSES = {
-    "temperature_c": ("temperature", TEMPERATURE_UNIT_K),
-    **{name: ("covariate", unit) for name, unit in COVARIATE_UNITS.items()},
+TEMPERATURE = frozenset({"temperature", "curve"})
+COLUMNS = {
+    "temperature_c": (TEMPERATURE, TEMPERATURE_UNIT_K),
+    **{name: (frozenset({"covariate"}), unit) for name, unit in COVARIATE_UNITS.items()},
 }
-"""The cause that a column bears on, and what changes an effect of it by its size."""
+"""The causes that a column bears on, and what changes an effect of it by its size."""
 
 
-def unseen(columns: Mapping[str, Floats], n: int, targets: Floats, priors: Priors) -> Floats:
-    """Covariance that it adds between what is wanted, in squares of the median sigma.
+@dataclass(frozen=True, slots=True)
+class Unseen:
+    """What one column adds beyond its range.
+
+    Parameters
+    ----------
+    causes : frozenset of str
+        A member with one of them has that coefficient itself: nothing is added to it.
+    covariance : ndarray, shape (t, t)
+        Between what is wanted, in squares of the median sigma.
+    """
+
+    causes: frozenset[str]
+    covariance: Floats
+
+
+def unseen(
+    columns: Mapping[str, Floats], y: Floats, d: Floats, targets: Floats, *, priors: Priors
+) -> list[Unseen]:
+    """What lies beyond the range of each column.
 
     A cause that was named and taken out has a range of its own.
 
@@ -36,21 +54,31 @@ def unseen(columns: Mapping[str, Floats], n: int, targets: Floats, priors: Prior
     ----------
     columns : mapping of ndarray, shape (n + q,)
         n determinations first.
-    n : int
+    y, d : ndarray, shape (n,)
+        Determinations and their variances, in median sigmas.
     targets : ndarray, shape (t, n + q)
     priors : Priors
-
-    Returns
-    -------
-    ndarray, shape (t, t)
     """
-    found = np.zeros((len(targets), len(targets)))
-    for name, (cause, unit) in CAUSES.items():
+    n = y.size
+    found = []
+    variance = float(np.dot(priors.sizes, np.square(AMPLITUDES)))
+    for name, (causes, unit) in COLUMNS.items():
         values = columns.get(name)
-        if values is None or not np.isfinite(values).all() or priors.share(cause) <= 0.0:
+        if values is None or not np.isfinite(values).all():
+            continue
+        if all(priors.share(cause) <= 0.0 for cause in causes):
             continue
         low, high = float(values[:n].min()), float(values[:n].max())
-        near = NEARBY * unit
-        far = targets @ (values - np.clip(values, low - near, high + near)) / unit
-        found += SIZE**2 * far[:, None] * far[None, :]
+        far = targets @ (values - np.clip(values, low, high)) / unit
+        if np.any(far != 0.0):
+            moment = _moment(values[:n] / unit, y, d, variance)
+            found.append(Unseen(causes, moment * far[:, None] * far[None, :]))
     return found
+
+
+def _moment(x: Floats, y: Floats, d: Floats, variance: float) -> float:
+    """Second moment of a coefficient of x beside a flat constant, N(0, variance) beforehand."""
+    w = 1.0 / d
+    left, rest = (v - float(w @ v / w.sum()) for v in (x, y))
+    spread = 1.0 / (float(w @ left**2) + 1.0 / variance)
+    return float(spread + (spread * (w @ (left * rest))) ** 2)

@@ -87,7 +87,7 @@ class Mixture:
         half = min(2.0 * math.sqrt(float(weights @ (scales**2 + offsets**2))), 0.999 * high)
         for _ in range(60):
             ends = np.array((half - offsets, -half - offsets)) / scales
-            below, density = _student(ends, self.dof)
+            below, density = student(ends, self.dof)
             missing = PROBABILITY - float(weights @ (below[0] - below[1]))
             slope = float((weights / scales) @ (density[0] + density[1]))
             low, high = (half, high) if missing > 0.0 else (low, half)
@@ -120,8 +120,8 @@ def half_widths(weights: Floats, means: Floats, variance: Floats, dof: float) ->
     spread = np.sqrt((weights * (scale**2 + offsets**2)).sum(axis=1))
     guess = np.minimum(2.0 * spread, 0.999 * high)
     for _ in range(STEPS):
-        upper, one = _student((guess[:, None] - offsets) / scale, dof)
-        lower, other = _student((-guess[:, None] - offsets) / scale, dof)
+        upper, one = student((guess[:, None] - offsets) / scale, dof)
+        lower, other = student((-guess[:, None] - offsets) / scale, dof)
         missing = PROBABILITY - (weights * (upper - lower)).sum(axis=1)
         less = missing > 0.0
         low, high = np.where(less, guess, low), np.where(less, high, guess)
@@ -146,13 +146,11 @@ def _normal(z: Floats) -> tuple[Floats, Floats]:
     return np.where(z >= 0.0, 1.0 - upper, upper), bell * (1.0 / math.sqrt(2.0 * math.pi))
 
 
-def student_cdf(t: Floats, dof: float) -> Floats:
-    """Student distribution function by Wallace's transformation to the normal one."""
-    return _student(t, dof)[0]
+def student(t: Floats, dof: float) -> tuple[Floats, Floats]:
+    """Student distribution function by Wallace's transformation to the normal one.
 
-
-def _student(t: Floats, dof: float) -> tuple[Floats, Floats]:
-    """Student distribution function and nearly its density: a slope for Newton's method."""
+    And nearly its density: a slope for Newton's method.
+    """
     if math.isinf(dof):
         return _normal(t)
     shrunk = math.sqrt(dof) * (8.0 * dof + 1.0) / (8.0 * dof + 3.0)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from pathlib import Path
 
-from surveyapp.core.observing.retyped import seconds_between
+from surveyapp.core.observing.retyped import nearest_with_moment, seconds_between
 from surveyapp.domain.readings import FieldBook, Reading, ReadingKind
 from surveyapp.errors import Problem
 from surveyapp.languages import said
@@ -48,9 +47,10 @@ def moment_problems(book: FieldBook, where: str) -> list[Problem]:
     """
     found = []
     for kind in (ReadingKind.REVERSAL, ReadingKind.SCALE_REVERSAL, ReadingKind.TRANSIT):
-        for earlier, row in pairwise(book.of_kind(kind)):
-            apart = seconds_between(earlier, row)
-            if apart is not None and apart <= 0.0:
+        rows = book.of_kind(kind)
+        for place, row in enumerate(rows):
+            earlier = nearest_with_moment(rows[:place], row)
+            if earlier is not None and (seconds_between(earlier, row) or 0.0) <= 0.0:
                 found.append(_moment_problem(where, earlier, row))
     return found
 

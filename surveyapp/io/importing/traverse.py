@@ -326,7 +326,7 @@ def _planned(project: Project, form: str, file: Path, options: ImportOptions) ->
     sets, told = reduce_file(read)
     stations, tables, station_warnings = match_stations(project, names, points, options.fixed)
     sigmas, sigma_warnings = _sigmas(options, sets)
-    book, raw = said("observations/{name}.csv", name=name), f"imports/{name}.raw.csv"
+    book, raw = f"observations/{name}.csv", f"imports/{name}.raw.csv"
     text, rows = book_text(sets)
     stored = stored_name(folder, copied, name)
     files: dict[str, Content] = {stored: copied, raw: raw_text(read), book: text}

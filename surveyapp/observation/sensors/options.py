@@ -13,6 +13,7 @@ from typing import Final
 
 from surveyapp import api
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.io.decimals import typed_number
 from surveyapp.languages import said
 
 _NUMBER, _TEXT, _FLAG = "number", "text", "flag"
@@ -155,14 +156,12 @@ def told_options(task: str, text: str) -> ToldOptions:
 
 def _number(name: str, text: str, problems: list[Problem]) -> float:
     try:
-        value = float(text)
+        return typed_number(text)
     except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
         problems.append(
             Problem("this is no number", said("options, {name}", name=name), text, "a number")
         )
-    return value
+        return math.nan
 
 
 def _unknown(word: str, name: str, task: str) -> Problem:

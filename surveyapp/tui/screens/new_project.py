@@ -18,8 +18,9 @@ from surveyapp import api
 from surveyapp.core.observing.owner_values import OwnerValue, missing_values
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.observation import home as api_home
-from surveyapp.observation.home import GridChoice, NewProject, NewStation
+from surveyapp.observation.home import GridChoice, NewProject
 from surveyapp.observation.owner_entries import OwnerEntries
+from surveyapp.observation.station_lines import NewStation, read_stations
 from surveyapp.tui import texts
 from surveyapp.tui.drafts import Draft
 from surveyapp.tui.screens.form import FormScreen
@@ -102,13 +103,13 @@ class NewProjectScreen(FormScreen[str]):
 
     def stations(self) -> tuple[NewStation, ...]:
         """Stations typed, pasted, or in the file that is named."""
-        return api_home.read_stations(self.query_one("#stations", TextArea).text)
+        return read_stations(self.query_one("#stations", TextArea).text)
 
     @work(thread=True, exclusive=True)
     def search(self, text: str, stations: str) -> None:
         """Look for grids in a thread; the stations may be a long file."""
         try:
-            placed = api_home.read_stations(stations)
+            placed = read_stations(stations)
         except SurveyError:
             placed = ()  # not typed to their end yet
         local = any(s.lat is not None for s in placed)

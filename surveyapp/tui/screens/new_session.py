@@ -9,6 +9,7 @@ from textual.widget import Widget
 
 from surveyapp.domain.project import Method, Project, Purpose
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.decimals import typed_number
 from surveyapp.observation import home as api_home
 from surveyapp.observation.home import NewSession
 from surveyapp.observation.proposal import propose_session
@@ -64,7 +65,7 @@ class NewSessionScreen(FormScreen[str]):
         if not identity:
             raise SurveyError(Problem(texts.MISSING_FIELD.format(field=texts.F_ID)))
         try:
-            interval = float(wanted.replace(",", ".")) if wanted else None
+            interval = typed_number(wanted) if wanted else None
         except ValueError:
             raise SurveyError(Problem(texts.WANTED_NOT, texts.F_WANTED, wanted)) from None
         return NewSession(

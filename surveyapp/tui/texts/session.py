@@ -90,6 +90,10 @@ PENDING: Final = (
 PENDING_REFUSED: Final = (
     "not written: {text} ({kind}) is in the line. {reason}. Ctrl+Z clears it, then {key}"
 )
+PENDING_ASKED: Final = (
+    "not written: {text} ({kind}) is in the line. {question} Enter keeps it, Ctrl+Z clears it, "
+    "then {key}"
+)
 STRAYED: Final = (
     "not written: it was typed as {kind}, and {now} is asked for. Ctrl+Z clears the line"
 )
@@ -115,6 +119,7 @@ QUESTIONS: Final = {
     "wrong_side": "It lies on the other side.",
     "faces_contradict": "Faces differ by 180° and {difference}.",
     "sight_moved": "{difference} from the last sight.",
+    "sight_face": "The other face reads so: F3 if it was.",
     "collimation_jump": "2c jumps by {difference}.",
     "zeniths_contradict": "Faces differ from 360° by {difference}.",
     "clamp_moved": "{difference} from the clamp reading before.",
@@ -148,6 +153,7 @@ LEDGER_STRUCK: Final = "struck"
 NEXT_POINT: Final = "next {side} in {time}"
 NEXT_NOW: Final = "next {side} NOW ({time})"
 NEXT_LONG_PAST: Final = "next {side} overdue (F5: missed)"
+NEXT_ANY: Final = "point"
 NEXT_SIDE: Final = "next {side}"
 NEXT_READING: Final = "at {reading}"
 NEXT_INTERVAL: Final = ' ±{interval}"'

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
-
 from surveyapp.api import Trial
 from surveyapp.domain.penetration_result import Prediction
+from surveyapp.io.decimals import typed_number
 from surveyapp.report.blocks import Block
 from surveyapp.report.numbers import plain
 from surveyapp.report.sections import penetration as section
@@ -68,12 +67,7 @@ def typed_reading(text: str) -> float | None:
     ValueError
         If it is no number.
     """
-    if not text:
-        return None
-    value = float(text.replace(",", "."))
-    if not math.isfinite(value):
-        raise ValueError(text)
-    return value
+    return typed_number(text) if text else None
 
 
 def step_of_row(result: Prediction, row: int) -> int:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Sequence
 
 from rich.text import Text
@@ -13,6 +12,7 @@ from surveyapp.languages import translated
 from surveyapp.languages.names import named
 from surveyapp.observation.sensors.programmes import RunShown
 from surveyapp.report.blocks import Block, KeyValues, Table
+from surveyapp.report.text import filled
 from surveyapp.tui import texts
 
 MOST_NAMES = 12
@@ -117,8 +117,5 @@ def _titled(text: Text, title: str, words: str, width: int) -> None:
 
 
 def _filled(text: Text, words: str, width: int, *, style: str = "", indent: str = "") -> None:
-    filled = textwrap.fill(
-        words, max(width, 20), initial_indent=indent, subsequent_indent=indent,
-        break_on_hyphens=False, break_long_words=False,
-    )  # fmt: skip
-    text.append(f"{filled}\n", style=style)
+    lines = filled(words, max(width, 20) - len(indent)).split("\n")
+    text.append("".join(f"{indent}{line}\n" for line in lines), style=style)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -11,6 +10,7 @@ from surveyapp.core.observing.progress import Progress
 from surveyapp.core.observing.target import Target
 from surveyapp.observation.aim import Aim
 from surveyapp.report.numbers import plain, seconds
+from surveyapp.report.text import filled
 from surveyapp.tui import texts
 from surveyapp.tui.cells import columns
 from surveyapp_models.angles import AngleUnit, format_angle
@@ -42,11 +42,12 @@ def countdown_text(progress: Progress, remaining_s: float | None) -> str:
     forecast = progress.next
     if forecast is None:
         return ""
+    side = forecast.side or texts.NEXT_ANY
     if remaining_s is None:
         pattern = texts.NEXT_SIDE if forecast.moment_s is None else texts.NEXT_LONG_PAST
-        return pattern.format(side=forecast.side)
+        return pattern.format(side=side)
     pattern = texts.NEXT_NOW if is_near(progress, remaining_s) else texts.NEXT_POINT
-    text = pattern.format(side=forecast.side, time=_clock_text(remaining_s))
+    text = pattern.format(side=side, time=_clock_text(remaining_s))
     if progress.scale and forecast.moment_half_width_s is not None:
         text += texts.NEXT_SPREAD.format(seconds=plain(forecast.moment_half_width_s, 0))
     return text
@@ -98,7 +99,7 @@ def north_text(progress: Progress, unit: AngleUnit, method: str) -> str:
     if progress.north is None:
         if progress.missing:
             told = texts.NORTH_MISSING.format(problem=progress.missing)
-            return "\n".join(textwrap.wrap(told, WIDTH))
+            return filled(told, WIDTH)
         return _NORTH_NONE[method]
     north = format_angle(progress.north, unit)
     if progress.interval95 is None:

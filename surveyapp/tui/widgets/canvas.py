@@ -8,6 +8,7 @@ from typing import Final
 
 from rich.text import Text
 
+from surveyapp.tui.cells import columns
 from surveyapp.tui.widgets.swing import BRAILLE, DOTS
 
 ELLIPSE_DOTS: Final = 7.0
@@ -38,12 +39,21 @@ class Canvas:
             self.dot(x, y)
 
     def sign(self, x: float, y: float, text: str) -> None:
-        """A word whose first character stands at a dot, where nothing else is written."""
+        """A word whose first character stands at a dot, where nothing else is written.
+
+        A character of two columns takes two cells, a mark that combines none.
+        """
         column, row = round(x) // 2, round(y) // 4
-        places = [(row, column + i) for i in range(len(text))]
+        cells: list[str] = []
+        for character in text:
+            size = columns(character)
+            if size == 0 and cells:
+                cells[-1] += character
+            cells += [character, ""][:size]
+        places = [(row, column + i) for i in range(len(cells))]
         inside = all(0 <= r < self.height and 0 <= c < self.width for r, c in places)
         if inside and not any(place in self.signs for place in places):
-            self.signs.update(zip(places, text, strict=True))
+            self.signs.update(zip(places, cells, strict=True))
 
     def text(self) -> Text:
         """Characters over dots."""

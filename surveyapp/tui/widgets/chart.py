@@ -16,6 +16,7 @@ from surveyapp.domain.chart import Chart, Coverage, Picture, Series
 from surveyapp.languages import shown
 from surveyapp.report.plots import axis
 from surveyapp.tui import texts
+from surveyapp.tui.cells import columns, cut, lines_of, padded
 from surveyapp.tui.widgets.canvas import Canvas
 
 LEAST_WIDTH, LEAST_HEIGHT = 30, 8
@@ -97,22 +98,23 @@ def chart_text(chart: Chart, *, width: int, height: int) -> Text:
     x = _Scale([p[0] for s in curves for p in s.points], log=chart.log_x)
     y = _Scale([p[1] for s in curves for p in s.points], log=chart.log_y, names=len(chart.y_names))
     names = [shown(chart.y_names[int(t)]) if chart.y_names else y.label(t) for t in y.ticks]
-    margin = max(len(name) for name in names) + 1
+    margin = max(columns(name) for name in names) + 1
     told = _below(chart, curves, width)
     canvas = Canvas(width - margin - 1, height - 4 - len(told))
     if chart.square:
         _square(x, y, canvas)
         names = [y.label(t) for t in y.ticks]
-        margin = max(margin, max(len(name) for name in names) + 1)
+        margin = max(margin, max(columns(name) for name in names) + 1)
     for item, mark in zip(curves, _marks(curves), strict=True):
         _draw(canvas, item, (x, y), mark)
     text = Text(no_wrap=True)
-    title = shown(chart.title)
-    text.append(title[:width], style="bold")
-    text.append(f"   {shown(chart.y_label)}"[: max(width - len(title), 0)] + "\n", style="dim")
+    title = cut(shown(chart.title), width)
+    text.append(title, style="bold")
+    text.append(cut(f"   {shown(chart.y_label)}", width - columns(title)) + "\n", style="dim")
     _framed(text, canvas, (y, names), margin)
     text.append(_x_axis(x, canvas.width, margin) + "\n", style="dim")
-    text.append(f"{shown(chart.x_label):>{width - 1}}"[:width] + "\n", style="dim")
+    label = cut(shown(chart.x_label), width - 1)
+    text.append(padded(label, width - 1, right=True) + "\n", style="dim")
     for line in told:
         text.append(line + "\n")
     return text
@@ -180,7 +182,7 @@ def _framed(text: Text, canvas: Canvas, ticks: tuple[_Scale, list[str]], margin:
         row = round((1.0 - scale.of_tick(tick)) * (4 * canvas.height - 1)) // 4
         rows.setdefault(min(max(row, 0), canvas.height - 1), name)
     for row, line in enumerate(canvas.text().plain.split("\n")):
-        text.append(f"{rows.get(row, ''):>{margin - 1}}", style="dim")
+        text.append(padded(rows.get(row, ""), margin - 1, right=True), style="dim")
         text.append("┤" if row in rows else "│", style="dim")
         text.append(line + "\n")
 
@@ -206,16 +208,16 @@ def _below(chart: Chart, curves: Sequence[Series], width: int) -> list[str]:
             parts.append(f"{mark or SIGNS[item.style]} {shown(item.name)}")
     lines = []
     if parts:
-        lines.append("  ".join(dict.fromkeys(parts))[:width])
+        lines += lines_of("  ".join(dict.fromkeys(parts)), width)
     if chart.note:
-        lines.append(shown(chart.note)[:width])
+        lines += lines_of(shown(chart.note), width)
     return lines
 
 
 def coverage_text(coverage: Coverage, *, width: int) -> Text:
     """Cells of the sphere: the more readings, the darker; a blank was never visited."""
     text = Text(no_wrap=True)
-    text.append(f"{shown(coverage.title)[:width]}\n\n", style="bold")
+    text.append(f"{cut(shown(coverage.title), width)}\n\n", style="bold")
     count = len(coverage.cells[0])
     cell = max((width - 8) // count, 2)
     most = max((value for row in coverage.cells for value in row), default=0)
@@ -225,7 +227,7 @@ def coverage_text(coverage: Coverage, *, width: int) -> Text:
         name = {0: texts.CHART_UP, len(coverage.cells) - 1: texts.CHART_DOWN}.get(index, "")
         if len(coverage.cells) == 1:
             name = ""
-        text.append(f"{name:>5} ")
+        text.append(f"{padded(name, 5, right=True)} ")
         for value in row:
             text.append("|", style="dim")
             text.append(_shade(value, most) * (cell - 1))
@@ -237,10 +239,10 @@ def coverage_text(coverage: Coverage, *, width: int) -> Text:
         name = f"{90 * quarter}"
         at = min(6 + cell * count * quarter // 4, len(line) - len(name))
         line[at : at + len(name)] = name
-    text.append(f"{''.join(line).rstrip()} {texts.CHART_DEGREES}"[:width] + "\n", style="dim")
+    text.append(cut(f"{''.join(line).rstrip()} {texts.CHART_DEGREES}", width) + "\n", style="dim")
     told = texts.CHART_SHADES.format(signs=" ".join(SHADES), most=most)
     for words in filter(None, (told, shown(coverage.note))):
-        text.append(words[:width] + "\n")
+        text.append("\n".join(lines_of(words, width)) + "\n")
     return text
 
 

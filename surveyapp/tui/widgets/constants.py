@@ -19,6 +19,7 @@ from surveyapp.domain.results import ConstantResult, Determination, OrientationR
 from surveyapp.languages import shown
 from surveyapp.report.sections import constants as section
 from surveyapp.tui import texts
+from surveyapp.tui.cells import cut
 from surveyapp.tui.widgets.canvas import Canvas
 from surveyapp.tui.widgets.records import Records
 from surveyapp_models.angles import ARCSEC
@@ -134,7 +135,7 @@ def draw_constant(constant: ConstantResult, width: int, height: int) -> Text:
         label = labels.get(row, "")
         text.append(f"{label:>{GUTTER - 2}} {'┤' if label else '│'}{line}\n")
     text.append(_foot([(round(across(p)) // 2, label) for p, label in along.ticks], canvas.width))
-    return text.append(_legend(constant, along)[:width])
+    return text.append(cut(_legend(constant, along), width))
 
 
 def _signs(items: Sequence[Determination]) -> dict[tuple[str, str], str]:

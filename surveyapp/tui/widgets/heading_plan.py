@@ -13,6 +13,7 @@ from textual.widget import Widget
 
 from surveyapp.domain.penetration_result import MineDrawing, Prediction
 from surveyapp.tui import texts
+from surveyapp.tui.cells import cut
 from surveyapp.tui.widgets.canvas import Canvas, Paper, draw_ellipse, enlargement
 
 START, GYRO = "■", "G"
@@ -66,7 +67,7 @@ def draw_headings(result: Prediction, drawing: MineDrawing, *, width: int, heigh
     limit = _corridor(canvas, result, paper(drawing.meeting), paper.scale * factor)
     legend = texts.P_LEGEND.format(start=START, factor=f"{result.factor:g}", enlarged=f"{factor:g}")
     text = legend + (texts.P_LIMIT if limit else "")
-    return canvas.text().append("\n").append(text[:width], style="dim")
+    return canvas.text().append("\n").append(cut(text, width), style="dim")
 
 
 def _corridor(canvas: Canvas, result: Prediction, at: tuple[float, float], scale: float) -> bool:

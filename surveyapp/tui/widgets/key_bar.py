@@ -9,12 +9,12 @@ from textual.widgets._footer import FooterKey
 
 from surveyapp.tui.cells import columns
 
-LAST = ("escape", "f1", "q")
-"""Keys that stay in the narrowest window."""
+LAST = ("escape", "f1", "f8", "q")
+"""Keys that stay in the narrowest window: help, the way on, the way out."""
 
 
 class KeyBar(Footer):
-    """A footer of whole keys alone: the ways out in any case, the others as there is room.
+    """A footer of whole keys: help, the ways on and out in any case, others as there is room.
 
     Parameters
     ----------

@@ -11,6 +11,7 @@ from textual.widgets import Static
 
 from surveyapp.tui import texts
 from surveyapp.tui.cells import columns, padded
+from surveyapp.tui.views.words import refilled
 
 STATE, RESIDUAL = 4, 5
 RIGHT = (0, RESIDUAL)
@@ -18,6 +19,10 @@ RIGHT = (0, RESIDUAL)
 
 class Ledger(Vertical):
     """A heading, and the readings with the latest always in sight."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.hint = ""
 
     def compose(self) -> ComposeResult:
         """Heading and rows."""
@@ -27,7 +32,14 @@ class Ledger(Vertical):
 
     def on_resize(self) -> None:
         """Keep the end in sight where an alarm or a longer forecast takes lines from the ledger."""
+        self.show_hint()
         self.to_end()
+
+    def show_hint(self) -> None:
+        """What is to be done where there are no rows, its lines ended between words."""
+        if self.hint:
+            width = self.content_size.width or columns(self.hint)
+            self.query_one("#ledger-rows", Static).update(refilled(self.hint, width))
 
     def to_end(self) -> None:
         """Scroll to the latest reading, once everything has its place."""
@@ -35,9 +47,11 @@ class Ledger(Vertical):
 
     def show(self, rows: Sequence[Sequence[str]], *, hint: str = "", scale: bool = False) -> None:
         """Replace all rows; without any, say what is to be done. ``scale``: v in divisions."""
+        self.hint = "" if rows else hint
         if not rows:
             self.query_one("#ledger-head", Static).update("")
-            self.query_one("#ledger-rows", Static).update(hint)
+            self.query_one("#ledger-rows", Static).update("")
+            self.show_hint()
             return
         head = texts.LEDGER_COLUMNS_DIV if scale else texts.LEDGER_COLUMNS
         table = [head, *rows]

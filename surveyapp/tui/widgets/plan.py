@@ -11,6 +11,7 @@ from textual.widget import Widget
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.observations import ObservationKind
 from surveyapp.tui import texts
+from surveyapp.tui.cells import cut
 from surveyapp.tui.widgets.canvas import Canvas, Paper, draw_ellipse, enlargement
 
 FIXED, FREE, GYRO = "■", "●", "G"
@@ -69,7 +70,7 @@ def draw_plan(result: AdjustmentResult, width: int, height: int) -> Text:
         texts.PLAN_GYRO if any(o.kind is ObservationKind.GYRO for o in result.observations) else ""
     )
     legend = texts.PLAN_LEGEND.format(factor=f"{factor:g}", fixed=FIXED, free=FREE) + gyro
-    return canvas.text().append("\n").append(legend[:width], style="dim")
+    return canvas.text().append("\n").append(cut(legend, width), style="dim")
 
 
 def _sides(result: AdjustmentResult) -> list[tuple[str, str]]:
