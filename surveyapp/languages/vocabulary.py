@@ -58,6 +58,7 @@ PARTS: Final = (
     "underground",
 )
 ROUTES: Final = ("loop", "connecting", "height")
+CARD_KINDS: Final = ("suspended", "automatic")
 SHAFT_BUDGET: Final = (
     "surface angles",
     "surface distances",
@@ -85,6 +86,7 @@ VOCABULARY: Final = (
     *REFERENCES,
     *PARTS,
     *ROUTES,
+    *CARD_KINDS,
     *KINDS_OF_NAMES,
     *SHAFT_BUDGET,
     *QUANTITIES,

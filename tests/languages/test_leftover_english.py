@@ -26,9 +26,9 @@ ROOT = Path(__file__).resolve().parents[2]
 LETTER = "ж"
 GIVEN = {
     "gi-b1-1966": {"MOM", "Gi-B", "gyrotheodolite", "mom-gi-b", "GiB", "surveyapp", "round", "json"}
-    | {"dms", "div", "reversal", "suspended", "fit"},
+    | {"dms", "div", "reversal", "fit"},
     "johannesburg-1966": {"Johannesburg", "GAK", "Wild", "gyro", "attachment", "wild-gak"}
-    | {"suspended", "Williams", "and", "Belling", "University", "Pillar", "run", "reversal"}
+    | {"Williams", "and", "Belling", "University", "Pillar", "run", "reversal"}
     | {"surveyapp", "Durbin-Watson", "dms", "fit"},
 }
 """Names of the projects, of their instruments, and kinds and units as the books write them."""

@@ -111,7 +111,7 @@ def _instrument(project: Project, identity: str) -> str:
         title=item.card.title,
         serial=serial,
         id=item.card.id,
-        kind=item.card.kind,
+        kind=term(item.card.kind),
     )
 
 
