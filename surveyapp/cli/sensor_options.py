@@ -93,7 +93,7 @@ def pairs(
 
 
 def progress_bar() -> PartDone | None:
-    """A bar on standard error while a large log is read; none where nobody looks."""
+    """A bar on standard error while a large log is read and computed; none where nobody looks."""
     if not sys.stderr.isatty():
         return None
     shown = [-1]
@@ -104,7 +104,7 @@ def progress_bar() -> PartDone | None:
             return
         shown[0] = step
         end = "\n" if share >= 1.0 else ""
-        print(f"\rreading [{'#' * step:<40}] {share:4.0%}", end=end, file=sys.stderr, flush=True)
+        print(f"\r[{'#' * step:<40}] {share:4.0%}", end=end, file=sys.stderr, flush=True)
 
     return tell
 

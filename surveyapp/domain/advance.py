@@ -14,3 +14,10 @@ def silent(_what: str, _done: int, _total: int) -> None:
 
 PartDone = Callable[[float], None]
 """Told from time to time which part of a work is done, 0 to 1."""
+
+
+def stage(progress: PartDone | None, start: float, end: float) -> PartDone | None:
+    """What a part of a work tells: its 0 to 1 is ``start`` to ``end`` of the whole."""
+    if progress is None:
+        return None
+    return lambda share: progress(start + share * (end - start))

@@ -118,6 +118,8 @@ class SensorLog:
         Of the file.
     path : str
         For messages.
+    first_line : int
+        Line of the file with its first row, for messages; 0 where it is no file.
     warnings : tuple of ResultWarning
     """
 
@@ -132,6 +134,7 @@ class SensorLog:
     scaled: Mapping[str, float] = field(default_factory=dict)
     sha256: str = ""
     path: str = ""
+    first_line: int = 0
     warnings: tuple[ResultWarning, ...] = ()
 
     def __post_init__(self) -> None:
@@ -146,6 +149,15 @@ class SensorLog:
         size = len(range(*part.indices(self.size)))
         rate = None if self.rate_hz is None else self.rate_hz / (part.step or 1)
         return replace(self, columns=columns, texts=texts, size=size, rate_hz=rate)
+
+    def chosen(self, kept: NDArray[np.bool_]) -> SensorLog:
+        """The rows of a mask, shape (n,); its rate and its gaps stay as they were read."""
+        columns = {name: values[kept] for name, values in self.columns.items()}
+        texts = {
+            name: tuple(word for word, keep in zip(words, kept, strict=True) if keep)
+            for name, words in self.texts.items()
+        }
+        return replace(self, columns=columns, texts=texts, size=int(np.count_nonzero(kept)))
 
     def thinned(self, most: int) -> SensorLog:
         """Every k-th row, so that at most so many are left; a warning tells it."""

@@ -286,9 +286,9 @@ def _aimed(
     )
     if refusals:
         return result
-    fixed = {k: v for k, v in source.card.constants.items() if k != "reading_sigma_uT"}
-    card = replace(source.card, constants=fixed)
-    columns = compensate_compass(log, card, declination=None, where=source.name).columns
+    columns = compensate_compass(
+        log, source.card, declination=None, where=source.name, one_reading=False
+    ).columns
     headings = np.radians(np.asarray(columns["heading_deg"], dtype=np.float64))
     mean = float(np.angle(np.exp(1j * headings).mean()))
     spread = np.angle(np.exp(1j * (headings - mean)))

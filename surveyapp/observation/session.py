@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -30,13 +31,14 @@ from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import SurveyError
 from surveyapp.io.fieldbook import append_row, book_columns, read_field_book
 from surveyapp.io.fieldbook.clock import SessionClock, Stamp, local_now, steady_seconds
-from surveyapp.io.fieldbook.problems import edited_problem, moment_problems, read_only_problem
+from surveyapp.io.fieldbook.problems import edited_problem, read_only_problem
 from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.io.filing.seals import is_closed
 from surveyapp.io.guarded import checked_inside
 from surveyapp.io.project import read_project
 from surveyapp.observation.aim import Aim
 from surveyapp.observation.half_swing import half_swing_of
+from surveyapp.observation.usable import unusable
 
 FARTHEST: Final = 10.0
 """Periods beyond which a countdown is none: its moments stand on another clock than the session."""
@@ -252,7 +254,7 @@ class SessionDesk:
                 self.path,
                 self._fitting(cells),
                 angle_unit=self.project.angle_unit,
-                also=moment_problems,
+                also=partial(unusable, self.session, row.kind),
             )
         finally:
             self._mark = self._file_mark()
@@ -315,7 +317,7 @@ class SessionDesk:
         own = target_of(self.session, None)
         if own is not None:
             return Aim(own)
-        unusable = [w.text for w in self.project.warnings if w.code == "rule_book_unusable"]
+        unusable = [w.text for w in self.project.warnings if w.code == "rule_bookunusable"]
         if unusable:
             return Aim(None, self.project.rule_book or "", unusable[0])
         book = self.project.rules

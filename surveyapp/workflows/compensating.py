@@ -11,6 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from surveyapp.core.sensors.adopted_effects import without_events
+from surveyapp.core.sensors.card_fits import compass_doubts, tilt_doubts
 from surveyapp.core.sensors.compensation import (
     Columns,
     Compensated,
@@ -19,7 +20,7 @@ from surveyapp.core.sensors.compensation import (
     compensate_head,
     compensate_rate,
     compensate_tilt,
-    field_doubt,
+    force_sigma,
 )
 from surveyapp.domain.advance import PartDone
 from surveyapp.domain.project import ResultWarning
@@ -34,6 +35,9 @@ from surveyapp.languages import said
 
 BLOCK_ROWS: Final = 50_000
 """Rows that are corrected at once: a log of any length takes the memory of one block."""
+
+FORCE_ROWS: Final = 20_000
+"""Rows that tell the noise of the specific force, of the whole log."""
 
 KINDS: Final = ("compass", "tilt", "rate")
 MAG: Final = ("mag_x_uT", "mag_y_uT", "mag_z_uT")
@@ -137,18 +141,23 @@ def compensate_log(
     problems += other_instrument(card, entry, where)
     if problems:
         raise SurveyError(problems)
-    doubt = field_doubt(log, card, where=where) if kind == "compass" else None
-    if doubt is not None:
-        log = replace(log, warnings=(*log.warnings, ResultWarning("field_differs", doubt)))
+    doubts: list[ResultWarning] = []
+    if kind == "compass":
+        doubts = compass_doubts(log, card, where=where)
+    elif kind == "tilt":
+        doubts = tilt_doubts(log, card)
+    log = replace(log, warnings=(*log.warnings, *doubts))
     if declination is not None and declination.sigma is None:
         text = said(
             "the declination has no sigma and counts as exact; that of a model has .31 to .50 "
             "degrees: --declination D,SIGMA"
         )
         log = replace(log, warnings=(*log.warnings, ResultWarning("no_declination_sigma", text)))
+    part = log.rows(slice(None, None, max(log.size // FORCE_ROWS, 1)))
+    noise = force_sigma(part.vector("acc")) if kind == "compass" else 0.0
     starts = range(0, log.size, BLOCK_ROWS)
     blocks = (log.rows(slice(start, start + BLOCK_ROWS)) for start in starts)
-    return (_run(kind, block, card, (declination, where)) for block in blocks), log, card
+    return (_run(kind, block, card, (declination, where, noise)) for block in blocks), log, card
 
 
 def _need(kind: str, file: LogFile, card: SensorCard) -> Need:
@@ -162,11 +171,13 @@ def _need(kind: str, file: LogFile, card: SensorCard) -> Need:
 
 
 def _run(
-    kind: str, log: SensorLog, card: SensorCard, rest: tuple[Declination | None, str]
+    kind: str, log: SensorLog, card: SensorCard, rest: tuple[Declination | None, str, float]
 ) -> Compensated:
-    declination, where = rest
+    declination, where, noise = rest
     if kind == "compass":
-        return compensate_compass(log, card, declination=declination, where=where)
+        return compensate_compass(
+            log, card, declination=declination, where=where, force_noise=noise
+        )
     if kind == "rate":
         return compensate_rate(log, card, where=where)
     if card.get("sensitivity") is not None:

@@ -7,6 +7,9 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Final
 
+import numpy as np
+
+from surveyapp.core.sensors.clipping import unclipped_rows, without_clipped
 from surveyapp.diagnosis.sensors.diagnosis import SensorDiagnosis, diagnose_sensor
 from surveyapp.diagnosis.sensors.records import SensorRecord, compass_record, tilt_record
 from surveyapp.domain.advance import PartDone
@@ -165,8 +168,12 @@ def _record(
         )
         raise SurveyError(Problem("the log is too short to diagnose", log.path, found, expected))
     mine = tuple(effect for effect in own if effect.subject == kind)
-    used = log.thinned(MOST_ROWS)
+    fitted = MAG if kind == "compass" else TILT[:2]
+    kept = unclipped_rows(log, fitted)
+    whole = without_clipped(log, fitted)
+    used = whole.thinned(MOST_ROWS)
     made = compass_record(used, mine) if kind == "compass" else tilt_record(used, mine)
-    every = -(-log.size // used.size)
-    gross = tuple((row * every, size) for row, size in made.gross)
+    rows = np.arange(log.size) if kept is None else np.flatnonzero(kept)
+    rows = rows[:: -(-whole.size // used.size)]
+    gross = tuple((int(rows[row]), size) for row, size in made.gross)
     return replace(made, gross=gross), replace(log, warnings=used.warnings)

@@ -10,6 +10,7 @@ import numpy as np
 
 from surveyapp.core.sensors.allan import octaves
 from surveyapp.core.sensors.filters import (
+    BLOCK,
     FILTERS,
     LOST,
     Filtered,
@@ -18,13 +19,13 @@ from surveyapp.core.sensors.filters import (
     run_filter,
     step_lag,
 )
-from surveyapp.domain.advance import PartDone
+from surveyapp.domain.advance import PartDone, stage
 from surveyapp.domain.noise import AllanChannel, FilterResult
 from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.sensor_logs.reading import LogFile
 from surveyapp.languages import said
-from surveyapp.workflows.noise import channel_of, noise_columns, read_columns
+from surveyapp.workflows.noise import channel_of, noise_columns, read_columns, uneven
 from surveyapp_models.arrays import Floats
 
 STEP_SIGMAS = (2.0, 20.0)
@@ -72,10 +73,11 @@ def filter_log(
     """
     model_name = _known(name)
     names = _one_column(file, column)
-    log = read_columns(file, names, progress)
+    log = read_columns(file, names, stage(progress, 0.0, 0.5))
     series, unit = log.columns[names[0]], log.units[names[0]]
     model = _model(series, (q, r), seed)
-    filtered = run_filter(model_name, series, model, np.random.default_rng(seed))
+    rng = np.random.default_rng(seed)
+    filtered = run_filter(model_name, series, model, rng, progress=stage(progress, 0.5, 0.9))
     rate = log.rate_hz or 1.0
     factors = octaves(series.size)
     before = channel_of(names[0], unit, series, rate_hz=rate, factors=factors)
@@ -87,13 +89,10 @@ def filter_log(
         factors=factors,
         highest_hz=PASS_BAND * model.steady_gain * rate / (2.0 * math.pi),
     )
-    lags = {
-        f"{sigmas:g}_sigma": step_lag(
-            model_name, model, sigmas=sigmas, rng=np.random.default_rng(seed), longest=LONGEST_LAG
-        )
-        for sigmas in STEP_SIGMAS
-    }
-    warnings = [*log.warnings, *_warnings(filtered, lags)]
+    lags = _lags(model_name, model, seed)
+    if progress is not None:
+        progress(1.0)
+    warnings = [*log.warnings, *uneven(log), *_warnings(filtered, lags)]
     result = FilterResult(
         filter=model_name,
         column=names[0],
@@ -129,6 +128,25 @@ def _one_column(file: LogFile, column: str | None) -> tuple[str, ...]:
     return tuple(names)
 
 
+def _lags(name: FilterName, model: LocalLevel, seed: int) -> dict[str, float | None]:
+    """Samples until 90 % of a step is followed, by the size of the step."""
+    return {
+        f"{sigmas:g}_sigma": step_lag(
+            name, model, sigmas=sigmas, rng=np.random.default_rng(seed), longest=LONGEST_LAG
+        )
+        for sigmas in STEP_SIGMAS
+    }
+
+
+def _mean_square_step(series: Floats) -> float:
+    """Mean square of the differences of neighbouring readings."""
+    total = 0.0
+    for start in range(0, series.size - 1, BLOCK):
+        step = np.diff(series[start : start + BLOCK + 1])
+        total += float(step @ step)
+    return total / (series.size - 1)
+
+
 def _known(name: str) -> FilterName:
     for known in FILTERS:
         if known == name:
@@ -140,7 +158,7 @@ def _known(name: str) -> FilterName:
 def _model(series: Floats, stated: tuple[float | None, float | None], seed: int) -> LocalLevel:
     """The variances as stated, or from the differences of the series."""
     q, r = stated
-    reading = r if r is not None else 0.5 * float(np.mean(np.diff(series) ** 2))
+    reading = r if r is not None else 0.5 * _mean_square_step(series)
     model = LocalLevel(q if q is not None else 1e-3 * reading, reading)
     problems = [
         Problem(

@@ -11,7 +11,7 @@ import numpy as np
 from surveyapp.core.sensors.allan import AllanCurve, Estimator, allan_curve, octaves
 from surveyapp.core.sensors.noise_coefficients import coefficients_of
 from surveyapp.core.sensors.noise_units import named_coefficients
-from surveyapp.domain.advance import PartDone
+from surveyapp.domain.advance import PartDone, stage
 from surveyapp.domain.noise import AllanChannel, AllanResult
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SENSOR_COLUMNS, TEXT_COLUMNS, SensorLog
@@ -102,9 +102,12 @@ def channel_of(
     factors: tuple[int, ...],
     estimator: Estimator = "oadev",
     highest_hz: float | None = None,
+    progress: PartDone | None = None,
 ) -> AllanChannel:
     """Curve and coefficients of one series; ``highest_hz`` as in ``coefficients_of``."""
-    curve: AllanCurve = allan_curve(series, rate_hz=rate_hz, factors=factors, estimator=estimator)
+    curve: AllanCurve = allan_curve(
+        series, rate_hz=rate_hz, factors=factors, estimator=estimator, progress=progress
+    )
     known = unit not in ("1", "LSB")
     found = None
     if known:
@@ -120,6 +123,19 @@ def channel_of(
         high=tuple(curve.high.tolist()),
         coefficients=named_coefficients(found, unit=unit),
     )
+
+
+def uneven(log: SensorLog) -> list[ResultWarning]:
+    """That the samples are taken as evenly spaced where they are not."""
+    if log.gaps:
+        text = "the samples beside a gap are taken as neighbours: cut the log at its gaps"
+        return [ResultWarning("gaps_ignored", text)]
+    if "time_s" in log.columns and log.size > 2:
+        step = np.diff(log.columns["time_s"][: 1 << 20])
+        if float(np.std(step)) > 0.2 * float(np.median(step)):
+            text = "the interval of the samples varies; its mean is taken"
+            return [ResultWarning("uneven_rate", text)]
+    return []
 
 
 def allan_of_log(
@@ -138,18 +154,10 @@ def allan_of_log(
         For columns or times that are not there, and for what is wrong with the log.
     """
     names = noise_columns(file, column)
-    log = read_columns(file, names, progress)
+    log = read_columns(file, names, stage(progress, 0.0, 0.5))
     factors = factors_of(log, taus)
-    warnings = list(log.warnings)
-    if log.gaps:
-        text = "the samples beside a gap are taken as neighbours: cut the log at its gaps"
-        warnings.append(ResultWarning("gaps_ignored", text))
     rate = log.rate_hz or 1.0
-    if "time_s" in log.columns and log.size > 2:
-        step = np.diff(log.columns["time_s"][: 1 << 20])
-        if float(np.std(step)) > 0.2 * float(np.median(step)) and not log.gaps:
-            text = "the interval of the samples varies; its mean is taken"
-            warnings.append(ResultWarning("uneven_rate", text))
+    warnings = [*log.warnings, *uneven(log)]
     channels = tuple(
         channel_of(
             name,
@@ -158,7 +166,8 @@ def allan_of_log(
             rate_hz=rate,
             factors=factors,
             estimator=estimator,
+            progress=stage(progress, 0.5 + 0.5 * k / len(names), 0.5 + 0.5 * (k + 1) / len(names)),
         )
-        for name in names
+        for k, name in enumerate(names)
     )
     return AllanResult(log.id, estimator, channels, log.sha256, tuple(warnings))

@@ -94,7 +94,7 @@ def simulated(seed: int, size: dict[str, float], n: int = 50_000) -> Floats:
 )
 def test_coefficients_hold_and_absent_ones_are_null(truth: dict[str, float]) -> None:
     held, wrong = [], 0
-    for seed in range(25):
+    for seed in range(16):
         for item in coefficients_of(simulated(seed, truth), interval=0.01):
             if item.value is None or item.sigma is None:
                 assert item.reason in ("not_significant", "not_separable")
@@ -102,9 +102,10 @@ def test_coefficients_hold_and_absent_ones_are_null(truth: dict[str, float]) -> 
                 held.append(abs(item.value - truth[item.symbol]) < 1.96 * item.sigma)
             else:
                 wrong += 1
-    # at least .95 - 3 sqrt(.95 x .05 / 50); absent terms in .01 of 50 to 75: at most 3
-    assert len(held) >= 40
-    assert np.mean(held) > 0.86
+    # at least .95 - 3 sqrt(.95 x .05 / 32); absent terms in .01 of 32 to 48: at most 3 with
+    # p = .998; 200 records a line in ``python -m bench sensors``
+    assert len(held) >= 26
+    assert np.mean(held) > 0.83
     assert wrong <= 3
 
 

@@ -133,7 +133,8 @@ def test_what_is_wrong_on_a_dividing_head_is_told(tmp_path: Path) -> None:
     with pytest.raises(SurveyError) as caught:
         calibrated(tmp_path, [*rows, "statik,1,0,,5,,,", "zero,,,,nan,,,"])
     told = [p.what for p in caught.value.problems]
-    assert told == ["there is no such test", "output is not a number in 1 rows of the test zero"]
+    assert told == ["there is no such test", "output is not a number in 1 row of the test zero"]
+    assert caught.value.problems[1].where.endswith("line 42")
     with pytest.raises(SurveyError, match="constant in the test static"):
         calibrated(tmp_path, [f"static,1,{a},,5,,," for a in range(-90, 91, 15)])
     short = calibrated(tmp_path, ["static,1,0,,5,,,", "static,1,10,,9,,,"])

@@ -10,7 +10,8 @@ import pytest
 
 from surveyapp import api
 from surveyapp.core.orientation.whole_project import orient_project
-from surveyapp.core.tolerance import measure, rule_book_checks
+from surveyapp.core.tolerance import rule_book_checks
+from surveyapp.core.tolerance.measures import measure
 from surveyapp.domain.results import Check
 from surveyapp.io.rulebooks import read_rule_book
 from surveyapp_models.angles import AngleUnit, format_angle

@@ -17,7 +17,8 @@ from surveyapp.core.network.fieldchecks import (
     repeated_traverse,
     side_measures,
 )
-from surveyapp.core.tolerance import Measured, measure, rule_book_checks
+from surveyapp.core.tolerance import Measured, rule_book_checks
+from surveyapp.core.tolerance.measures import measure
 from surveyapp.domain.results import Check
 from surveyapp.domain.rulebook import RuleBook
 from surveyapp.errors import SurveyError

@@ -1,7 +1,8 @@
 """Is a reading what it should be? Asked once, with the reason, before it goes into the book.
 
 A doubt never refuses: the surveyor has seen the instrument and the program has not. What is
-impossible was refused before (``surveyapp.core.observing.typed_rows``).
+impossible was refused before (``surveyapp.core.observing.typed_rows``), and what no command could
+use in the book is not written (``surveyapp.core.swing.contradictions``).
 """
 
 from __future__ import annotations

@@ -35,8 +35,9 @@ from surveyapp.core.swing.gyrofit import (
     unwrap,
 )
 from surveyapp.core.swing.reduction import ReadingSigma, reading_sigma
+from surveyapp.core.swing.run_points import MIN_POINTS
 from surveyapp.core.swing.sights import moments
-from surveyapp.core.swing.tracking import MIN_POINTS, reduce_tracking
+from surveyapp.core.swing.tracking import reduce_tracking
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession

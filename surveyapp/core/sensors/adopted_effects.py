@@ -93,9 +93,4 @@ def _rows(effect: AdoptedEffect) -> list[int]:
 def _without_rows(log: SensorLog, rows: Sequence[int]) -> SensorLog:
     kept = np.ones(log.size, dtype=bool)
     kept[[row for row in rows if 0 <= row < log.size]] = False
-    columns = {name: values[kept] for name, values in log.columns.items()}
-    texts = {
-        name: tuple(word for word, keep in zip(words, kept, strict=True) if keep)
-        for name, words in log.texts.items()
-    }
-    return replace(log, columns=columns, texts=texts, size=int(kept.sum()))
+    return log.chosen(kept)

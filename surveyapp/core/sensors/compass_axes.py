@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from surveyapp.domain.project import ResultWarning
-from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.domain.sensor_log import TRIPLES, SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
@@ -73,7 +74,7 @@ def check_axes(log: SensorLog) -> tuple[ResultWarning, ...]:
         text = said(
             "the specific force does not belong to the field: the dip scatters by "
             "{value:.1f} degrees; was the compass moved jerkily, or are the axes "
-            "those of another sensor?",
+            "those of another sensor? The dip of an ellipsoid is not taken from it",
             value=np.degrees(np.arctan(as_given / scale)),
         )
         return (ResultWarning("acc_does_not_fit", text),)
@@ -127,6 +128,12 @@ def refuse_mirrored(known: Floats, shown: Floats, where: str) -> None:
                 said("exchange the columns with `columns`; `scale` COLUMN=-1 reverses one"),
             )
         )
+
+
+def without_force(log: SensorLog) -> SensorLog:
+    """The log without its specific force, where that does not belong to the field."""
+    columns = {k: v for k, v in log.columns.items() if k not in TRIPLES["acc"]}
+    return replace(log, columns=columns)
 
 
 def _exchanged(where: str, left: Sequence[float], found: Arrangement) -> Problem:

@@ -32,7 +32,7 @@ from surveyapp.domain.calibration import (
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.languages import said
+from surveyapp.languages import counted, said
 from surveyapp.languages.names import ids
 from surveyapp_models.arrays import Floats
 from surveyapp_models.compass.heading import DEFAULT_DIP, dip_of
@@ -275,7 +275,7 @@ def _result(
             },
             "coverage_cells": cells.tolist(),
         },
-        constants={} if refused else _constants(fit, dip, sigma),
+        constants={} if refused else _constants(fit, dip, sigma) | _reach(log, verdict),
         notes=_notes(log, verdict),
         temperature_c=_temperatures(log),
     )
@@ -293,14 +293,20 @@ def _constants(fit: Ellipsoid, dip: float, sigma: float) -> dict[str, float]:
     }
 
 
+def _reach(log: SensorLog, verdict: GeometryVerdict) -> dict[str, float]:
+    """The largest tilt of a restricted record [deg], where the specific force tells it."""
+    acc = log.vector("acc")
+    if verdict != "restricted" or acc is None:
+        return {}
+    share = acc[:, 2] / np.linalg.norm(acc, axis=1)
+    return {"largest_tilt_deg": math.degrees(math.acos(np.clip(float(share.min()), -1.0, 1.0)))}
+
+
 def _notes(log: SensorLog, verdict: GeometryVerdict) -> dict[str, str]:
     if verdict != "restricted":
         return {}
-    acc = log.vector("acc")
     text = said("holds only for tilts like those of its record")
-    if acc is not None:
-        unit = acc / np.linalg.norm(acc, axis=1)[:, None]
-        tilt = float(np.degrees(np.arccos(np.clip(np.quantile(unit[:, 2], 0.01), -1.0, 1.0))))
+    for tilt in _reach(log, verdict).values():
         text += said(": up to {tilt:.1f} degrees", tilt=tilt)
     return {"restricted": text}
 
@@ -354,7 +360,7 @@ def _warnings(
         text = said("no ellipsoid could be fitted with: {names}", names=ids(failed))
         found.append(ResultWarning("no_ellipsoid", text))
     if log.vector("acc") is None:
-        text = "no specific force: the dip is taken as 65 degrees"
+        text = "without specific force the dip is taken as 65 degrees"
         found.append(ResultWarning("dip_assumed", text))
     elif trials[chosen].fit.converged and record_dip(log, trials[chosen].fit) < 0.0:
         text = (
@@ -367,9 +373,10 @@ def _warnings(
 
 def _refused_short(log: SensorLog, points: Floats) -> Calibration:
     size = np.linalg.norm(points, axis=1)
-    text = said(
-        "{size} rows are too few: {fewest_rows} are the least for nine parameters",
-        size=log.size,
+    text = counted(
+        "{count} row is too few: {fewest_rows} are the least for nine parameters",
+        "{count} rows are too few: {fewest_rows} are the least for nine parameters",
+        count=log.size,
         fewest_rows=FEWEST_ROWS,
     )
     return Calibration(

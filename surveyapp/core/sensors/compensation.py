@@ -13,17 +13,18 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from surveyapp.core.sensors.compass_attitude import NAMES as MISALIGNMENT
 from surveyapp.core.sensors.compass_attitude import turned_back
 from surveyapp.domain.sensor_card import SensorCard
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 from surveyapp_models.compass.deviation import COEFFICIENTS, deviation_basis, undeviated
 from surveyapp_models.compass.heading import heading_of
 
+Mask = NDArray[np.bool_]
 Columns = dict[str, Sequence[float] | Sequence[str] | Floats]
 
 AXES: Final = ("along", "across")
@@ -86,7 +87,13 @@ def need(card: SensorCard, names: Sequence[str], where: str) -> dict[str, float]
 
 
 def compensate_compass(
-    log: SensorLog, card: SensorCard, *, declination: Declination | None, where: str
+    log: SensorLog,
+    card: SensorCard,
+    *,
+    declination: Declination | None,
+    where: str,
+    one_reading: bool = True,
+    force_noise: float | None = None,
 ) -> Compensated:
     """Corrected field, tilt-compensated heading and its sigma.
 
@@ -100,6 +107,11 @@ def compensate_compass(
         Turns MAGNETIC headings into ASTRONOMIC ones.
     where : str
         The card, for messages.
+    one_reading : bool
+        Whether the sigma is that of each heading; without, of the calibration alone, as a mean
+        over many readings takes it.
+    force_noise : float, optional
+        Noise of the specific force as a share of it; by default what the rows of ``log`` tell.
     """
     points = np.column_stack([log.columns[f"mag_{axis}_uT"] for axis in BODY])
     up = log.vector("acc")
@@ -108,13 +120,19 @@ def compensate_compass(
         values = np.radians(np.array(list(need(card, names, where).values())))
         heading = undeviated(heading_of(points, up), values)
         sigma = _swing_sigma(card, heading)
+        noise = np.full(log.size, math.radians(card.constants.get("reading_sigma_deg", 0.0)))
         field = points
     else:
-        field = _corrected_field(points, card, where)
-        heading = heading_of(field, up)
-        sigma = _ellipsoid_sigma(card, field, up)
+        field = corrected_field(points, card, where)
+        heading = np.where(beyond_tilt(log, card), np.nan, heading_of(field, up))
+        sigma = np.full(log.size, math.radians(card.constants.get("heading_sigma_deg", 0.0)))
         if up is None:
             sigma = np.hypot(sigma, _unlevelled(card, field))
+        shaken = force_sigma(up) if force_noise is None else force_noise
+        noise = _reading_sigma(card, field, up, force_noise=shaken)
+    if one_reading:
+        sigma = np.hypot(sigma, noise)
+    sigma = np.where(np.isnan(heading), np.nan, sigma)
     reference = "MAGNETIC"
     if declination is not None:
         heading = (heading + declination.value) % (2.0 * math.pi)
@@ -130,7 +148,16 @@ def compensate_compass(
     return Compensated(columns, reference, largest)
 
 
-def _corrected_field(points: Floats, card: SensorCard, where: str) -> Floats:
+def beyond_tilt(log: SensorLog, card: SensorCard) -> Mask:
+    """Rows tilted by more than the record of a restricted card, where its headings do not hold."""
+    largest, up = card.constants.get("largest_tilt_deg"), log.vector("acc")
+    if largest is None or up is None:
+        return np.zeros(log.size, dtype=bool)
+    share = up[:, 2] / np.maximum(np.linalg.norm(up, axis=1), 1e-300)
+    return np.asarray(share < math.cos(math.radians(largest)) - 1e-12)
+
+
+def corrected_field(points: Floats, card: SensorCard, where: str) -> Floats:
     """W (m - b) in the body, with the numbers that the fit used, determined or not [uT]."""
     places = ("xx", "yy", "zz", "xy", "xz", "yz")
     hard = [f"hard_iron_{axis}" for axis in BODY]
@@ -149,60 +176,49 @@ def _corrected_field(points: Floats, card: SensorCard, where: str) -> Floats:
     return turned_back(field, np.radians(turn)) if any(turn) else np.asarray(field)
 
 
-FIELD_DIFFERS: Final = 0.05
-"""Share of the field by which its corrected size may differ or scatter: places of one country
-differ by less, and a foreign card leaves iron of several microtesla."""
+def _reading_sigma(
+    card: SensorCard, field: Floats, up: Floats | None, *, force_noise: float
+) -> Floats:
+    """Sigma of one heading by the noise of its field and of its specific force [rad].
 
-
-def field_doubt(log: SensorLog, card: SensorCard, *, where: str) -> str | None:
-    """What speaks against the card being of this compass; None if nothing does.
-
-    The corrected field has one size in every attitude, and about that of the calibration.
+    A field error across the heading turns it by e / H; a wrong up by d turns it by d Z / H, H and
+    Z the parts of the field across and along up.
     """
-    expected = card.constants.get("used_field")
-    if expected is None:
-        return None
-    part = log.rows(slice(None, None, max(log.size // 2000, 1)))
-    points = np.column_stack([part.columns[f"mag_{axis}_uT"] for axis in BODY])
-    size = np.linalg.norm(_corrected_field(points, card, where), axis=1)
-    low, middle, high = np.quantile(size, (0.16, 0.5, 0.84))
-    scatter = 0.5 * float(high - low)
-    noise = card.constants.get("reading_sigma_uT", 0.0)
-    if abs(float(middle) - expected) <= FIELD_DIFFERS * expected and scatter <= max(
-        FIELD_DIFFERS * expected, 3.0 * noise
-    ):
-        return None
-    return said(
-        "the corrected field is {middle:.1f} uT +- {scatter:.1f}, that of the calibration "
-        "{expected:.1f}: a log of another compass or mounting, iron near, or another country",
-        middle=float(middle),
-        scatter=scatter,
-        expected=expected,
-    )
-
-
-def _ellipsoid_sigma(card: SensorCard, field: Floats, up: Floats | None) -> Floats:
-    """Sigma of each heading: of the calibration, and of one reading [rad]."""
     unit = np.tile([0.0, 0.0, 1.0], (len(field), 1))
     if up is not None:
         unit = up / np.linalg.norm(up, axis=1)[:, None]
-    level = field - np.sum(field * unit, axis=1)[:, None] * unit
-    size = np.linalg.norm(level, axis=1)
+    along = np.sum(field * unit, axis=1)
+    size = np.linalg.norm(field - along[:, None] * unit, axis=1)
     reading = card.constants.get("reading_sigma_uT", 0.0)
+    error = np.hypot(reading, force_noise * along)
     with np.errstate(divide="ignore"):
-        noise = np.where(size > 0.0, reading / size, np.inf)
-    return np.asarray(np.hypot(math.radians(card.constants.get("heading_sigma_deg", 0.0)), noise))
+        return np.asarray(np.where(size > 0.0, error / size, np.inf))
+
+
+FEWEST_FORCES: Final = 10
+"""Readings from which their size tells the noise of the specific force."""
+
+
+def force_sigma(up: Floats | None) -> float:
+    """Noise of the specific force on one axis as a share of it: the scatter of its size, robust.
+
+    Its size is g in every attitude at rest; what shakes it, shakes its direction as much.
+    """
+    if up is None or len(up) < FEWEST_FORCES:
+        return 0.0
+    size = np.linalg.norm(up, axis=1)
+    middle = float(np.median(size))
+    return 1.4826 * float(np.median(np.abs(size - middle))) / middle
 
 
 def _swing_sigma(card: SensorCard, heading: Floats) -> Floats:
-    """Sigma of each heading: of A to E by their covariance, and of one reading [rad]."""
-    reading = card.constants.get("reading_sigma_deg", 0.0)
+    """Sigma of each heading from the covariance of A to E [rad]."""
     if card.covariance is None:
         largest = card.constants.get("heading_sigma_deg", 0.0)
-        return np.full(heading.size, math.radians(math.hypot(largest, reading)))
+        return np.full(heading.size, math.radians(largest))
     basis = deviation_basis(heading)
     variance = np.sum((basis @ card.covariance) * basis, axis=1)
-    return np.asarray(np.radians(np.sqrt(np.maximum(variance, 0.0) + reading**2)))
+    return np.asarray(np.radians(np.sqrt(np.maximum(variance, 0.0))))
 
 
 def _unlevelled(card: SensorCard, field: Floats) -> float:

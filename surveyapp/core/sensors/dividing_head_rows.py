@@ -9,7 +9,7 @@ import numpy as np
 
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError, nearest_names
-from surveyapp.languages import said
+from surveyapp.languages import counted, said
 from surveyapp_models.arrays import Floats
 
 TESTS: Final = ("static", "transverse", "reversal", "zero", "capacitance", "dynamic")
@@ -55,15 +55,19 @@ def check_rows(log: SensorLog) -> None:
                 what = said("the test {test} needs the column {column}", test=test, column=column)
                 problems.append(Problem(what, log.path, "", column, hint))
                 continue
-            bad = int(np.count_nonzero(~np.isfinite(values[rows])))
-            if bad:
-                what = said(
-                    "{column} is not a number in {bad} rows of the test {test}",
+            bad = np.flatnonzero(rows & ~np.isfinite(values))
+            if bad.size:
+                what = counted(
+                    "{column} is not a number in {count} row of the test {test}",
+                    "{column} is not a number in {count} rows of the test {test}",
+                    count=bad.size,
                     column=column,
-                    bad=bad,
                     test=test,
                 )
-                problems.append(Problem(what, log.path, "NaN or an empty cell", "a number"))
+                where = said(
+                    "{where}, line {line}", where=log.path, line=log.first_line + int(bad[0])
+                )
+                problems.append(Problem(what, where, "NaN or an empty cell", "a number"))
             elif column == "output" and test in ("static", "transverse"):
                 problems += _constant(test, values[rows], log.path)
             elif (test, column) in _CODES:

@@ -12,11 +12,14 @@ Smith 1993.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
+from surveyapp.domain.advance import PartDone
 from surveyapp_models.arrays import Floats
 
 FilterName = Literal["kalman", "sage-husa", "particle"]
@@ -37,6 +40,11 @@ LOST: Final = 6.0
 
 LOST_FOR: Final = 20
 """Samples in a row."""
+
+BLOCK: Final = 1 << 16
+"""Samples that are taken at once, so that nothing but the result has the length of a series."""
+
+Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +99,12 @@ class Filtered:
 
 
 def run_filter(
-    name: FilterName, series: Floats, model: LocalLevel, rng: np.random.Generator
+    name: FilterName,
+    series: Floats,
+    model: LocalLevel,
+    rng: np.random.Generator,
+    *,
+    progress: PartDone | None = None,
 ) -> Filtered:
     """Filter a series from its first reading on.
 
@@ -103,12 +116,13 @@ def run_filter(
     model : LocalLevel
     rng : numpy.random.Generator
         Of the particle filter.
+    progress : callable, optional
     """
     if name == "kalman":
         return kalman(series, model)
     if name == "sage-husa":
-        return sage_husa(series, model)
-    return particles(series, model, rng)
+        return sage_husa(series, model, progress=progress)
+    return particles(series, model, rng, progress=progress)
 
 
 def kalman(series: Floats, model: LocalLevel) -> Filtered:
@@ -120,86 +134,112 @@ def kalman(series: Floats, model: LocalLevel) -> Filtered:
     estimate, variance = np.empty(n), np.empty(n)
     x, p, q, r = float(series[0]), model.r, model.q, model.r
     estimate[0], variance[0] = x, p
-    innovation = np.zeros(n)
+    beyond = np.zeros(n, dtype=bool)
     steady = model.steady_variance
     k = 1
     while k < n and abs(p - steady) > 1e-14 * steady:
         p += q
         gain = p / (p + r)
-        innovation[k] = (float(series[k]) - x) / math.sqrt(p + r)
-        x += gain * (float(series[k]) - x)
+        nu = float(series[k]) - x
+        beyond[k] = abs(nu) > LOST * math.sqrt(p + r)
+        x += gain * nu
         p = (1.0 - gain) ** 2 * p + gain**2 * r  # Joseph form
         estimate[k], variance[k] = x, p
         k += 1
     if k < n:
-        from scipy.signal import lfilter
-
-        gain = (p + q) / (p + q + r)
-        rest, _ = lfilter([gain], [1.0, gain - 1.0], series[k:], zi=np.array([(1.0 - gain) * x]))
-        estimate[k:], variance[k:] = rest, p
-        before = np.concatenate([[x], rest[:-1]])
-        innovation[k:] = (series[k:] - before) / math.sqrt(p + q + r)
-    return _checked(estimate, variance, innovation)
+        variance[k:] = p
+        _steady(series[k:], estimate[k:], beyond[k:], (x, p + q, r))
+    return _checked(estimate, variance, beyond)
 
 
-def sage_husa(series: Floats, model: LocalLevel) -> Filtered:
+def _steady(
+    series: Floats, estimate: Floats, beyond: Mask, state: tuple[float, float, float]
+) -> None:
+    """The steady state from estimate, predicted variance and r on, block by block."""
+    from scipy.signal import lfilter
+
+    x, predicted, r = state
+    gain = predicted / (predicted + r)
+    limit = LOST * math.sqrt(predicted + r)
+    for start in range(0, series.size, BLOCK):
+        piece = series[start : start + BLOCK]
+        made, _ = lfilter([gain], [1.0, gain - 1.0], piece, zi=np.array([(1.0 - gain) * x]))
+        estimate[start : start + BLOCK] = made
+        before = np.concatenate([[x], made[:-1]])
+        beyond[start : start + BLOCK] = np.abs(piece - before) > limit
+        x = float(made[-1])
+
+
+def _values(series: Floats, progress: PartDone | None) -> Iterator[float]:
+    """The readings after the first as plain numbers, a block of them at a time."""
+    for start in range(1, series.size, BLOCK):
+        yield from series[start : start + BLOCK].tolist()
+        if progress is not None:
+            progress(min((start + BLOCK) / series.size, 1.0))
+
+
+def sage_husa(series: Floats, model: LocalLevel, *, progress: PartDone | None = None) -> Filtered:
     """Adaptive Kalman filter: r follows the innovations, guarded so that it stays positive.
 
     R_k = (1 - d) R + d max(nu^2 - P, share R_0), d = (1 - b) / (1 - b^(k+1)).
     """
-    values = series.tolist()
-    n = len(values)
-    estimate, variance, innovation = [0.0] * n, [0.0] * n, [0.0] * n
-    x, p, q, r = values[0], model.r, model.q, model.r
+    n = series.size
+    estimate, variance, beyond = np.empty(n), np.empty(n), np.zeros(n, dtype=bool)
+    x, p, q, r = float(series[0]), model.r, model.q, model.r
     estimate[0], variance[0] = x, p
     least, power = LEAST_SHARE * model.r, FORGETTING
-    for k in range(1, n):
+    for k, value in enumerate(_values(series, progress), start=1):
         p += q
-        nu = values[k] - x
+        nu = value - x
         power *= FORGETTING
         d = (1.0 - FORGETTING) / (1.0 - power)
         r = (1.0 - d) * r + d * max(nu * nu - p, least)
         total = p + r
-        innovation[k] = nu / math.sqrt(total)
+        if nu * nu > LOST**2 * total:
+            beyond[k] = True
         gain = p / total
         x += gain * nu
         p = (1.0 - gain) ** 2 * p + gain * gain * r
         estimate[k], variance[k] = x, p
-    return _checked(np.array(estimate), np.array(variance), np.array(innovation))
+    return _checked(estimate, variance, beyond)
 
 
 def particles(
-    series: Floats, model: LocalLevel, rng: np.random.Generator, *, count: int = PARTICLES
+    series: Floats,
+    model: LocalLevel,
+    rng: np.random.Generator,
+    *,
+    count: int = PARTICLES,
+    progress: PartDone | None = None,
 ) -> Filtered:
     """Bootstrap particle filter with systematic resampling.
 
     Where every weight vanishes the particles are drawn anew about the reading, which is counted.
     """
     n = series.size
-    estimate, variance, innovation = np.empty(n), np.empty(n), np.zeros(n)
+    estimate, variance, beyond = np.empty(n), np.empty(n), np.zeros(n, dtype=bool)
     step, scale = math.sqrt(model.q), -0.5 / model.r
-    values = series.tolist()
-    cloud = values[0] + math.sqrt(model.r) * rng.standard_normal(count)
+    cloud = float(series[0]) + math.sqrt(model.r) * rng.standard_normal(count)
     log_weight = np.zeros(count)
     weight = np.full(count, 1.0 / count)
     noise = np.empty(count)
     ladder = np.arange(count) / count
     resamplings = degenerate = 0
     estimate[0], variance[0] = float(cloud.mean()), model.r
-    for k in range(1, n):
+    for k, value in enumerate(_values(series, progress), start=1):
         rng.standard_normal(out=noise)
         noise *= step
         cloud += noise
         spread = variance[k - 1] + model.q + model.r
-        innovation[k] = (values[k] - float(weight @ cloud)) / math.sqrt(spread)
-        np.subtract(cloud, values[k], out=noise)
+        beyond[k] = abs(value - float(weight @ cloud)) > LOST * math.sqrt(spread)
+        np.subtract(cloud, value, out=noise)
         np.multiply(noise, noise, out=noise)
         noise *= scale
         log_weight += noise
         largest = float(log_weight.max())
         if largest < -700.0:
             degenerate += 1
-            cloud = values[k] + math.sqrt(model.r) * rng.standard_normal(count)
+            cloud = value + math.sqrt(model.r) * rng.standard_normal(count)
             log_weight[:] = 0.0
             largest = 0.0
         np.subtract(log_weight, largest, out=log_weight)
@@ -216,19 +256,18 @@ def particles(
             cloud = cloud[np.searchsorted(total, ladder + rng.random() / count)]
             log_weight[:] = 0.0
             weight[:] = 1.0 / count
-    found = _checked(estimate, variance, innovation)
+    found = _checked(estimate, variance, beyond)
     return Filtered(
         found.estimate, found.variance, found.lost_at, found.lost, resamplings, degenerate
     )
 
 
-def _checked(estimate: Floats, variance: Floats, innovation: Floats) -> Filtered:
+def _checked(estimate: Floats, variance: Floats, beyond: Mask) -> Filtered:
     """Find sustained innovations that the filter cannot explain."""
-    beyond = np.abs(innovation) > LOST
-    runs = np.convolve(beyond, np.ones(LOST_FOR), mode="full")
-    places = np.maximum(np.flatnonzero(runs >= LOST_FOR - 0.5) - LOST_FOR + 1, 0)
-    first = int(places[0]) if places.size else None
-    return Filtered(estimate, variance, first, int(np.count_nonzero(beyond)))
+    places = np.flatnonzero(beyond)
+    runs = places[LOST_FOR - 1 :] - places[: places.size - LOST_FOR + 1] == LOST_FOR - 1
+    first = int(places[np.argmax(runs)]) if runs.any() else None
+    return Filtered(estimate, variance, first, int(places.size))
 
 
 def step_lag(

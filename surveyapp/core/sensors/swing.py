@@ -27,6 +27,8 @@ from surveyapp_models.compass.heading import heading_of
 
 NAMES: Final = tuple(f"deviation_{letter}" for letter in COEFFICIENTS)
 BLOCK_S: Final = 2.0
+FEWEST_HEADINGS: Final = 8
+RADIANS: Final = 6.2832
 WHOLE_CIRCLE: Final = 5.0
 """Condition of A to E above which arcs of the circle are missing; 1 = evenly swung."""
 
@@ -162,7 +164,7 @@ def _result(
             CalibrationModel("none", plain, plain, not met),
             CalibrationModel("A_to_E", after, held, met),
         ),
-        warnings=(*log.warnings, *_warnings(log, fit, gate)),
+        warnings=(*log.warnings, *_warnings(log, fit, gate), *odd_headings(log, met=met)),
         met=met,
         n=log.size,
         sha256=log.sha256,
@@ -203,6 +205,29 @@ def _temperatures(log: SensorLog) -> tuple[float, float] | None:
     if values is None or not np.all(np.isfinite(values)):
         return None
     return float(values.min()), float(values.max())
+
+
+def odd_headings(log: SensorLog, *, met: bool) -> list[ResultWarning]:
+    """Known headings beyond a turn are taken modulo 360; what else they may be is told."""
+    known = log.columns["heading_deg"]
+    low, high = float(known.min()), float(known.max())
+    found = []
+    if low < -360.0 or high > 360.0:
+        text = said(
+            "heading_deg runs from {low:g} to {high:g} degrees: whole turns are taken off; gon "
+            "take `units` heading_deg=gon, counts `scale`",
+            low=low,
+            high=high,
+        )
+        found.append(ResultWarning("heading_beyond_a_turn", text))
+    elif not met and log.size >= FEWEST_HEADINGS and high - low > 3.0 and high <= RADIANS:
+        text = said(
+            "heading_deg runs from {low:g} to {high:g}: are these radians? `units` heading_deg=rad",
+            low=low,
+            high=high,
+        )
+        found.append(ResultWarning("heading_in_radians", text))
+    return found
 
 
 def _why_refused(fit: LinearFit | None, gate: tuple[float, float]) -> str:

@@ -230,11 +230,18 @@ def _result(
         sha256=log.sha256,
         covariance=_covariance(fits),
         temperature_c=span,
-        constants={
-            "reference_temperature_c": reference_c,
-            "reading_sigma_arcsec": max(item.fit.sigma0 for item in fits),
-        },
+        constants=_constants(log, fits, reference_c),
     )
+
+
+def _constants(log: SensorLog, fits: list[AxisFit], reference_c: float) -> dict[str, float]:
+    """What belongs to the parameters: where the zeros hold, noise of a reading, largest reading."""
+    readings = [np.abs(log.columns[f"tilt_{a}_arcsec"]) for a in AXES]
+    return {
+        "reference_temperature_c": reference_c,
+        "reading_sigma_arcsec": max(item.fit.sigma0 for item in fits),
+        "largest_reading_arcsec": max(float(values.max()) for values in readings),
+    }
 
 
 def _finite(value: float) -> float | None:

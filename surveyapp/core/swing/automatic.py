@@ -63,7 +63,7 @@ def reduce_automatic(
     SurveyError
         If there is no round, or if the book mixes delivered azimuths and circle readings of north.
     """
-    kind, rows = _rounds(session, target)
+    kind, rows = rounds_of(session, target)
     readings = np.array([row.value for row in rows], dtype=np.float64)
     offsets = unwrap(readings)
     mean = float(offsets.mean())
@@ -107,10 +107,16 @@ def _target_of(session: OrientationSession, target: str | None) -> str:
     return target or next(iter(azimuth_targets(session)), session.target or "")
 
 
-def _rounds(
+def rounds_of(
     session: OrientationSession, target: str | None
 ) -> tuple[ReadingKind, tuple[Reading, ...]]:
-    """The rounds of the session and what they deliver: azimuths of one target, or north."""
+    """The rounds of the session and what they deliver: azimuths of one target, or north.
+
+    Raises
+    ------
+    SurveyError
+        If there are none of the target, or rounds of both kinds.
+    """
     kinds = [
         kind for kind in (ReadingKind.AZIMUTH, ReadingKind.NORTH) if session.book.of_kind(kind)
     ]

@@ -41,15 +41,12 @@ from surveyapp_models.arrays import Floats
 
 ROOM_GRADIENT_UT: Final = 3.0
 """What the field of a room changes over the reach of an arm: without the attitude an effect on
-the size of the field that is smaller cannot be told from it (BROAD 01: 1.3 uT)."""
-
-MANY: Final = 3
-"""So many effects that together change the field by less than a room does, without the place: the
-record asks for something that none of them is (BROAD 01 without its place: four, 1.6 uT)."""
+the size of the field that is smaller cannot be told from it (BROAD 01: 1.3 uT); nor, without the
+place, a switch: a carrier that is lifted has another field until it is put down."""
 
 SIZE_MARGIN: Final = 40.0
-"""BIC that an effect on the size of the field must gain where what remains is not white: random
-walks of 6 uT reach 12 to 30 in simulated records."""
+"""BIC that an effect on the size of the field, or without the place, must gain where what remains
+is not white: in simulated records walks of 6 uT reach 12 to 30, rooms without the place 23."""
 
 HELD_OUT_S: Final = 2.0
 TILT_ROWS: Final = 7
@@ -194,10 +191,12 @@ def _record_of(item: dict[str, Any], document: dict[str, Any], sha256: str) -> A
 
 
 def _doubted(record: SensorRecord, found: LoopResult) -> LoopResult:
-    """What the size of the field alone cannot tell from a gradient is not named.
+    """What a record cannot tell from the gradient of its room is not named.
 
-    Without position and attitude every small effect on the size may be the field of the room,
-    where what remains is not white; and what only white noise would name is not told from
+    Without the attitude every small effect on the size may be the field of the room, where what
+    remains is not white. With it and without the place that is so of a small switch (lifted and
+    put down), and of what gains little where what remains is not white; iron and a turn that stay
+    with the carrier are told from a room. What only white noise would name is not told from
     correlated noise.
     """
     if record.mode == "size" and found.after.chosen and found.after.noise != "white":
@@ -205,9 +204,10 @@ def _doubted(record: SensorRecord, found: LoopResult) -> LoopResult:
         if weak or _contribution(record, found.after) < ROOM_GRADIENT_UT:
             return _perhaps_the_room(found)
         return found
-    placeless = any(identity == "field_gradient" for identity, _ in record.missing)
-    if record.mode == "vector" and placeless and len(found.after.chosen) >= MANY:
-        if _contribution(record, found.after) < ROOM_GRADIENT_UT:
+    if record.mode == "vector" and found.after.chosen and _placeless(record):
+        weak = found.after.noise != "white" and (found.steps[0].gain or 0.0) < SIZE_MARGIN
+        lifted = "interference_step" in found.after.ids
+        if weak or (lifted and _contribution(record, found.after) < ROOM_GRADIENT_UT):
             return _perhaps_the_room(found)
         return found
     if found.after.noise == "white" or found.ambiguous or found.after.chosen:
@@ -230,6 +230,10 @@ def _doubted(record: SensorRecord, found: LoopResult) -> LoopResult:
         return found
     rivals = (Trial(found.after.noise, plain.bic - found.after.bic), best)
     return LoopResult(found.before, found.after, found.after, found.trials, rivals, found.steps)
+
+
+def _placeless(record: SensorRecord) -> bool:
+    return any(identity == "field_gradient" for identity, _ in record.missing)
 
 
 def _perhaps_the_room(found: LoopResult) -> LoopResult:

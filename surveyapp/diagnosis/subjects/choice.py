@@ -21,13 +21,9 @@ from surveyapp.core.orientation.set_ups import one_a_set_up
 from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.core.statistics.repeated import SHARED
 from surveyapp.core.swing.run_model import ModelledNorth
+from surveyapp.core.swing.run_points import turning_points, without_tape_drift, without_twist
 from surveyapp.core.swing.sights import TripodTwist, moments
-from surveyapp.core.swing.tracking import (
-    tape_zero_of,
-    turning_points,
-    without_tape_drift,
-    without_twist,
-)
+from surveyapp.core.swing.tracking import tape_zero_of
 from surveyapp.core.uncertain import Uncertain
 from surveyapp.diagnosis.candidates import Candidate, all_candidates
 from surveyapp.diagnosis.case import Case

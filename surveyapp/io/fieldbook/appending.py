@@ -44,7 +44,8 @@ def append_row(
     angle_unit : AngleUnit
         The project's unit of angles.
     also : callable or None
-        A further judgement: what it finds with the row and not without it refuses the row.
+        A further judgement: a problem that it finds with the row and not without it, by what is
+        wrong and where, refuses the row.
 
     Returns
     -------
@@ -78,8 +79,8 @@ def append_row(
     after = judge(text + line, angle_unit=angle_unit, where=where)
     fresh = [problem for problem in after.problems if problem not in before.problems]
     if also is not None and not after.problems:
-        known = also(before.book, where)
-        fresh += [problem for problem in also(after.book, where) if problem not in known]
+        known = {(problem.what, problem.where) for problem in also(before.book, where)}
+        fresh += [p for p in also(after.book, where) if (p.what, p.where) not in known]
     if fresh:
         raise SurveyError(fresh)
     append_line(path, line.encode("utf-8"))

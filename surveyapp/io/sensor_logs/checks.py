@@ -13,6 +13,7 @@ from typing import Final
 
 import numpy as np
 
+from surveyapp.core.sensors.clipping import PIECE, ends_of_range, pieces
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import NUMBER_COLUMNS, SENSOR_COLUMNS, TRIPLES, Array, Gap
 from surveyapp.errors import Problem
@@ -25,10 +26,6 @@ OFF_GRID: Final = 0.05
 FEW_MISSING: Final = 0.1
 """Steps within so much of whole multiples of the median one, few of them longer: an even record."""
 
-CLIPPED_ROWS: Final = 5
-CLIPPED_RATIO: Final = 3.0
-"""At the end of its range a sensor stays: that often, and that much more than at the next value."""
-
 LARGEST: Final = 1e20
 """No sensor and no clock gives more in any unit; squares above would leave the range of a float."""
 
@@ -40,8 +37,6 @@ LEAST_READING_DEG: Final = -180.0
 
 SWEPT_FIELD_UT: Final = 4.0 * MOST_FIELD_UT
 """No axis that is turned in the field of the earth, soft iron included, changes by so much."""
-
-_PIECE: Final = 1 << 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,11 +56,6 @@ PLAUSIBLE: Final[dict[str, Plausible]] = {
 """Sizes that a magnetic field on the ground and a specific force can have in a record."""
 
 
-def pieces(values: Array) -> list[Array]:
-    """A column piece by piece, so that nothing of its length is made beside it."""
-    return [values[i : i + _PIECE] for i in range(0, values.size, _PIECE)]
-
-
 def not_finite(
     name: str, values: Array, *, where: str, first_row: int, blanks: bool = False
 ) -> list[Problem]:
@@ -75,7 +65,7 @@ def not_finite(
         bad = np.flatnonzero(~((np.abs(piece) <= LARGEST) | (blanks & np.isnan(piece))))
         count += bad.size
         if first is None and bad.size:
-            first = number * _PIECE + int(bad[0])
+            first = number * PIECE + int(bad[0])
     if first is None:
         return []
     return [
@@ -110,8 +100,8 @@ def bad_times(time: Array, *, where: str, first_row: int) -> list[Problem]:
     """Times that run backwards or stand twice."""
     problems = []
     back, twice = [0, 0], [0, 0]
-    for start in range(0, time.size - 1, _PIECE):
-        step = np.diff(time[start : start + _PIECE + 1])
+    for start in range(0, time.size - 1, PIECE):
+        step = np.diff(time[start : start + PIECE + 1])
         for found, bad in ((back, step < 0.0), (twice, step == 0.0)):
             if found[0] == 0 and bad.any():
                 found[1] = start + int(np.argmax(bad)) + 1
@@ -169,31 +159,12 @@ def _interval(step: Array, median: float) -> float:
     return float(np.mean(near))
 
 
-def clipped_rows(values: Array) -> int:
-    """Rows at an end of the range where the column stays at it, else 0."""
-    total = 0
-    for sign in (1.0, -1.0):
-        end = max(float(np.max(sign * piece)) for piece in pieces(values))
-        at_end = sum(int(np.count_nonzero(sign * piece == end)) for piece in pieces(values))
-        if at_end < CLIPPED_ROWS or at_end == values.size:
-            continue
-        below = -np.inf
-        for piece in pieces(values):
-            less = sign * piece
-            less = less[less < end]
-            below = max(below, float(less.max()) if less.size else -np.inf)
-        next_to = sum(int(np.count_nonzero(sign * piece == below)) for piece in pieces(values))
-        if at_end > CLIPPED_RATIO * next_to:
-            total += at_end
-    return total
-
-
 def clipped_columns(columns: Mapping[str, Array]) -> dict[str, int]:
     """Sensor columns that stay at an end of their range, with the number of rows."""
     found = {}
     for name, values in columns.items():
         if name in SENSOR_COLUMNS and values.size and np.isfinite(values[0]):
-            rows = clipped_rows(values)
+            rows = sum(ends_of_range(values).values())
             if rows:
                 found[name] = rows
     return found
@@ -231,6 +202,34 @@ def implausible(
             "{low:g} to {high:g} {unit}", low=bounds.low, high=bounds.high, unit=bounds.unit
         )
         problems.append(Problem(what, where, found, expected, hint))
+    return problems
+
+
+TEMPERATURES_C: Final = (-100.0, 230.0)
+"""What a sensor and its electronics survive; a room in kelvin lies above."""
+
+
+def strange_temperatures(columns: Mapping[str, Array], *, where: str) -> list[Problem]:
+    """Temperatures that are in another unit: kelvin, counts, thousandths of a degree."""
+    problems = []
+    low, high = TEMPERATURES_C
+    for name in ("temperature_c", "reference_temperature_c"):
+        values = columns.get(name)
+        if values is None or not np.any(np.isfinite(values)):
+            continue
+        middle = float(np.nanmedian(values[:: _stride(values)]))
+        if low <= middle <= high:
+            continue
+        problems.append(
+            Problem(
+                said("{name} cannot be in degrees Celsius", name=name),
+                where,
+                said("a median of {middle:.6g}", middle=middle),
+                said("{low:g} to {high:g}", low=low, high=high),
+                "kelvin or counts with an offset are converted before; "
+                "thousandths take `scale` COLUMN=VALUE",
+            )
+        )
     return problems
 
 

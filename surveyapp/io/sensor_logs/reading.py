@@ -217,6 +217,7 @@ class LogFile:
             problems += checks.bad_times(columns["time_s"], where=where, first_row=first)
         stated = [name for name in columns if self.places[name].stated]
         problems += checks.mixed_units(columns, where=where)
+        problems += checks.strange_temperatures(columns, where=where)
         problems += checks.off_circle(columns, where=where)
         if not need.biased or not stated:
             problems += checks.implausible(columns, stated=stated, where=where)
@@ -254,6 +255,7 @@ class LogFile:
             scaled={n: self.places[n].factor for n in columns if self._counted(n)},
             sha256=sha256,
             path=self.request.where,
+            first_line=rows.first_row,
             warnings=tuple(warnings),
         )
 

@@ -176,6 +176,8 @@ class SensorLogScreen(Screen[None]):
         self.query_one(TitleBar).state = line.format(task=message.found.task)
         self.show_result()
         self.show_picture()
+        if not message.found.pictures:
+            self.action_page("result")
 
     def show_result(self) -> None:
         """The blocks as text, as wide as the screen."""

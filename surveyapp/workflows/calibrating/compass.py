@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Final
 
 from surveyapp.core.sensors.compass_attitude import with_attitude
-from surveyapp.core.sensors.compass_axes import check_axes
+from surveyapp.core.sensors.compass_axes import check_axes, without_force
 from surveyapp.core.sensors.compass_calibration import calibrate_ellipsoid
 from surveyapp.core.sensors.declination import model_declination
 from surveyapp.core.sensors.swing import calibrate_swing, refuse_swapped
@@ -37,7 +37,8 @@ def calibrate(request: CalibrationRequest) -> Calibration:
             columns=(*MAG, *acc, *heading),
             varying=(*MAG, *heading),
             optional=("temperature_c", *QUATERNION),
-        )
+        ),
+        fitted=(*MAG, *acc) if swing else MAG,
     )
     force = log.vector("acc")
     if swing and force is not None:
@@ -46,7 +47,9 @@ def calibrate(request: CalibrationRequest) -> Calibration:
     if swing:
         result = calibrate_swing(log, limit=math.radians(limit))
     else:
-        result = calibrate_ellipsoid(log, limit=math.radians(limit))
+        result = calibrate_ellipsoid(
+            without_force(log) if doubts else log, limit=math.radians(limit)
+        )
         result = with_attitude(result, log, limit=math.radians(limit))
     result = replace(result, warnings=(*result.warnings, *doubts))
     declination = request.option("declination")

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import date
 from pathlib import Path
 from typing import Final
 
 from surveyapp.core.sensors.adopted_effects import without_events
+from surveyapp.core.sensors.clipping import without_clipped
 from surveyapp.domain.advance import PartDone
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import SensorLog
@@ -56,13 +57,16 @@ class CalibrationRequest:
         """Read the columns that are needed."""
         return self.file.read(need, progress=self.progress)
 
-    def read_adopted(self, need: Need) -> SensorLog:
-        """The same without adopted events of the log; what was done is in its warnings."""
+    def read_adopted(self, need: Need, *, fitted: Sequence[str] = ()) -> SensorLog:
+        """The same without adopted events of the log; what was done is in its warnings.
+
+        Rows in which one of the ``fitted`` columns stands at an end of its range are left out.
+        """
         log = self.read(need)
-        if self.entry is None or not self.entry.effects:
-            return log.thinned(MOST_ROWS)
-        log, told = without_events(log, self.entry.effects)
-        return replace(log, warnings=(*log.warnings, *told)).thinned(MOST_ROWS)
+        if self.entry is not None and self.entry.effects:
+            log, told = without_events(log, self.entry.effects)
+            log = replace(log, warnings=(*log.warnings, *told))
+        return without_clipped(log, fitted).thinned(MOST_ROWS)
 
     def option(self, name: str) -> object:
         """An option of the command line, else of the project's entry; None if neither has it."""

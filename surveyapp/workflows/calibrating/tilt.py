@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from surveyapp.core.sensors.clipping import without_clipped
 from surveyapp.core.sensors.dividing_head import calibrate_dividing_head
 from surveyapp.core.sensors.tilt_axes import calibrate_tilt_axes
 from surveyapp.domain.calibration import Calibration
@@ -37,9 +38,10 @@ REFERENCE_TEMPERATURE_C: Final = 20.0
 def calibrate(request: CalibrationRequest) -> Calibration:
     """Calibrate a tilt sensor from its log."""
     if request.file.has("test"):
-        return calibrate_dividing_head(request.read(DIVIDING_HEAD))
+        return calibrate_dividing_head(without_clipped(request.read(DIVIDING_HEAD), ("output",)))
     reference = request.number("reference_temperature_c", REFERENCE_TEMPERATURE_C)
     log = request.read_adopted(
-        Need(columns=TWO_AXES, varying=TWO_AXES, optional=("temperature_c",), timed="optional")
+        Need(columns=TWO_AXES, varying=TWO_AXES, optional=("temperature_c",), timed="optional"),
+        fitted=TWO_AXES[:2],
     )
     return calibrate_tilt_axes(log, reference_temperature_c=reference or 0.0)

@@ -1,0 +1,95 @@
+"""Readings at the end of a sensor's range: found, and left out where a model is fitted.
+
+At the end of its range a sensor says "at least so much". Fitted as if it were a reading, a tenth of
+such rows on one axis moves a hard iron by microteslas at a sigma of hundredths.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.sensor_log import Array, SensorLog
+from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import counted
+
+CLIPPED_ROWS: Final = 5
+CLIPPED_RATIO: Final = 3.0
+"""At the end of its range a sensor stays: that often, and that much more than at the next value."""
+
+PIECE: Final = 1 << 20
+"""Rows of a piece."""
+
+
+def pieces(values: Array) -> Iterator[Array]:
+    """A column piece by piece, so that nothing of its length is made beside it."""
+    return (values[i : i + PIECE] for i in range(0, values.size, PIECE))
+
+
+def ends_of_range(values: Array) -> dict[float, int]:
+    """Values at which a column stays, the largest or the smallest of it, and in how many rows."""
+    found = {}
+    for sign in (1.0, -1.0):
+        end = max(float(np.max(sign * piece)) for piece in pieces(values))
+        at_end = sum(int(np.count_nonzero(sign * piece == end)) for piece in pieces(values))
+        if at_end < CLIPPED_ROWS or at_end == values.size:
+            continue
+        below = -np.inf
+        for piece in pieces(values):
+            less = sign * piece
+            less = less[less < end]
+            below = max(below, float(less.max()) if less.size else -np.inf)
+        next_to = sum(int(np.count_nonzero(sign * piece == below)) for piece in pieces(values))
+        if at_end > CLIPPED_RATIO * next_to:
+            found[sign * end] = at_end
+    return found
+
+
+def unclipped_rows(log: SensorLog, names: Sequence[str]) -> np.ndarray | None:
+    """Mask of the rows in which none of these columns stands at an end; None where all do not.
+
+    Parameters
+    ----------
+    log : SensorLog
+        ``clipped`` names the columns that were found so while reading.
+    names : sequence of str
+        Columns that the model needs.
+    """
+    kept = None
+    for name in names:
+        if name not in log.clipped:
+            continue
+        kept = np.ones(log.size, dtype=bool) if kept is None else kept
+        for end in ends_of_range(log.columns[name]):
+            kept &= log.columns[name] != end
+    return kept
+
+
+def without_clipped(log: SensorLog, names: Sequence[str]) -> SensorLog:
+    """The log without the rows in which one of these columns stands at an end of its range.
+
+    Raises
+    ------
+    SurveyError
+        If no row is left.
+    """
+    kept = unclipped_rows(log, names)
+    if kept is None:
+        return log
+    count = log.size - int(np.count_nonzero(kept))
+    if count == log.size:
+        found = ", ".join(name for name in names if name in log.clipped)
+        raise SurveyError(
+            Problem("every row stands at an end of the range", log.path, found, "readings within")
+        )
+    text = counted(
+        "{count} row at the end of a range is left out",
+        "{count} rows at the end of a range are left out",
+        count=count,
+    )
+    warnings = (*log.warnings, ResultWarning("clipped_left_out", text))
+    return replace(log.chosen(kept), warnings=warnings)
