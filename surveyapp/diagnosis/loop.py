@@ -133,7 +133,8 @@ def search(problem: Case, *, draws: int, confirm: Case | None) -> Search:
         if not level.fits:
             break
         levels.append(level)
-        current = all_candidates(problem, (level.preferred or base).theta)
+        theta = (level.preferred or base).theta
+        current = pool if theta is None else all_candidates(problem, theta)
     last = levels[-1]
     if last.depth == 0:
         return Search(tuple(levels), tuple(gates), (), (), (), implausible, base, base, pool)
