@@ -13,7 +13,8 @@ from enum import StrEnum
 import numpy as np
 
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.languages import joined, said, term
+from surveyapp.languages import joined, said
+from surveyapp.languages.names import by_id
 
 
 class ObservationKind(StrEnum):
@@ -209,7 +210,7 @@ class Observation:
     def where(self) -> str:
         """Where the observation stands, for messages."""
         sight = "-".join(name for name in (self.back, self.at, self.to) if name)
-        what = joined(" ", (term(self.kind.value.replace("_", " ")), sight))
+        what = joined(" ", (by_id(self.kind.value), sight))
         return said("line {line}, {what}", line=self.line, what=what) if self.line else what
 
 
