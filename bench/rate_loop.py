@@ -4,7 +4,7 @@ The table of docs/explanation/sensors.md; ``SURVEYAPP_BENCH_RUNS`` records a cel
 ``SURVEYAPP_BENCH_STORE`` a folder in which finished parts are kept.
 
 Noise .05 deg/s a sample at 50 Hz and .006 deg/s from stop to stop; a walk of a given size a
-stop on every gyro, which is in no catalogue.
+stop on every gyro, and a step of all gyros at once, which are in no catalogue.
 """
 
 from __future__ import annotations
@@ -42,6 +42,7 @@ CELLS: Mapping[str, tuple[str, Mapping[str, float]]] = {
     "random walk .003 deg/s": ("", {"random_walk": 0.003 * DEG}),
     "random walk .006": ("", {"random_walk": 0.006 * DEG}),
     "random walk .01": ("", {"random_walk": 0.01 * DEG}),
+    "step .012 deg/s": ("", {"step": 0.012 * DEG}),
 }
 
 
@@ -49,12 +50,17 @@ def diagnosed(seed: int, stops: int, sizes: Mapping[str, float]) -> Diagnosis:
     """Diagnosis of one simulated record."""
     rng = np.random.default_rng([seed, stops])
     seconds = stops * 6.0 - 2.0
-    given = {k: v for k, v in sizes.items() if k != "per_minute"}
+    given = {k: v for k, v in sizes.items() if k not in ("per_minute", "step")}
     if "per_minute" in sizes:
         given["bias_ramp"] = sizes["per_minute"] * seconds / 60.0
     run = hand_run({**given, "stops": float(stops)}, rng)
     run = replace(run, interval_s=0.02, warmth=0.0)
-    rests, turns, _ = stops_of(as_read(hand_held_log(run, rng)), latitude=run.latitude)
+    log = hand_held_log(run, rng)
+    if "step" in sizes:
+        after = log.columns["time_s"] > 6.0 * rng.integers(3, stops - 2)
+        for a in "xyz":
+            log.columns[f"gyr_{a}_rad_s"] += sizes["step"] * after
+    rests, turns, _ = stops_of(as_read(log), latitude=run.latitude)
     return diagnose(rate_case(rests, turns, identity="unit"), advise=False)
 
 

@@ -21,7 +21,7 @@ from surveyapp.core.sensors.rate.still import (
     rest_noise,
     statistic,
 )
-from surveyapp.core.sensors.rate.zero_velocity import inertial_path
+from surveyapp.core.sensors.rate.zero_velocity import in_memory, inertial_path
 from surveyapp.core.simulate.rate.vehicle import Leg, VehicleRun, vehicle_log
 from surveyapp_models.arrays import Floats
 from surveyapp_models.rate.triad import Triad
@@ -66,7 +66,7 @@ def exceeding(seed: int, grade: float, factor: float) -> tuple[float, float]:
     values = statistic(force, rate, rest_noise(force, rate, rate_hz=HZ), window=WINDOW)
     gate = motion_gate(values, window=WINDOW, false_alarm=0.01, factor=factor)
     still = bridged(values <= gate.threshold, rate_hz=HZ)
-    path = inertial_path(force, rate, still, interval_s=1.0 / HZ)
+    path = inertial_path(in_memory(force, rate), still, interval_s=1.0 / HZ)
     return path.exceeding or 0.0, float(np.mean(still & ~truth))
 
 

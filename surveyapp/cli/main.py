@@ -147,8 +147,17 @@ class Typed(Said):
         return self.put_in(translate(self.origin, None, 0))
 
 
+NEGATIVE = re.compile(r"-\.?\d")
+"""How a negative number begins, and a list of numbers (``-2.6,0.4``): no option does."""
+
+
 class Parser(argparse.ArgumentParser):
     """An argument parser whose errors are survey errors."""
+
+    def __init__(self, **given: Any) -> None:
+        """Let ``-2.6,0.4`` be a value: the parser knows single negative numbers only."""
+        super().__init__(**given)
+        self._negative_number_matcher = NEGATIVE
 
     def error(self, message: str) -> NoReturn:
         """Raise instead of leaving: the error may have to be printed as JSON."""
@@ -165,7 +174,7 @@ class Parser(argparse.ArgumentParser):
         ------
         SurveyError
         """
-        options, rest = self.parse_known_args(arguments)
+        options, rest = self.parse_known_intermixed_args(arguments)
         if not rest:
             return options
         known = [name for action in self._actions for name in action.option_strings if name[2:]]

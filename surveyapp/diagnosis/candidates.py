@@ -35,6 +35,10 @@ GROSS_WEIGHT = 3.0
 candidates share stay where they are (weighted p values: Genovese, Roeder & Wasserman 2006)."""
 SHAPE_WEIGHT = 0.5
 """A generic shape ends in no name."""
+SHAPE_ODDS = 4.0
+"""Of channels side by side: BIC that a generic shape is charged beforehand against a named effect,
+prior odds of e^2. A step of all channels at once is the nearest imitation of an even drift, and
+without this half of the slow drifts end beside one."""
 PULSES_FROM, SMOOTH_FROM = 12, 16
 """Observations from which pulses and bent decays are looked for."""
 SINGLE_SHARE = 0.75
@@ -70,6 +74,8 @@ class Candidate:
         Number of gross errors in one candidate, else 1.
     missing : str
         Why it is not applicable, or empty.
+    odds : float
+        BIC that it is charged beforehand: twice the logarithm of prior odds against it.
     """
 
     id: str
@@ -81,6 +87,7 @@ class Candidate:
     midpoint: Floats | None = None
     count: int = 1
     missing: str = ""
+    odds: float = 0.0
 
     @property
     def is_law(self) -> bool:
@@ -291,7 +298,7 @@ def _shapes_of_each(problem: Case, x: Floats, root: Floats) -> list[Candidate]:
             for c in np.arange(SLOWEST_CYCLES, longest, 0.25)
         ]
         shapes.append(_shape("periodic", waves, 2 * count + 1, root))
-    return shapes
+    return [replace(shape, odds=SHAPE_ODDS) for shape in shapes]
 
 
 def _pulse_shape(

@@ -22,6 +22,7 @@ from surveyapp.diagnosis.fits import (
     bic_of,
     fit_members,
     is_spoilt,
+    odds_against,
     scan_exact,
     scan_law,
     with_noise,
@@ -239,7 +240,8 @@ def _best_addition(
     total = anchor.parameters + candidate.charge[item.index]
     bics = bic_of(problem, rss, total)
     g = int(np.argmin(bics))
-    return float(bics[g]), (*anchor.members, Member(candidate, int(item.index[g])))
+    members = (*anchor.members, Member(candidate, int(item.index[g])))
+    return float(bics[g]) + odds_against(members), members
 
 
 def slip_bends(candidate: Candidate, fit: Fit) -> bool:

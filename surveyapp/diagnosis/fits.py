@@ -49,6 +49,11 @@ class Member:
         return float(self.candidate.charge[self.g])
 
 
+def odds_against(members: Iterable[Member]) -> float:
+    """BIC that members are charged beforehand, one that occurs several times once."""
+    return sum({m.candidate.id: m.candidate.odds for m in members}.values())
+
+
 @dataclass(frozen=True, slots=True)
 class Fit:
     """A fitted model.
@@ -170,7 +175,7 @@ def fit_members(problem: Case, members: Iterable[Member], start: Floats | None =
         q, r = np.linalg.qr(X)
         linear = triangular(r, q.T @ y) if X.shape[0] >= X.shape[1] else np.zeros(X.shape[1])
         residual = y - X @ linear
-        bic = information(problem, residual, parameters)
+        bic = information(problem, residual, parameters) + odds_against(every)
         return Fit(every, linear, None, X, residual, parameters, bic, bic)
     effect = None if law is None else law.candidate.effect
     point = {} if law is None else law.point
@@ -183,7 +188,7 @@ def fit_members(problem: Case, members: Iterable[Member], start: Floats | None =
     D = tangent(side=side, half_swing=half_swing, theta=theta, effect=effect, grid=point)
     amplitude = _amplitude(problem, theta, law)
     residual = y - X @ linear - problem.side * amplitude
-    bic = information(problem, residual, parameters)
+    bic = information(problem, residual, parameters) + odds_against(every)
     fit = Fit(every, linear, theta, np.hstack([X, D]), residual, parameters, bic, bic)
     return _beside_courses(problem, fit)
 

@@ -25,6 +25,7 @@ from surveyapp.core.sensors.rate.position_log import (
     sense_of,
 )
 from surveyapp.core.sensors.rate.table_log import label, motion_of
+from surveyapp.core.sensors.rate.turn_axes import axes_problems
 from surveyapp.diagnosis.subjects.rate import RateStop, RateTurn
 from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2, SensorLog
 from surveyapp.errors import Problem, SurveyError
@@ -99,6 +100,9 @@ def _turned(
 ) -> list[RateTurn]:
     """The turns between the stops, where there are enough for the gyros' own elements."""
     turns = turns_between(log, stops, model, latitude)
+    problems = axes_problems(turns, log.path)
+    if problems:
+        raise SurveyError(problems)
     if len(turns) < LEAST_TURNS:
         return []
     inverse = fit_rates(turns).matrix

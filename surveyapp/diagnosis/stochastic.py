@@ -15,6 +15,7 @@ from typing import Literal
 import numpy as np
 
 from surveyapp.diagnosis.case import Case
+from surveyapp.diagnosis.wander_shapes import decay_of, walk_of
 from surveyapp_models.arrays import Floats
 
 NoiseKind = Literal["random_walk", "amplitude_walk", "ar1"]
@@ -79,7 +80,7 @@ def _build(problem: Case) -> tuple[NoiseModel, ...]:
     rank = _scaled_position(problem.position)
     series = np.zeros(n) if problem.series is None else problem.series
     own = (series[:, None] == series[None, :]).astype(np.float64)
-    walk = own * (np.minimum.outer(rank, rank) + 1.0)
+    walk = own * walk_of(rank)
     lag = np.abs(np.subtract.outer(rank, rank))
     order = _order_within(rank, series)
     step = np.abs(np.subtract.outer(order, order))
@@ -99,7 +100,7 @@ def _build(problem: Case) -> tuple[NoiseModel, ...]:
     for correlation in CORRELATIONS[thin]:
         # a negative correlation alternates from one observation to the next: it knows no time
         # between them, and only so is it a covariance where the positions are uneven
-        decay: Floats = np.asarray(abs(correlation) ** (lag if correlation > 0.0 else step))
+        decay = decay_of(lag if correlation > 0.0 else step, abs(correlation))
         if correlation < 0.0:
             decay = decay * np.where(step % 2.0 == 0.0, 1.0, -1.0)
         decay = decay * own
@@ -256,6 +257,42 @@ def best_noises(
         )
         result.append(NoiseFit(kind, gain, points))
     return tuple(result)
+
+
+def white_gains(problem: Case, J: Floats, *, draws: int) -> dict[NoiseKind, Floats]:
+    """The gain of each kind of noise in records of white noise about a design, shape (draws,).
+
+    What ``best_noises`` finds where there is nothing to find; the draws come from the design.
+
+    Parameters
+    ----------
+    problem : Case
+    J : ndarray, shape (n, p)
+    draws : int
+    """
+    models = noise_models(problem)
+    basis, _, _ = _independent(J)
+    seed = hashlib.sha256(np.ascontiguousarray(basis).tobytes()).digest()[:8]
+    rng = np.random.default_rng(int.from_bytes(seed, "big"))
+    n, dof = basis.shape[0], basis.shape[0] - basis.shape[1]
+    noise = rng.standard_normal((n, draws))
+    noise -= basis @ (basis.T @ noise)
+    plain = dof * np.log(np.einsum("nd,nd->d", noise, noise) / dof)
+    minus = np.empty((len(models), draws))
+    for g, model in enumerate(models):
+        q, r = np.linalg.qr(model.whitener @ basis)
+        seen = model.whitener @ noise
+        along = q.T @ seen
+        left = np.einsum("nd,nd->d", seen, seen) - np.einsum("pd,pd->d", along, along)
+        logs = model.log_determinant + 2.0 * float(np.log(np.abs(np.diag(r))).sum())
+        minus[g] = dof * np.log(left / dof) + logs
+    kinds = np.array([m.kind for m in models])
+    found: dict[NoiseKind, Floats] = {}
+    for kind in dict.fromkeys(m.kind for m in models):
+        own = minus[kinds == kind]
+        least = own.min(axis=0)
+        found[kind] = plain - least + 2.0 * np.log(np.exp(-0.5 * (own - least)).mean(axis=0))
+    return found
 
 
 def _independent(J: Floats) -> tuple[Floats, Floats, Floats]:

@@ -2,27 +2,75 @@
 
 A walk follows a trend nearly as well as the trend itself, and beside few rows BIC can hardly tell
 them. What the effect leaves can: about the right effect the channels are white, about a wrong one
-the walk still walks. So a rival that is no better than the effect is refuted where the same noise
-*beside* the effect is not worth its parameter; and an effect does not stand where it is.
+the walk still walks. So two numbers decide: by how much BIC the noise instead of the effect is
+worse, and how often white noise about the effect looks no whiter than the rest. The worse the noise
+instead, the less white the rest need be.
 """
 
 from __future__ import annotations
 
+import numpy as np
+
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.fits import Fit, with_noise
+from surveyapp.diagnosis.stochastic import white_gains
 
-WHITE = 2.0
-"""BIC by which noise beside an effect must be worse for the rest to count as white. By simulation
-of ramps and walks of three gyros: with 2, beside a rival no better, .41 of the ramps of .008
-deg/s per minute pass at 18 stops and .09 of the walks; with 1, .58 and .18."""
+DRAWS = 1000
+"""Records of white noise."""
+STANDS = ((0.0, 0.45), (12.0, 0.15), (20.0, 0.02), (40.0, 0.0))
+"""An effect stands where the noise instead is worse by that much BIC and its rest is at least as
+white as this share of white records: what the share keeps of the right names. By simulation of
+ramps and walks of three gyros at 12, 18 and 30 stops (docs/explanation/sensors.md): the most right
+names of slow ramps with at most .10 of the walks named at 18 and 30 stops and .15 at 12."""
+MANY = ((18.0, 1.0), (30.0, 0.33))
+"""Stops, and the part of these shares that is asked for: the longer a walk walks, the less white is
+what a wrong effect leaves, and the less need the right one lose."""
+STATIONARY = ((0.0, 0.05), (20.0, 0.02), (40.0, 0.0))
+"""The same of noise that comes back (AR(1)): it follows a drift badly, and where it does it is a
+walk; a level of its own costs right names and keeps off no wrong ones."""
 
 
-def rest_is_white(problem: Case, fit: Fit, kind: str, *, by: float = WHITE) -> bool:
-    """Whether noise of a kind beside the effects of a fit is worse than none, by that much BIC."""
-    beside = [
-        f.bic for f in with_noise(problem, fit) if f.noise is not None and f.noise.kind == kind
+def stands(problem: Case, fit: Fit, rival: Fit) -> bool:
+    """Whether an effect stands against noise of a kind instead of it.
+
+    Parameters
+    ----------
+    problem : Case
+    fit : Fit
+        With the effect.
+    rival : Fit
+        With noise instead.
+    """
+    if rival.noise is None:
+        return False
+    table = STANDS if rival.noise.kind == "random_walk" else STATIONARY
+    needed = [share for least, share in table if rival.bic >= fit.bic + least]
+    if not needed:
+        return False
+    share = needed[-1] * asked_of(problem)
+    return share == 0.0 or whiteness(problem, fit, rival.noise.kind) >= share
+
+
+def asked_of(problem: Case) -> float:
+    """Part of the shares that is asked for with the stops of a record."""
+    if problem.series is None:
+        return 1.0
+    stops = np.unique(problem.position[np.isfinite(problem.series)]).size
+    sizes, parts = np.log(np.array(MANY)).T
+    return float(np.exp(np.interp(np.log(max(stops, 1)), sizes, parts)))
+
+
+def whiteness(problem: Case, fit: Fit, kind: str) -> float:
+    """Share of white records about a fit in which noise of a kind gains as much as in this one."""
+    gained = [
+        fit.bic - f.bic
+        for f in with_noise(problem, fit)
+        if f.noise is not None and f.noise.kind == kind
     ]
-    return not beside or min(beside) >= fit.bic + by
+    if not gained:
+        return 1.0
+    null = next(v for k, v in white_gains(problem, fit.design, draws=DRAWS).items() if k == kind)
+    return float((1.0 + (null >= max(gained)).sum()) / (DRAWS + 1.0))
 
 
 def refuted(problem: Case, fit: Fit, rival: Fit) -> bool:
@@ -31,13 +79,7 @@ def refuted(problem: Case, fit: Fit, rival: Fit) -> bool:
         return False
     fewer = {m.candidate.id for m in rival.members} < {m.candidate.id for m in fit.members}
     named = all(m.candidate.kind == "named" for m in fit.members)
-    if not (fewer and named) or rival.bic < fit.bic:
-        return False
-    return rest_is_white(problem, fit, rival.noise.kind)
-
-
-FAR = 3.0
-"""Margins beyond which noise is no rival, whatever is left."""
+    return fewer and named and stands(problem, fit, rival)
 
 
 def imitates(problem: Case, after: Fit, rival: Fit, *, margin: float) -> bool:
@@ -53,10 +95,6 @@ def imitates(problem: Case, after: Fit, rival: Fit, *, margin: float) -> bool:
     margin : float
         BIC by which the noise must be worse.
     """
-    close = rival.bic < after.bic + margin
     if problem.series is None or rival.noise is None:
-        return close
-    if close:
-        return not refuted(problem, after, rival)
-    far = rival.bic >= after.bic + FAR * margin
-    return not far and not rest_is_white(problem, after, rival.noise.kind, by=0.0)
+        return rival.bic < after.bic + margin
+    return not stands(problem, after, rival)

@@ -85,3 +85,18 @@ def test_smallest_false_alarm_is_computed(tmp_path: Path) -> None:
 
 def test_hint_names_each_name_once() -> None:
     assert nearest_names("q", ["time_s", "gyr_x", "time_s"]) == "Known: gyr_x, time_s"
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        ("motion", "--from", "-5,3,20", "--to", "-3,-2.5"),
+        ("north", "--bias-prior-deg-h", "-3,2,-5", "--declination", "-2.6,0.4"),
+        ("calibrate", "rate", "--predict-at", "-10,-.5,20", "--latitude", "-3.5e1"),
+    ],
+)
+def test_a_list_may_begin_with_a_minus(typed: tuple[str, ...], tmp_path: Path) -> None:
+    """The only complaint is about the log that is not there."""
+    outcome = run(*typed, str(tmp_path / "none.csv"), "--json")
+    assert outcome.code == 2
+    assert [p["what"] for p in outcome.json["problems"]] == ["the log does not exist"]

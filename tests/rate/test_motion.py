@@ -141,6 +141,31 @@ def test_a_linear_drift_is_laid_back_and_a_constant_offset_after_a_power_cycle_t
     assert [t.kind for t in told] == ["constant"]
 
 
+@pytest.mark.parametrize(("which", "span"), [("current", (60.0, 120.0)), ("previous", (0.0, 60.0))])
+def test_power_switched_within_a_stop_shifts_what_lies_behind_or_before_it(
+    which: str, span: tuple[float, float]
+) -> None:
+    """Two legs of 60 m and a stop of 101 rows between, in the middle of which the power came back.
+
+    The unit turned by 1.5 degrees while it was off, so that the known end lies there.
+    """
+    distance = np.concatenate(
+        [np.arange(0.0, 60.0, 0.1), np.full(101, 60.0), np.arange(60.1, 120.05, 0.1)]
+    )
+    still = distance == 60.0
+    still[0] = True
+    cycle = (np.arange(distance.size) >= 650).astype(np.float64)
+    none = np.full(distance.size, np.nan)
+    drive = Driven(distance, np.zeros(distance.size), none, cycle, still)
+    turned = math.radians(1.5)
+    end = (60.0 * math.sin(turned), 60.0 + 60.0 * math.cos(turned))
+    mended, told, _ = snap(drive, power_cycle=which, end=end, start=(0.0, 0.0))
+    assert [(t.kind, t.from_m, t.to_m) for t in told] == [("constant", *map(pytest.approx, span))]
+    assert told[0].heading_deg == pytest.approx(1.5, abs=1e-3)
+    found = reckon(mended, start=(0.0, 0.0), heading_walk=0.0, heading_sigma=0.0)
+    np.testing.assert_allclose(found.place[-1], end, atol=2e-3)
+
+
 def test_the_covariance_of_a_straight_path_is_that_of_its_simulation() -> None:
     rng = np.random.default_rng(2)
     walk = math.radians(0.1)

@@ -61,6 +61,91 @@ def test_the_heading_is_carried_and_only_a_magnetic_one_takes_a_declination() ->
     assert kept.direction.deg == pytest.approx(125.6, abs=0.05)
 
 
+LATITUDE = math.radians(35.0)
+POLE = 7.292115e-5 * np.array([0.0, math.cos(LATITUDE), math.sin(LATITUDE)])
+
+
+def rotation(vector: Floats) -> Floats:
+    """Rodrigues' formula, nothing of the program's quaternions."""
+    angle = float(np.linalg.norm(vector))
+    if angle == 0.0:
+        return np.eye(3)
+    x, y, z = vector / angle
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    turn = math.sin(angle) * cross + (1.0 - math.cos(angle)) * cross @ cross
+    return np.asarray(np.eye(3) + turn)
+
+
+def moved_log(moves: list[tuple[str, Floats, float]]) -> tuple[SimulatedLog, Floats]:
+    """A unit of heading 77, pitch 12, roll -9 degrees, moved about axes of the body or the world.
+
+    Of each move: b or n, the whole turn [rad], seconds. The log, and the attitude at its end.
+    """
+    h, p, r = (math.radians(v) for v in (77.0, 12.0, -9.0))
+    e = np.eye(3)
+    c = rotation(-h * e[2]) @ rotation(p * e[0]) @ rotation(r * e[1])
+    dt, bias = 0.1, np.array([2e-5, -1e-5, 3e-5])
+    words = ["warm-up"] * 200 + ["filter"] * 200 + ["level"] * 200
+    rates, forces = [c.T @ POLE] * 600, [c.T @ (9.80665 * e[2])] * 600
+    for frame, turn, seconds in moves:
+        for _ in range(round(seconds / dt)):
+            own = turn / seconds if frame == "b" else c.T @ turn / seconds
+            rates.append(own + c.T @ POLE)
+            forces.append(c.T @ (9.80665 * e[2]))
+            words.append("run")
+            c = c @ rotation(own * dt)
+    columns: dict[str, Floats] = {"time_s": np.asarray(np.arange(len(words)) * dt)}
+    for i, a in enumerate("xyz"):
+        columns[f"gyr_{a}_rad_s"] = np.array(rates)[:, i] + bias[i]
+        columns[f"acc_{a}_m_s2"] = np.array(forces)[:, i]
+    return SimulatedLog(columns, {"phase": words}), np.asarray(c)
+
+
+X, Y, Z = np.eye(3)
+
+
+@pytest.mark.parametrize(
+    "moves",
+    [
+        # the levelling turns of source 002 are in the record, then the unit is turned
+        [
+            ("b", math.radians(9.0) * Y, 10.0),
+            ("b", math.radians(-12.0) * X, 10.0),
+            ("n", math.radians(-120.0) * Z, 30.0),
+        ],
+        [("b", math.radians(-120.0) * Z, 30.0)],
+        # turned, and then at rest for ten minutes in which the earth turns by 2.5 degrees
+        [("n", math.radians(-90.0) * Z, 30.0), ("b", 0.0 * Z, 600.0)],
+        [("b", math.radians(40.0) * X, 30.0), ("b", 0.0 * Z, 300.0)],
+    ],
+)
+def test_the_attitude_after_the_run_is_that_of_the_body(
+    moves: list[tuple[str, Floats, float]],
+) -> None:
+    """Heading and quaternion of the body itself, whatever was turned in the record."""
+    log, truth = moved_log(moves)
+    options = RotationOptions(heading=math.radians(77.0), reference="ASTRONOMIC", latitude=LATITUDE)
+    found = find_heading(as_read(log), options)
+    heading = math.degrees(math.atan2(truth[0, 1], truth[1, 1])) % 360.0
+    assert found.direction.deg == pytest.approx(heading, abs=1e-3)
+    attitude = quaternions.to_matrix(np.array(found.extra["attitude_quaternion"]))
+    np.testing.assert_allclose(attitude, truth, atol=2e-5)
+    assert found.extra["levelling"]["case"] == "A4"
+
+
+def test_without_a_latitude_the_sigma_holds_what_the_earth_did() -> None:
+    """A unit that is pitched for five minutes sees another part of the earth's rate."""
+    moves = [("b", math.radians(40.0) * X, 30.0), ("b", 0.0 * Z, 600.0)]
+    log, truth = moved_log(moves)
+    heading = math.degrees(math.atan2(truth[0, 1], truth[1, 1])) % 360.0
+    options = RotationOptions(heading=math.radians(77.0), reference="ASTRONOMIC")
+    found = find_heading(as_read(log), options)
+    off = abs(float(found.direction.deg or 0.0) - heading)
+    sigma = float(found.direction.sigma_arcsec or 0.0) / 3600.0
+    assert 0.05 < off < 3.0 * sigma < 10.0
+    assert any(w.code == "rest_rate" for w in found.warnings)
+
+
 @pytest.mark.parametrize(
     ("pitch", "roll", "case"),
     [(0.0, 0.0, "A1"), (0.0, 0.1, "A2"), (0.1, 0.0, "A3"), (0.1, 0.1, "A4"), (2e-3, 0.1, "A2")],

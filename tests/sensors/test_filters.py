@@ -129,3 +129,13 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     told = capsys.readouterr().err
     assert told.count("no variance") == 2
     assert "--seed: the seed is negative" in told
+
+
+@pytest.mark.parametrize("count", [0, 1, 12, 19, 20, 25])
+def test_innovations_beyond_are_sustained_from_twenty_in_a_row_on(count: int) -> None:
+    """Readings that jump to and fro by 100 sigma are beyond, each of them."""
+    series = np.zeros(200)
+    series[100 : 100 + count] = 100.0 * (-1.0) ** np.arange(count)
+    found = kalman(series, LocalLevel(1e-6, 1.0))
+    assert found.lost == count
+    assert found.lost_at == (100 if count >= 20 else None)

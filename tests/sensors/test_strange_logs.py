@@ -14,6 +14,7 @@ import pytest
 from surveyapp import api
 from surveyapp.core.sensors.clipping import ends_of_range
 from surveyapp.core.sensors.compensation import force_sigma
+from surveyapp.diagnosis.sensors.records import possible_iron
 from surveyapp.errors import SurveyError
 from surveyapp_models.arrays import Floats
 
@@ -235,3 +236,15 @@ def test_headings_beyond_the_tilts_of_a_restricted_card_are_empty(tmp_path: Path
     assert int(empty.sum()) == heading.size
     assert not empty[:100].any()
     assert {"beyond_tilt", "restricted"} <= set(codes(made))
+
+
+def test_a_swing_shows_no_iron_that_makes_a_constant_of_any_reading(tmp_path: Path) -> None:
+    """Near level S = diag(1/2, 1/2, -1) with a hard iron along z does, at a sigma of 2 uT."""
+    assert not possible_iron(np.array([0.4886, 0.4877, 0.0001, 0.0044, -0.0072]))
+    assert possible_iron(np.array([0.06, -0.03, 0.02, 0.01, -0.02]))
+    _, attitude = swung()
+    path = written(tmp_path / "s.csv", sensed(attitude, 7, iron=SMALL))
+    document = api.diagnose_log(path).to_dict()
+    assert document["verdict"] == "not_separable"
+    assert {"soft_iron", "hard_iron"} <= set(document["ambiguous"][0]["any_of"])
+    assert document["adopted"] == []

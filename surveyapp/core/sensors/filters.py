@@ -265,7 +265,8 @@ def particles(
 def _checked(estimate: Floats, variance: Floats, beyond: Mask) -> Filtered:
     """Find sustained innovations that the filter cannot explain."""
     places = np.flatnonzero(beyond)
-    runs = places[LOST_FOR - 1 :] - places[: places.size - LOST_FOR + 1] == LOST_FOR - 1
+    last = places[LOST_FOR - 1 :]
+    runs = last - places[: last.size] == LOST_FOR - 1
     first = int(places[np.argmax(runs)]) if runs.any() else None
     return Filtered(estimate, variance, first, int(places.size))
 

@@ -23,30 +23,14 @@ from surveyapp.diagnosis.sensors.document import (
     remedies_of,
     words_of,
 )
-from surveyapp.diagnosis.sensors.loop import (
-    MARGIN,
-    Chosen,
-    LoopFit,
-    LoopResult,
-    Trial,
-    fit_model,
-    run_loop,
-)
+from surveyapp.diagnosis.sensors.doubts import doubted
+from surveyapp.diagnosis.sensors.loop import Chosen, LoopFit, LoopResult, fit_model, run_loop
 from surveyapp.diagnosis.sensors.records import SensorRecord
 from surveyapp.diagnosis.sensors.windows import block_means, switched
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.domain.project import ResultWarning
 from surveyapp.languages import joined
 from surveyapp_models.arrays import Floats
-
-ROOM_GRADIENT_UT: Final = 3.0
-"""What the field of a room changes over the reach of an arm: without the attitude an effect on
-the size of the field that is smaller cannot be told from it (BROAD 01: 1.3 uT); nor, without the
-place, a switch: a carrier that is lifted has another field until it is put down."""
-
-SIZE_MARGIN: Final = 40.0
-"""BIC that an effect on the size of the field, or without the place, must gain where what remains
-is not white: in simulated records walks of 6 uT reach 12 to 30, rooms without the place 23."""
 
 HELD_OUT_S: Final = 2.0
 TILT_ROWS: Final = 7
@@ -119,7 +103,7 @@ def diagnose_sensor(
         Of the log.
     """
     found = run_loop(record.data, record.candidates)
-    found = _doubted(record, found)
+    found = doubted(record, found)
     after = _refined(record, found.after)
     proof = None if second is None else confirmed(record, after, second)
     notes = list(warnings)
@@ -188,69 +172,6 @@ def _record_of(item: dict[str, Any], document: dict[str, Any], sha256: str) -> A
         confirm=document["after"]["confirm_rms"],
         unit=document["unit"],
     )
-
-
-def _doubted(record: SensorRecord, found: LoopResult) -> LoopResult:
-    """What a record cannot tell from the gradient of its room is not named.
-
-    Without the attitude every small effect on the size may be the field of the room, where what
-    remains is not white. With it and without the place that is so of a small switch (lifted and
-    put down), and of what gains little where what remains is not white; iron and a turn that stay
-    with the carrier are told from a room. What only white noise would name is not told from
-    correlated noise.
-    """
-    if record.mode == "size" and found.after.chosen and found.after.noise != "white":
-        weak = (found.steps[0].gain or 0.0) < SIZE_MARGIN
-        if weak or _contribution(record, found.after) < ROOM_GRADIENT_UT:
-            return _perhaps_the_room(found)
-        return found
-    if record.mode == "vector" and found.after.chosen and _placeless(record):
-        weak = found.after.noise != "white" and (found.steps[0].gain or 0.0) < SIZE_MARGIN
-        lifted = "interference_step" in found.after.ids
-        if weak or (lifted and _contribution(record, found.after) < ROOM_GRADIENT_UT):
-            return _perhaps_the_room(found)
-        return found
-    if found.after.noise == "white" or found.ambiguous or found.after.chosen:
-        return found
-    plain = fit_model(record.data, found.after.chosen, only_white=True)
-    if plain is None:
-        return found
-    best: Trial | None = None
-    for candidate in record.candidates:
-        if candidate.id in found.after.ids:
-            continue
-        for grid, design in candidate.designs(plain.residual):
-            chosen_ = (*found.after.chosen, Chosen(candidate, grid, design))
-            fit = fit_model(record.data, chosen_, only_white=True)
-            if fit is not None and plain.bic - fit.bic > MARGIN:
-                trial = Trial(candidate.id, plain.bic - fit.bic)
-                if best is None or (trial.gain or 0.0) > (best.gain or 0.0):
-                    best = trial
-    if best is None:
-        return found
-    rivals = (Trial(found.after.noise, plain.bic - found.after.bic), best)
-    return LoopResult(found.before, found.after, found.after, found.trials, rivals, found.steps)
-
-
-def _placeless(record: SensorRecord) -> bool:
-    return any(identity == "field_gradient" for identity, _ in record.missing)
-
-
-def _perhaps_the_room(found: LoopResult) -> LoopResult:
-    """Nothing named: the first effect and the gradient of the room are not told apart."""
-    first = found.steps[0]
-    rivals = (first, Trial("field_gradient", first.gain, 0.0, 1, first.noise))
-    return LoopResult(found.before, found.before, found.after, found.trials, rivals, found.steps)
-
-
-def _contribution(record: SensorRecord, fit: LoopFit) -> float:
-    """Rms of what all effects together add; of a size about its mean, which the base takes."""
-    start = record.base.shape[2]
-    design = np.concatenate([c.design for c in fit.chosen], axis=2)
-    part = design @ fit.x[start:]
-    if record.mode == "size":
-        part = part - part.mean(axis=0)
-    return float(np.sqrt(np.mean(np.sum(part**2, axis=1))))
 
 
 def _refined(record: SensorRecord, fit: LoopFit) -> LoopFit:

@@ -11,20 +11,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Final
 
 import numpy as np
 
 from surveyapp.diagnosis.sensors.noise import Whitener, bic
+from surveyapp.diagnosis.sensors.rule import MARGIN, MOST_EFFECTS, NEAR
 from surveyapp_models.arrays import Floats
-
-MARGIN: Final = 12.0
-"""BIC that an effect must gain over the best model without it: odds of e^6."""
-
-NEAR: Final = 6.0
-"""Effects whose BIC differs by less cannot be told apart."""
-
-MOST_EFFECTS: Final = 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +55,9 @@ class Candidate:
     rows : callable or None
         The design of a grid point row by row, shape (m, d, k); None = what holds for a block holds
         for each of its rows.
+    possible : callable or None
+        Whether coefficients, shape (k,), are any that a sensor can have; a model with others is
+        none.
     """
 
     id: str
@@ -72,6 +67,7 @@ class Candidate:
     searched: int = 0
     scale: float = 1.0
     rows: Callable[[Mapping[str, float]], Floats] | None = None
+    possible: Callable[[Floats], bool] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +145,10 @@ class LoopResult:
 def fit_model(
     data: Data, chosen: tuple[Chosen, ...], *, only_white: bool = False
 ) -> LoopFit | None:
-    """Fit under every noise and keep the best by BIC; None where the design has a defect."""
+    """Fit under every noise and keep the best by BIC.
+
+    None where the design has a defect, or an effect coefficients that it cannot have.
+    """
     observed = data.observed
     n, d = observed.shape
     design = np.concatenate([data.base, *(c.design for c in chosen)], axis=2)
@@ -175,7 +174,7 @@ def fit_model(
         if best is None or value < best[0]:
             inverse = np.linalg.solve(r, np.eye(p)) / scale[:, None]
             best = (value, white, x, inverse @ inverse.T, total)
-    if best is None:
+    if best is None or not _possible(chosen, best[2][data.base.shape[2] :]):
         return None
     value, white, x, cofactor, total = best
     variance = total / max(n * d - p, 1)
@@ -183,6 +182,17 @@ def fit_model(
     return LoopFit(
         chosen, white.id, value, x, cofactor * variance, np.asarray(residual), p + searched
     )
+
+
+def _possible(chosen: Sequence[Chosen], x: Floats) -> bool:
+    """Whether every effect has coefficients that it can have."""
+    start = 0
+    for item in chosen:
+        own = x[start : start + item.design.shape[2]]
+        start += own.size
+        if item.candidate.possible is not None and not item.candidate.possible(own):
+            return False
+    return True
 
 
 def run_loop(data: Data, candidates: Sequence[Candidate]) -> LoopResult:

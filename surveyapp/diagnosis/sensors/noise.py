@@ -13,6 +13,7 @@ from typing import Final
 
 import numpy as np
 
+from surveyapp.diagnosis.wander_shapes import decay_of, walk_of
 from surveyapp_models.arrays import Floats
 
 AR: Final = (0.3, 0.6, 0.8, 0.9, 0.95, 0.98, 0.995)
@@ -53,10 +54,8 @@ def whiteners(n: int) -> tuple[Whitener, ...]:
     """Every rival for a record of n rows."""
     found = [Whitener("white", 0, None, 0.0)]
     lag = np.abs(np.arange(n)[:, None] - np.arange(n)).astype(np.float64)
-    for phi in AR:
-        covariance = phi**lag
-        found.append(_of("ar1", covariance))
-    steps = np.minimum(np.arange(1, n + 1)[:, None], np.arange(1, n + 1)).astype(np.float64)
+    found += [_of("ar1", decay_of(lag, phi)) for phi in AR]
+    steps = walk_of(np.arange(float(n)))
     walks = [_of("random_walk", np.eye(n) + ratio * steps) for ratio in WALK]
     return (*found, *walks)
 

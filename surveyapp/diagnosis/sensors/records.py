@@ -14,6 +14,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from surveyapp.core.sensors.compass_calibration import MOST_UNEQUAL
 from surveyapp.diagnosis.candidates import missing_columns
 from surveyapp.diagnosis.sensors.loop import Candidate, Data
 from surveyapp.diagnosis.sensors.noise import whiteners
@@ -273,6 +274,9 @@ def _size_record(log: SensorLog, effects: tuple[Effect, ...]) -> SensorRecord:
     # the attitude is not known: no turn against it, and the gradient has a form of its own
     unseen = [e for e in effects if e.id not in ("misalignment", "field_gradient", "temperature")]
     candidates, missing = _catalogued(unseen, columns, block, used / scale)
+    candidates = [
+        replace(c, possible=possible_iron) if c.id == "soft_iron" else c for c in candidates
+    ]
     missing.append(("misalignment", said("no reference attitude (ref_q)")))
     candidates += _size_candidates(columns, missing, m, block)
     time = log.columns["time_s"][kept]
@@ -283,6 +287,18 @@ def _size_record(log: SensorLog, effects: tuple[Effect, ...]) -> SensorRecord:
         "compass", "uT", time, block, y, one, block_means(y, block), block_means(one, block),
         tuple(candidates), step, tuple(gross), "size", None, used, scale, tuple(missing),
     )  # fmt: skip
+
+
+def possible_iron(elements: Floats) -> bool:
+    """Whether a distortion S leaves m' (1 - 2 S) m a sphere that iron can bend.
+
+    Where the attitudes are few, S = diag(1/2, 1/2, -1) with a hard iron along z makes a constant of
+    any reading: the scales would differ by far more than iron can make them.
+    """
+    xx, yy, xy, xz, yz = elements
+    matrix = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, -xx - yy]])
+    squares = 1.0 - 2.0 * np.linalg.eigvalsh(matrix)
+    return bool(squares.min() > 0.0 and squares.max() <= MOST_UNEQUAL**2 * squares.min())
 
 
 def _size_candidates(

@@ -7,13 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from surveyapp.core.sensors.rate.indexing_log import (
-    GYROS,
-    NEEDED,
-    OPTIONAL,
-    IndexingOptions,
-    find_heading,
-)
+from surveyapp.core.sensors.rate.indexing_log import IndexingOptions, find_heading
+from surveyapp.core.sensors.rate.indexing_stops import GYROS, NEEDED, OPTIONAL
 from surveyapp.core.sensors.rate.indexing_values import Setting
 from surveyapp.core.sensors.rate.parameters import DEG_H
 from surveyapp.domain.north import NorthResult
@@ -44,7 +39,8 @@ def find(request: NorthRequest) -> NorthResult:
             turned, fixed = (other, request.file) if indexed == "second" else (turned, other)
         elif indexed == "second":
             problems.append(Problem("there is no second log", "second", "", "a FILE"))
-        log = turned.read(Need(columns=NEEDED, varying=GYROS, optional=OPTIONAL))
+        across = tuple(name for name in GYROS if name != f"gyr_{axis}_rad_s")
+        log = turned.read(Need(columns=NEEDED, varying=across, optional=OPTIONAL))
         other_log = None if fixed is None else _fixed(fixed)
     except SurveyError as error:
         raise SurveyError([*problems, *error.problems]) from None

@@ -39,6 +39,8 @@ _UNKNOWNS = 8
 
 CURVED = math.radians(1.0)
 """From this standard deviation on chi-square is no parabola in the heading any more [rad]."""
+CONTRADICTING = 3.0
+"""A misfit beyond this is no noise that was taken too small: something stated is wrong."""
 UNDETERMINED_SIGMA = math.radians(30.0)
 """A heading with a larger standard deviation is none [rad]."""
 
@@ -67,14 +69,31 @@ def solve_indexing(stops: Sequence[Stop], setting: Setting) -> Indexed:
     )
     scale = _scatter(turns, rate, rate_sigma, setting.axis)
     rate_sigma = _with_index_error(rate, rate_sigma * scale, setting)
+    force_sigma = force_sigma * _scatter(turns, force, force_sigma, setting.axis)
     problem = _System(turns, rate, rate_sigma, force, force_sigma, setting)
-    roots = [problem.with_covariance(r) for r in _distinct(problem.refined())]
+    found = problem.refined()
+    misfit = _misfit(found, dof=6 * len(stops) - _UNKNOWNS)
+    if misfit > 1.0:
+        problem = replace(problem, rate_sigma=rate_sigma * misfit, force_sigma=force_sigma * misfit)
+        found = problem.refined()
+    roots = [problem.with_covariance(r) for r in _distinct(found)]
     if roots and roots[0].heading_sigma() > CURVED:
         roots[0] = replace(roots[0], profile_sigma=problem.profile(roots[0]))
     plane, sigma = problem.across()
     dof = 6 * len(stops) - _UNKNOWNS
     told = setting.bias_prior is not None or index_angles(stops) > 1
-    return Indexed(tuple(roots), _verdict(roots, told=told), plane, sigma, scale, dof)
+    verdict = _verdict(roots, told=told and misfit <= CONTRADICTING)
+    return Indexed(tuple(roots), verdict, plane, sigma, scale, dof, misfit)
+
+
+def _misfit(found: Sequence[Root], *, dof: int) -> float:
+    """Factor by which the best attitude fits worse than its sigmas allow, where significant."""
+    from surveyapp.core.statistics.distributions import chi_square_tail
+
+    chi = min((root.chi_square for root in found), default=0.0)
+    if dof < 1 or chi_square_tail(chi, dof) > 0.01:
+        return 1.0
+    return math.sqrt(chi / dof)
 
 
 def index_angles(stops: Sequence[Stop]) -> int:

@@ -4,16 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from itertools import pairwise
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from surveyapp.core.sensors.rate.bias_track import Tracked, track_bias
-from surveyapp.core.sensors.rate.indexing import solve_indexing
+from surveyapp.core.sensors.rate.indexing import CONTRADICTING, solve_indexing
+from surveyapp.core.sensors.rate.indexing_checks import index_problems, rate_problems
+from surveyapp.core.sensors.rate.indexing_stops import (
+    GYROS,
+    OPTIONAL,
+    calm,
+    stops_of,
+    with_sigmas,
+)
 from surveyapp.core.sensors.rate.indexing_values import Indexed, Root, Setting, Stop
 from surveyapp.core.sensors.rate.parameters import DEG_H
+from surveyapp.core.sensors.rate.strapdown import skew
 from surveyapp.core.statistics.distributions import NORMAL_95
 from surveyapp.domain.calibration import SensorParameter, with_reasons
 from surveyapp.domain.north import NorthDirection, NorthResult
@@ -22,19 +30,10 @@ from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC
-from surveyapp_models.arrays import Floats
 from surveyapp_models.constants import EARTH_RATE
 from surveyapp_models.rate import quaternions
 from surveyapp_models.rate.attitude import azimuth_of, earth_rate
 
-GYROS = ("gyr_x_rad_s", "gyr_y_rad_s", "gyr_z_rad_s")
-ACCELEROMETERS = ("acc_x_m_s2", "acc_y_m_s2", "acc_z_m_s2")
-NEEDED = (*GYROS, *ACCELEROMETERS, "index_angle_deg")
-OPTIONAL = ("temperature_c", "set", "round", "pass")
-MOVING_SIGMAS = 8.0
-"""Samples farther from the median of their stop were taken while something moved."""
-MOVING_SHARE = 0.2
-"""A stop with more of them is not used."""
 LEVEL_AXIS = math.radians(10.0)
 EAST_WEST = math.radians(15.0)
 ALIGNED = math.radians(5.0)
@@ -58,103 +57,6 @@ class IndexingOptions:
     fixed: SensorLog | None = None
 
 
-def stops_of(log: SensorLog) -> tuple[list[Stop], list[int], list[ResultWarning]]:
-    """Mean outputs of each index position, the rows at which each begins, and what was left out.
-
-    Raises
-    ------
-    SurveyError
-        Without any stop.
-    """
-    angle = log.columns["index_angle_deg"]
-    change = np.concatenate([[True], np.abs(np.diff(angle)) > 1e-6])
-    for name in OPTIONAL[1:]:
-        if name in log.columns:
-            change[1:] |= np.diff(log.columns[name]) != 0.0
-    edges = np.append(np.flatnonzero(change), log.size).tolist()
-    lengths = np.diff(edges)
-    least = max(int(0.05 * float(np.max(lengths))), 1)
-    rates, forces = (np.column_stack([log.columns[c] for c in n]) for n in (GYROS, ACCELEROMETERS))
-    stops, rows, dropped = [], [], 0
-    for first, last in pairwise(edges):
-        if last - first < least:
-            continue  # the index was still turning
-        keep = _calm(rates[first:last]) & _calm(forces[first:last])
-        if float(np.mean(~keep)) > MOVING_SHARE:
-            dropped += 1
-            continue
-        stops.append(
-            _stop(math.radians(angle[first]), rates[first:last][keep], forces[first:last][keep])
-        )
-        rows.append(first)
-    warnings = []
-    if dropped:
-        text = said("{dropped} index positions were not used: the unit was moving", dropped=dropped)
-        warnings.append(ResultWarning("motion_in_stop", text))
-    if not stops:
-        raise SurveyError(
-            Problem(
-                "no index position at rest was found",
-                log.path,
-                "the index turns or the unit moves throughout",
-                "stretches of constant index_angle_deg",
-            )
-        )
-    return stops, rows, warnings
-
-
-def _calm(values: Floats) -> np.ndarray:
-    if values.shape[0] < 8:
-        return np.ones(values.shape[0], dtype=bool)
-    off = np.abs(values - np.median(values, axis=0))
-    spread = 1.4826 * np.median(off, axis=0)
-    return np.asarray(np.all(off <= MOVING_SIGMAS * spread + 1e-12, axis=1))
-
-
-def _stop(angle: float, rates: Floats, forces: Floats) -> Stop:
-    count = rates.shape[0]
-    if count < 2:
-        unknown = np.full(3, math.nan)
-        return Stop(angle, rates[0], unknown, forces[0], unknown)
-    root = math.sqrt(count)
-    return Stop(
-        angle,
-        rates.mean(axis=0),
-        np.maximum(rates.std(axis=0, ddof=1) / root, 1e-12),
-        forces.mean(axis=0),
-        np.maximum(forces.std(axis=0, ddof=1) / root, 1e-9),
-    )
-
-
-def _with_sigmas(stops: list[Stop], axis: int) -> tuple[list[Stop], bool]:
-    """Stops of one row each get the scatter about the turned means as their sigma."""
-    if all(np.all(np.isfinite(s.rate_sigma)) for s in stops):
-        return stops, True
-    known = []
-    for name, floor in (("rate", 1e-9), ("force", 1e-5)):
-        values = np.array([getattr(s, name) for s in stops])
-        known.append(max(_residual_sd(values, [s.angle for s in stops], axis), floor))
-    filled = [
-        replace(s, rate_sigma=np.full(3, known[0]), force_sigma=np.full(3, known[1])) for s in stops
-    ]
-    return filled, False
-
-
-def _residual_sd(values: Floats, angles: Sequence[float], axis: int) -> float:
-    """Scatter about a vector that turns with the index and a constant one."""
-    i, j = (axis + 1) % 3, (axis + 2) % 3
-    rows, target = [], []
-    for value, angle in zip(values, angles, strict=True):
-        c, s = math.cos(angle), math.sin(angle)
-        rows += [[c, -s, 1.0, 0.0, 0.0], [s, c, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 0.0, 1.0]]
-        target += [value[i], value[j], value[axis]]
-    design = np.array(rows)
-    solution, *_ = np.linalg.lstsq(design, np.array(target), rcond=None)
-    rest = np.array(target) - design @ solution
-    dof = max(len(target) - int(np.linalg.matrix_rank(design)), 1)
-    return math.sqrt(float(rest @ rest) / dof)
-
-
 def find_heading(log: SensorLog, options: IndexingOptions) -> NorthResult:
     """Heading, attitude and biases from a log.
 
@@ -163,7 +65,11 @@ def find_heading(log: SensorLog, options: IndexingOptions) -> NorthResult:
     SurveyError
     """
     stops, rows, warnings = stops_of(log)
-    stops, sampled = _with_sigmas(stops, options.setting.axis)
+    stops, sampled = with_sigmas(stops, options.setting.axis)
+    for _, _, inside in _groups(log, stops, rows):
+        problems = index_problems(inside, options.setting, log.path)
+        if problems:
+            raise SurveyError(problems)
     if not sampled:
         text = "one row a stop: the sigmas are the scatter of the stops about the solution"
         warnings.append(ResultWarning("rows_are_means", text))
@@ -177,6 +83,11 @@ def find_heading(log: SensorLog, options: IndexingOptions) -> NorthResult:
         found, used = solve_indexing(stops, options.setting), len(stops)
     if not found.roots:
         raise SurveyError(Problem("no attitude fits the log", log.path))
+    problems = rate_problems(
+        found.two_axis_rate, sigma=found.two_axis_sigma / found.misfit, where=log.path
+    )
+    if problems:
+        raise SurveyError(problems)
     return _result(log, options, found, tracking, warnings=warnings, stops=used)
 
 
@@ -323,11 +234,13 @@ def _geometry(
 def _fixed(log: SensorLog, root: Root, setting: Setting) -> dict[str, Any]:
     """Biases of the unit that was not turned, from the attitude of the other."""
     rates = np.column_stack([log.columns[c] for c in GYROS])
-    keep = _calm(rates)
+    keep = calm(rates)
     rates = rates[keep]
     earth = root.attitude.T @ earth_rate(setting.latitude)
     bias = rates.mean(axis=0) - earth
-    sigma = rates.std(axis=0, ddof=1) / math.sqrt(rates.shape[0])
+    turned = root.attitude.T @ skew(earth_rate(setting.latitude))
+    known = np.diag(turned @ root.covariance[:3, :3] @ turned.T)
+    sigma = np.sqrt(rates.var(axis=0, ddof=1) / rates.shape[0] + np.maximum(known, 0.0))
     return {
         "source": log.id,
         "parameters": [
@@ -351,6 +264,13 @@ def _warnings(found: Indexed) -> list[ResultWarning]:
     if found.verdict == "undetermined":
         text = "the index positions do not determine the heading"
         warnings.append(ResultWarning("undetermined", text))
+    if found.misfit > CONTRADICTING:
+        text = said(
+            "attitude, latitude and rates contradict each other: they differ by {misfit:.1f} times "
+            "what the stops allow; is the latitude right, and the scale factor?",
+            misfit=found.misfit,
+        )
+        warnings.append(ResultWarning("inconsistent", text))
     if found.residual_scale > 1.0:
         text = said(
             "the stops scatter {residual_scale:.1f} times as much as their samples "

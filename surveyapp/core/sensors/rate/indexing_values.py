@@ -124,6 +124,9 @@ class Indexed:
     residual_scale : float
         Factor on the sigmas because the stops scatter more than their samples allow; 1 = none.
     dof : int
+    misfit : float
+        Factor by which everything together fits worse than its sigmas allow; 1 = none. The
+        sigmas are widened by it.
     """
 
     roots: tuple[Root, ...]
@@ -132,3 +135,4 @@ class Indexed:
     two_axis_sigma: float
     residual_scale: float
     dof: int
+    misfit: float = 1.0

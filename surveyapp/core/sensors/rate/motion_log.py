@@ -24,7 +24,13 @@ from surveyapp.core.sensors.rate.still import (
     Mask,
     runs_of,
 )
-from surveyapp.core.sensors.rate.zero_velocity import BOUND, TOLERATED, InertialPath, inertial_path
+from surveyapp.core.sensors.rate.zero_velocity import (
+    BOUND,
+    TOLERATED,
+    InertialPath,
+    Samples,
+    inertial_path,
+)
 from surveyapp.domain.motion import Motion, MotionSegment, Path, Snapped
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
@@ -150,9 +156,18 @@ class _Record:
         """Rows at rest."""
         return self.states.still
 
-    def vectors(self, names: Sequence[str]) -> Floats:
-        """Columns side by side, shape (n, 3)."""
-        return np.column_stack([self.log.columns[c] for c in names])
+    def samples_from(self, begun: int) -> Samples:
+        """Forces and rates of the rows from one on, read when they are asked for."""
+
+        def rows(first: int, last: int, /) -> tuple[Floats, Floats]:
+            part = slice(begun + first, begun + last)
+            force, rate = (
+                np.column_stack([self.log.columns[c][part] for c in names])
+                for names in (ACCELEROMETERS, GYROS)
+            )
+            return force, rate
+
+        return rows
 
 
 def _path(
@@ -178,14 +193,9 @@ def _path(
             value=begun * record.interval,
         )
         warnings.append(ResultWarning("before_first_stop", text))
-    found = inertial_path(
-        record.vectors(ACCELEROMETERS)[begun:],
-        record.vectors(GYROS)[begun:],
-        record.still[begun:],
-        interval_s=record.interval,
-    )
-    zero = _zero_velocity(found)
-    return _inertial(found, record.still[begun:], options), [], zero, warnings
+    still = record.still[begun:]
+    found = inertial_path(record.samples_from(begun), still, interval_s=record.interval)
+    return _inertial(found, still.size, options), [], _zero_velocity(found), warnings
 
 
 def _zero_velocity(found: InertialPath) -> dict[str, Any]:
@@ -199,45 +209,45 @@ def _zero_velocity(found: InertialPath) -> dict[str, Any]:
     }
 
 
-def _inertial(found: InertialPath, still: Mask, options: MotionOptions) -> Path:
-    place, level = found.position, found.covariance[:2, :2]
+def _inertial(found: InertialPath, size: int, options: MotionOptions) -> Path:
+    place, stops, end = found.place, found.stops, found.end
+    level = found.covariance[:2, :2]
+    begin = place[0]
     if options.begin is not None:
-        e, n, azimuth = options.begin
-        c, s = math.cos(azimuth), math.sin(azimuth)
-        turned = place.copy()
-        turned[:, 0] = e + c * place[:, 0] + s * place[:, 1]
-        turned[:, 1] = n - s * place[:, 0] + c * place[:, 1]
-        place = turned
+        place, stops, end = (_laid(v, options.begin) for v in (place, stops, end))
+        begin = place[0]
+        c, s = math.cos(options.begin[2]), math.sin(options.begin[2])
         axes = np.array([[c, s], [-s, c]])
         level = axes @ level @ axes.T
-    stops = _stop_places(place, still)
-    target = place[0].copy()
     if options.end is not None:
-        target[:2] = options.end
-        closure = math.hypot(*(place[-1] - target)[:2].tolist())
+        closure = math.hypot(*(end[:2] - np.array(options.end)).tolist())
     else:
-        closure = float(np.linalg.norm(place[-1] - target))
-    along = np.concatenate(
-        [[0.0], np.cumsum(np.linalg.norm(np.diff(place[:, :2], axis=0), axis=1))]
-    )
-    rows = np.unique(np.searchsorted(along, np.arange(0.0, along[-1], 0.05)))
+        closure = float(np.linalg.norm(end - begin))
     spread = np.sqrt(np.maximum(np.diag(level), 0.0))
-    share = rows / max(place.shape[0] - 1, 1)
+    share = found.rows / max(size - 1, 1)
     points = tuple(
-        (float(along[k]), float(place[k, 0]), float(place[k, 1]),
+        (float(d), float(p[0]), float(p[1]),
          float(spread[0] * math.sqrt(r)), float(spread[1] * math.sqrt(r)), float(level[0, 1] * r))
-        for k, r in zip(rows.tolist(), share.tolist(), strict=True)
+        for d, p, r in zip(found.along, place, share.tolist(), strict=True)
     )  # fmt: skip
-    return Path(
-        "inertial", closure, tuple(place[-1].tolist()), _sides(stops), points, float(along[-1])
-    )
+    sides = _sides(_apart(list(stops)))
+    return Path("inertial", closure, tuple(end.tolist()), sides, points, found.length)
 
 
-def _stop_places(place: Floats, still: Mask) -> list[Floats]:
+def _laid(places: Floats, begin: tuple[float, float, float]) -> Floats:
+    """Places of the body's first level frame in east and north, shape (..., 3)."""
+    e, n, azimuth = begin
+    c, s = math.cos(azimuth), math.sin(azimuth)
+    turned = places.copy()
+    turned[..., 0] = e + c * places[..., 0] + s * places[..., 1]
+    turned[..., 1] = n - s * places[..., 0] + c * places[..., 1]
+    return turned
+
+
+def _apart(places: list[Floats]) -> list[Floats]:
     """One place a stop: bumps within a stop are not sides."""
     stops: list[Floats] = []
-    for first, last in runs_of(still):
-        here = np.median(place[first:last], axis=0)
+    for here in places:
         if not stops or float(np.linalg.norm(here - stops[-1])) > SAME_STOP_M:
             stops.append(here)
     return stops

@@ -51,6 +51,7 @@ from surveyapp.core.sensors.rate.still import (
     runs_of,
     statistic,
 )
+from surveyapp.core.sensors.rate.turn_axes import axes_problems
 from surveyapp.core.statistics.distributions import NORMAL_95
 from surveyapp.domain.calibration import (
     Calibration,
@@ -143,6 +144,9 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
     chosen = _chosen(models, held)
     covariance = covariance_with_omitted(forces, chosen, gravity=options.gravity)
     turns = turns_between(log, stops, chosen, options.latitude)
+    problems = axes_problems(turns, log.path)
+    if problems:
+        raise SurveyError(problems)
     bias, sigma_bias = _bias(stops, chosen, options)
     gyro = _fitted(stops, chosen, turns) if len(turns) >= LEAST_TURNS else None
     parameters = (

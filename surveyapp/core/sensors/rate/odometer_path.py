@@ -162,10 +162,20 @@ def _stop_rows(driven: Driven) -> list[int]:
 
 
 def _last_stop(driven: Driven, bounds: list[int]) -> int:
-    """Row of the last stop from which something was driven."""
+    """Row of the last stop from which something was driven.
+
+    Where the power was switched during that stop, the one before: the constant correction parts
+    what lies before the switch from what lies behind it.
+    """
     final = float(driven.distance[-1])
     rows = [r for r in bounds if float(driven.distance[r]) < final - 1e-6]
-    return rows[-1] if rows else 0
+    if not rows:
+        return 0
+    moving = np.flatnonzero(~driven.still[: rows[-1] + 1])
+    arrived = int(moving[-1]) + 1 if moving.size else 0
+    if float(driven.cycle[min(arrived, rows[-1])]) == float(driven.cycle[rows[-1]]):
+        return rows[-1]
+    return rows[-2] if len(rows) > 1 else 0
 
 
 def _weights(driven: Driven, first: int, last: int, power_cycle: str) -> tuple[Floats, str]:
@@ -194,6 +204,8 @@ def _laid_back(
     zero = float(driven.distance[0])
     if kind == "linear":
         begin = first
+        if float(driven.distance[finish]) <= float(driven.distance[begin]):
+            return []
     return [
         Snapped(
             float(driven.distance[begin]) - zero,

@@ -14,6 +14,7 @@ from typing import Any, Final, Literal
 
 import numpy as np
 
+from surveyapp.core.sensors.rate.carried import Carried, Rest, Run, carry, tilt_of
 from surveyapp.core.sensors.rate.parameters import DEG_H
 from surveyapp.core.statistics.distributions import NORMAL_95, student_tail
 from surveyapp.domain.calibration import SensorParameter
@@ -22,16 +23,8 @@ from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import either, said
-from surveyapp_models.angles import ARCSEC, wrap_two_pi
+from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
-from surveyapp_models.rate import quaternions
-from surveyapp_models.rate.attitude import (
-    EULER_LIMIT,
-    attitude_matrix,
-    axis_rotation,
-    azimuth_of,
-    euler_angles,
-)
 
 GYROS = ("gyr_x_rad_s", "gyr_y_rad_s", "gyr_z_rad_s")
 ACCELEROMETERS = ("acc_x_m_s2", "acc_y_m_s2", "acc_z_m_s2")
@@ -41,6 +34,8 @@ TREND_S = 600.0
 """The last ten minutes of the warm-up are asked for a trend."""
 WARM_UP_S = 1800.0
 TREND_LEVEL = 0.01
+ROUNDING = 1e-9
+"""Part of a rate below which a trend is that of rounded numbers."""
 ZERO_SIGMAS = 3.0
 """A tilt below this many sigmas is none."""
 
@@ -114,15 +109,28 @@ def find_heading(log: SensorLog, options: RotationOptions) -> NorthResult:
     rest_rows = np.flatnonzero((phases == "filter") | (phases == "level"))
     rest, rest_sigma, gained = _filtered(rates[rest_rows])
     levelling = _levelling(forces[phases == "level"])
-    run_rows = np.flatnonzero(phases == "run")
-    carried = _carried(
-        rates[run_rows] - rest, forces, levelling, options, rows=run_rows, interval=interval
+    carried = carry(
+        _run_of(log, rates, forces, np.flatnonzero(phases == "run")),
+        Rest(
+            rest,
+            rest_sigma,
+            np.std(np.diff(rates[rest_rows], axis=0), axis=0) / math.sqrt(2.0),
+            (levelling.pitch, levelling.roll),
+            float(np.mean(forces[phases == "level"].std(axis=0, ddof=1))),
+        ),
+        heading=options.heading + (options.declination or 0.0),
+        latitude=options.latitude,
     )
-    sigma = rest_sigma[2] * run_rows.size * interval
-    noise = float(np.std(np.diff(rates[rest_rows, 2]))) / math.sqrt(2.0)
-    sigma = math.hypot(sigma, noise * interval * math.sqrt(run_rows.size))
-    sigma = math.hypot(sigma, options.declination_sigma or 0.0)
+    sigma = math.hypot(carried.sigma, options.declination_sigma or 0.0)
     return _result(log, options, carried, sigma, found=(warm, levelling, rest, gained))
+
+
+def _run_of(log: SensorLog, rates: Floats, forces: Floats, rows: np.ndarray) -> Run:
+    """Samples of the run and how long each lasts: to the next row, wherever that belongs."""
+    time = log.columns["time_s"]
+    usual = float(np.median(np.diff(time[rows])))
+    until = np.append(np.diff(time), usual)[rows]
+    return Run(rates[rows], forces[rows], np.where(until > 0.0, until, usual))
 
 
 def _phase_problems(phases: np.ndarray, where: str) -> list[Problem]:
@@ -167,7 +175,8 @@ def _warm_up(rates: Floats, interval: float) -> WarmUp:
     rest = means - means.mean(axis=0) - np.outer(t, slope)
     sigma = np.sqrt(np.sum(rest**2, axis=0) / (count - 2) / float(t @ t))
     k = int(np.argmax(np.abs(slope) / np.maximum(sigma, 1e-300)))
-    score = float(abs(slope[k]) / max(float(sigma[k]), 1e-300))
+    least = np.maximum(sigma, ROUNDING * np.abs(means).max() / TREND_S)
+    score = float(abs(slope[k]) / max(float(least[k]), 1e-300))
     p = min(1.0, 3.0 * 2.0 * student_tail(score, count - 2))
     return WarmUp(seconds, p, float(slope[k]) * 3600.0 / DEG_H)
 
@@ -226,51 +235,9 @@ def level_case(pitch: float, roll: float, sigma: float) -> Levelling:
 def _levelling(forces: Floats) -> Levelling:
     mean = forces.mean(axis=0)
     size = float(np.linalg.norm(mean))
-    pitch = math.asin(min(1.0, max(-1.0, float(mean[1]) / size)))
-    roll = math.atan2(-float(mean[0]), float(mean[2]))
+    pitch, roll = tilt_of(mean)
     sigma = float(np.mean(forces[:, :2].std(axis=0, ddof=1))) / math.sqrt(forces.shape[0]) / size
     return level_case(pitch, roll, sigma)
-
-
-@dataclass(frozen=True, slots=True)
-class Carried:
-    """Heading after the rotation [rad], and the attitude of the levelled unit as a quaternion."""
-
-    heading: float
-    quaternion: Floats
-    vertical: bool
-
-
-def _carried(
-    rates: Floats,
-    forces: Floats,
-    levelling: Levelling,
-    options: RotationOptions,
-    *,
-    rows: np.ndarray,
-    interval: float,
-) -> Carried:
-    """Quaternion update of the body, and the levelling turns after it (equations 4 and 5)."""
-    tilted = _tilt_at(forces, rows, interval) or (levelling.pitch, levelling.roll)
-    start = attitude_matrix(heading=options.heading, pitch=tilted[0], roll=tilted[1])
-    q = quaternions.integrate(rates, interval_s=interval, start=quaternions.from_matrix(start))[-1]
-    level = axis_rotation(1, -tilted[1]) @ axis_rotation(0, -tilted[0])
-    attitude = quaternions.to_matrix(q) @ level
-    vertical = abs(euler_angles(attitude).pitch) > EULER_LIMIT
-    return Carried(
-        azimuth_of(attitude[:, 2 if vertical else 1]), quaternions.from_matrix(attitude), vertical
-    )
-
-
-def _tilt_at(forces: Floats, rows: np.ndarray, interval: float) -> tuple[float, float] | None:
-    """Pitch and roll at the beginning of the run, if the unit rests there for half a second."""
-    part = forces[rows[0] : rows[0] + max(round(0.5 / interval), 3)]
-    size = float(np.median(np.linalg.norm(forces, axis=1)))
-    mean = part.mean(axis=0)
-    if abs(float(np.linalg.norm(mean)) - size) > 0.01 * size:
-        return None
-    pitch = math.asin(min(1.0, max(-1.0, float(mean[1]) / float(np.linalg.norm(mean)))))
-    return pitch, math.atan2(-float(mean[0]), float(mean[2]))
 
 
 def _result(
@@ -282,38 +249,20 @@ def _result(
     found: tuple[WarmUp, Levelling, Floats, dict[str, float]],
 ) -> NorthResult:
     warm, levelling, rest, gained = found
-    heading, reference = carried.heading, options.reference
-    if options.declination is not None:
-        heading, reference = wrap_two_pi(heading + options.declination), "ASTRONOMIC"
+    reference: Reference = options.reference if options.declination is None else "ASTRONOMIC"
     parameters = tuple(
         SensorParameter(f"rest_rate_{a}", float(rest[i]) / DEG_H, None, "deg/h")
         for i, a in enumerate("xyz")
     )
-    warnings = []
-    if not warm.ended:
-        text = said(
-            "the last ten minutes of the warm-up still drift by "
-            "{drift_deg_h_h:.3g} deg/h per hour: it has not ended",
-            drift_deg_h_h=warm.drift_deg_h_h,
-        )
-        warnings.append(ResultWarning("warm_up", text))
-    if warm.seconds < 0.99 * WARM_UP_S:
-        text = said("{value:.1f} min of warm-up; the source asks for 30", value=warm.seconds / 60.0)
-        warnings.append(ResultWarning("short_warm_up", text))
-    text = (
-        "bias and vertical earth rate are those of the rest before the run; the level earth rate "
-        "is not followed through the rotation"
-    )
-    warnings.append(ResultWarning("rest_rate", text))
     return NorthResult(
         method="rotation",
         source=log.id,
         key="heading",
         direction=NorthDirection(
-            math.degrees(heading), sigma / ARCSEC, NORMAL_95 * sigma / ARCSEC, reference
+            math.degrees(carried.heading), sigma / ARCSEC, NORMAL_95 * sigma / ARCSEC, reference
         ),
         parameters=parameters,
-        warnings=(*log.warnings, *warnings),
+        warnings=(*log.warnings, *_warnings(options, warm)),
         n=log.size,
         sha256=log.sha256,
         extra={
@@ -329,10 +278,37 @@ def _result(
                 ],
             },
             "steps": _steps(log, options, warm, gained, levelling=levelling),
-            "turned_deg": math.degrees(carried.heading - options.heading) % 360.0,
+            "turned_deg": math.degrees(carried.turned) % 360.0,
         },
         direction_extra={"axis": "z" if carried.vertical else "y"},
     )
+
+
+def _warnings(options: RotationOptions, warm: WarmUp) -> list[ResultWarning]:
+    warnings = []
+    if not warm.ended:
+        text = said(
+            "the last ten minutes of the warm-up still drift by "
+            "{drift_deg_h_h:.3g} deg/h per hour: it has not ended",
+            drift_deg_h_h=warm.drift_deg_h_h,
+        )
+        warnings.append(ResultWarning("warm_up", text))
+    if warm.seconds < 0.99 * WARM_UP_S:
+        text = said("{value:.1f} min of warm-up; the source asks for 30", value=warm.seconds / 60.0)
+        warnings.append(ResultWarning("short_warm_up", text))
+    if options.latitude is None:
+        text = (
+            "without a latitude the earth's rate is taken out as it was at rest; how it moved in "
+            "the unit is counted in the sigma"
+        )
+        warnings.append(ResultWarning("rest_rate", text))
+    if not options.card:
+        text = (
+            "no sensor card: the gyros' scale factors are taken as nominal, and their error times "
+            "the angle turned is in no sigma"
+        )
+        warnings.append(ResultWarning("nominal_scale", text))
+    return warnings
 
 
 def _steps(

@@ -9,11 +9,24 @@ of such innovations is the test, not the closure.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import chain, pairwise, repeat
+from typing import Protocol
 
 import numpy as np
 
-from surveyapp.core.sensors.rate.still import Mask
+from surveyapp.core.sensors.rate.still import Mask, runs_of
+from surveyapp.core.sensors.rate.strapdown import (
+    PLACE,
+    TURN,
+    VELOCITY,
+    Navigation,
+    Stretch,
+    integrate,
+    noise_of_all,
+    noise_of_few,
+)
 from surveyapp_models.arrays import Floats
 from surveyapp_models.rate import quaternions
 
@@ -34,14 +47,36 @@ drives with sensors of four grades, of vehicles that shake, have .000 to .003 wi
 a hundred times .018, five hundred times .125."""
 
 
+MOVING_ROWS = 50_000
+"""Samples of motion integrated together."""
+RESTING_ROWS = (50, 50, 50, 50, 2000)
+"""Samples of rest in which corrections add up before they are taken out: few at first, when they
+are largest; then as the last number says."""
+POINT_M = 0.05
+"""Distance of the points of the path that are kept; doubled whenever there are too many."""
+MOST_POINTS = 20_000
+PLACE_ROWS = 20_000
+"""Samples of a stop from which its place is taken."""
+
+
 @dataclass(frozen=True, slots=True)
 class InertialPath:
     """Path and test.
 
     Parameters
     ----------
-    position : ndarray, shape (n, 3)
+    rows : ndarray of int, shape (m,)
+        Samples of the points, every 5 cm of the way.
+    along : ndarray, shape (m,)
+        How far has been gone there [m].
+    place : ndarray, shape (m, 3)
         In a level frame whose y axis is where the body's points at first [m].
+    stops : ndarray, shape (k, 3)
+        Where each rest was [m].
+    end : ndarray, shape (3,)
+        [m]
+    length : float
+        [m]
     covariance : ndarray, shape (3, 3)
         Of the last position [m2].
     exceeding : float or None
@@ -49,7 +84,12 @@ class InertialPath:
     updates : int
     """
 
-    position: Floats
+    rows: np.ndarray
+    along: Floats
+    place: Floats
+    stops: Floats
+    end: Floats
+    length: float
     covariance: Floats
     exceeding: float | None
     updates: int
@@ -60,69 +100,231 @@ class InertialPath:
         return self.exceeding is None or self.exceeding <= TOLERATED
 
 
-def inertial_path(force: Floats, rate: Floats, still: Mask, *, interval_s: float) -> InertialPath:
+class Samples(Protocol):
+    """Rows of a record, some at a time."""
+
+    def __call__(self, first: int, last: int, /) -> tuple[Floats, Floats]:
+        """Forces [m/s2] and rates [rad/s] of the rows first to last (exclusive), (k, 3) each."""
+        ...
+
+
+def in_memory(force: Floats, rate: Floats) -> Samples:
+    """A record that is held whole, (n, 3) each."""
+    return lambda first, last: (force[first:last], rate[first:last])
+
+
+def inertial_path(samples: Samples, still: Mask, *, interval_s: float) -> InertialPath:
     """Integrate with zero-velocity updates; bias, gravity and level from the first rest.
 
     Parameters
     ----------
-    force, rate : ndarray, shape (n, 3)
-        [m/s2], [rad/s]
+    samples : callable
+        Rows of the record; it is read in pieces, and no more than one is held.
     still : ndarray of bool, shape (n,)
         At rest at the beginning.
     interval_s : float
     """
-    first = _first_rest(still)
-    felt = force[first].mean(axis=0)
-    bias = rate[first].mean(axis=0)
-    gravity = np.array([0.0, 0.0, float(np.linalg.norm(felt))])
-    q = _levelled(felt)
-    turns = quaternions.from_rotation_vector((rate - bias) * interval_s)
-    velocity, place = np.zeros(3), np.zeros(3)
-    covariance = np.diag([1e-8] * 3 + [1e-6] * 3 + [1e-5, 1e-5, 1e-8])
-    moving = ~still
-    noises = (
-        _noise(force[first], rate[first], interval_s),
-        _noise(force[moving], rate[first], interval_s),
+    unit = _unit_of(samples, still, interval_s)
+    now = Navigation(
+        unit.level,
+        np.zeros(3),
+        np.zeros(3),
+        np.diag([1e-8] * 3 + [1e-6] * 3 + [1e-5, 1e-5, 1e-8]),
     )
-    step = np.eye(9)
-    step[0:3, 3:6] = np.eye(3) * interval_s
-    positions = np.empty((force.shape[0], 3))
-    beyond, updates = 0, 0
-    for k in range(force.shape[0]):
-        q = quaternions.multiply(q, turns[k])
-        felt_level = quaternions.rotate(q, force[k])
-        change = (felt_level - gravity) * interval_s
-        place = place + (velocity + 0.5 * change) * interval_s
-        velocity = velocity + change
-        step[3:6, 6:9] = -_skew(felt_level) * interval_s
-        covariance = step @ covariance @ step.T + noises[int(moving[k])]
-        if still[k] and k % EVERY == 0:
-            gain, size = _gain(covariance, velocity)
-            correction = gain @ -velocity
-            updates, beyond = updates + 1, beyond + (size > BOUND)
-            place, velocity = place + correction[:3], velocity + correction[3:6]
-            q = quaternions.multiply(quaternions.from_rotation_vector(correction[6:]), q)
-            q = q / math.sqrt(float(q @ q))
-            covariance = covariance - gain @ covariance[3:6]
-            covariance = 0.5 * (covariance + covariance.T)
-        positions[k] = place
+    way, beyond, updates = _Way(), 0, 0
+    for first, last, resting in _stretches(still):
+        force, rate = samples(first, last)
+        stretch = integrate(
+            now, force, rate - unit.bias, gravity=unit.gravity, interval_s=interval_s
+        )
+        if resting:
+            numbers = np.arange(first, last)
+            place, more, out = _rested(now, stretch, numbers, unit)
+            updates, beyond = updates + more, beyond + out
+        else:
+            place = _moved(now, stretch, unit)
+        way.add(place, first, still)
     share = beyond / updates if updates else None
-    return InertialPath(positions, covariance[:3, :3].copy(), share, updates)
+    return way.path(now.covariance[:3, :3].copy(), share, updates)
 
 
-def _noise(force: Floats, rate: Floats, interval_s: float) -> Floats:
-    """What one sample adds to the covariance: white noise as these samples show it, shape (9, 9).
+@dataclass(frozen=True, slots=True)
+class _Unit:
+    """What the first rest tells: attitude, bias [rad/s], gravity [m/s2]; and the noise.
+
+    The noise is what a sample adds to the variance of velocity and attitude, at rest and moving.
+    """
+
+    level: Floats
+    bias: Floats
+    gravity: float
+    at_rest: tuple[float, float]
+    moving: tuple[float, float]
+
+
+def _unit_of(samples: Samples, still: Mask, interval_s: float) -> _Unit:
+    rest = _first_rest(still)
+    force, rate = samples(rest.start, min(rest.stop, rest.start + MOVING_ROWS))
+    felt = force.mean(axis=0)
+    shaking = _white_while(samples, ~still)
+    at_rest, turning = _white(force), _white(rate)
+    return _Unit(
+        _levelled(felt),
+        rate.mean(axis=0),
+        float(np.linalg.norm(felt)),
+        _noise(at_rest, turning, interval_s),
+        _noise(shaking, turning, interval_s),
+    )
+
+
+def _stretches(still: Mask) -> Iterator[tuple[int, int, bool]]:
+    """Rows first to last (exclusive) that are all at rest or all moving, none too long."""
+    edges = np.flatnonzero(np.diff(still.astype(np.int8))) + 1
+    bounds = [0, *edges.tolist(), still.size]
+    for first, last in pairwise(bounds):
+        resting = bool(still[first])
+        sizes = chain(RESTING_ROWS, repeat(RESTING_ROWS[-1])) if resting else repeat(MOVING_ROWS)
+        for size in sizes:
+            stop = min(first + size, last)
+            yield first, stop, resting
+            first = stop
+            if first >= last:
+                break
+
+
+def _moved(now: Navigation, stretch: Stretch, unit: _Unit) -> Floats:
+    """Go through a stretch of motion; places (n, 3)."""
+    count = stretch.place.shape[0]
+    step = stretch.transitions(np.array([0]), np.array([count]))[0]
+    velocity, turn = unit.moving
+    noise = noise_of_all(stretch, velocity=velocity, turn=turn)
+    now.covariance = step @ now.covariance @ step.T + noise
+    now.attitude, now.velocity, now.place = (
+        stretch.attitude,
+        stretch.velocity[-1],
+        stretch.place[-1],
+    )
+    return stretch.place
+
+
+def _rested(
+    now: Navigation, stretch: Stretch, numbers: np.ndarray, unit: _Unit
+) -> tuple[Floats, int, int]:
+    """Go through a stretch of rest: places (n, 3), updates, and how many lie beyond the bound."""
+    count = numbers.size
+    due = np.flatnonzero(numbers % EVERY == 0) + 1
+    ends = due if due.size and due[-1] == count else np.append(due, count)
+    begins = np.append(0, ends[:-1])
+    steps = stretch.transitions(begins, ends)
+    force = stretch.sums[-1] / (count * stretch.interval_s)
+    velocity, turn = unit.at_rest
+    noises = noise_of_few(
+        ends - begins, force, interval_s=stretch.interval_s, velocity=velocity, turn=turn
+    )
+    covariance, error, beyond = now.covariance, np.zeros(9), 0
+    errors = np.empty((ends.size, 9))
+    for k, end in enumerate(ends.tolist()):
+        errors[k] = error
+        step = steps[k]
+        error = step @ error
+        covariance = step @ covariance @ step.T + noises[k]
+        if k < due.size:
+            seen = stretch.velocity[end - 1] + error[VELOCITY]
+            gain, size = _gain(covariance, seen)
+            beyond += size > BOUND
+            error = error - gain @ seen
+            covariance = covariance - gain @ covariance[VELOCITY]
+            covariance = 0.5 * (covariance + covariance.T)
+    place = _corrected(stretch, begins, ends, errors)
+    if due.size and due[-1] == count:
+        place[-1] = stretch.place[-1] + error[PLACE]
+    now.attitude, now.velocity, now.place = (
+        stretch.attitude,
+        stretch.velocity[-1],
+        stretch.place[-1],
+    )
+    now.correct(error)
+    now.covariance = covariance
+    return place, due.size, beyond
+
+
+def _corrected(stretch: Stretch, begins: np.ndarray, ends: np.ndarray, errors: Floats) -> Floats:
+    """Places of each sample with the error at the begin of its group carried to it, (n, 3)."""
+    group = np.repeat(np.arange(begins.size), ends - begins)
+    after = np.arange(1, group.size + 1)
+    _, lever = stretch.levers(begins[group], after)
+    time = (after - begins[group])[:, None] * stretch.interval_s
+    known = errors[group]
+    turned = np.cross(lever, known[:, TURN])
+    found = stretch.place + known[:, PLACE] + time * known[:, VELOCITY] - turned
+    # at the end of a group its own update has already moved the place
+    last = ends[:-1] - 1
+    found[last] = stretch.place[last] + errors[1:, PLACE]
+    return np.asarray(found)
+
+
+class _Way:
+    """What is kept of the places while they pass by."""
+
+    def __init__(self) -> None:
+        self.rows: list[int] = []
+        self.along: list[float] = []
+        self.places: list[Floats] = []
+        self.stops: list[Floats] = []
+        self._here: list[Floats] = []
+        self._gone, self._last = 0.0, np.zeros(3)
+        self._next, self._spacing = 0, POINT_M
+
+    def add(self, place: Floats, first: int, still: Mask) -> None:
+        """Places of the rows from ``first`` on; a rest and a motion never share a piece."""
+        before = np.vstack([self._last if first else place[0], place])
+        along = self._gone + np.cumsum(np.linalg.norm(np.diff(before[:, :2], axis=0), axis=1))
+        count = math.floor(along[-1] / self._spacing) + 1
+        grid = np.arange(self._next, count)
+        self._next = max(self._next, count)
+        rows = np.unique(np.searchsorted(along, grid * self._spacing))
+        self.rows += (first + rows).tolist()
+        self.along += along[rows].tolist()
+        self.places += list(place[rows])
+        if len(self.rows) > MOST_POINTS:
+            for kept in (self.rows, self.along, self.places):
+                del kept[1::2]
+            self._spacing *= 2.0
+            self._next = math.floor(along[-1] / self._spacing) + 1
+        self._gone, self._last = float(along[-1]), place[-1]
+        last = first + place.shape[0]
+        if still[first]:
+            taken = sum(part.shape[0] for part in self._here)
+            self._here.append(place[: max(PLACE_ROWS - taken, 0)])
+            if last == still.size or not still[last]:
+                self.stops.append(np.median(np.concatenate(self._here), axis=0))
+                self._here = []
+
+    def path(self, covariance: Floats, share: float | None, updates: int) -> InertialPath:
+        """The path so far."""
+        return InertialPath(
+            np.array(self.rows),
+            np.array(self.along),
+            np.array(self.places),
+            np.array(self.stops).reshape(-1, 3),
+            self._last,
+            self._gone,
+            covariance,
+            share,
+            updates,
+        )
+
+
+def _noise(force: float, rate: float, interval_s: float) -> tuple[float, float]:
+    """Variance that a sample adds to velocity [m2/s2] and attitude [rad2]: its white noise.
 
     While a unit moves it shakes, and what the samples miss of that is an error of the velocity.
     """
     walks = (
-        max(FORCE_WALK, _white(force) * math.sqrt(interval_s)),
-        max(RATE_WALK, _white(rate) * math.sqrt(interval_s)),
+        max(FORCE_WALK, force * math.sqrt(interval_s)),
+        max(RATE_WALK, rate * math.sqrt(interval_s)),
     )
-    found = np.zeros((9, 9))
-    found[3:6, 3:6] = np.eye(3) * walks[0] ** 2 * interval_s
-    found[6:, 6:] = np.eye(3) * walks[1] ** 2 * interval_s
-    return found
+    return walks[0] ** 2 * interval_s, walks[1] ** 2 * interval_s
 
 
 def _white(values: Floats) -> float:
@@ -130,6 +332,19 @@ def _white(values: Floats) -> float:
     if values.shape[0] < 3:
         return 0.0
     return float(np.std(np.diff(values, axis=0), axis=0).max() / math.sqrt(2.0))
+
+
+def _white_while(samples: Samples, moving: Mask) -> float:
+    """The same of the forces of the marked rows, piece by piece."""
+    count, total, squares = 0, np.zeros(3), np.zeros(3)
+    for first, last in runs_of(moving):
+        for begin in range(first, last, MOVING_ROWS):
+            steps = np.diff(samples(begin, min(begin + MOVING_ROWS, last))[0], axis=0)
+            count += steps.shape[0]
+            total, squares = total + steps.sum(axis=0), squares + (steps**2).sum(axis=0)
+    if count < 2:
+        return 0.0
+    return float(np.sqrt((squares / count - (total / count) ** 2).max() / 2.0))
 
 
 def _first_rest(still: Mask) -> slice:
@@ -147,11 +362,6 @@ def _levelled(felt: Floats) -> Floats:
     ahead = ahead - up * float(up @ ahead)
     ahead /= np.linalg.norm(ahead)
     return quaternions.from_matrix(np.vstack([np.cross(ahead, up), ahead, up]))
-
-
-def _skew(vector: Floats) -> Floats:
-    x, y, z = vector.tolist()
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def _gain(covariance: Floats, velocity: Floats) -> tuple[Floats, float]:

@@ -1,0 +1,172 @@
+"""The stops of a log of index positions: means of what lay still, and what was left out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from surveyapp.core.sensors.rate.indexing_checks import saturated, turning_problems
+from surveyapp.core.sensors.rate.indexing_values import Stop
+from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import counted
+from surveyapp_models.arrays import Floats
+
+GYROS = ("gyr_x_rad_s", "gyr_y_rad_s", "gyr_z_rad_s")
+ACCELEROMETERS = ("acc_x_m_s2", "acc_y_m_s2", "acc_z_m_s2")
+NEEDED = (*GYROS, *ACCELEROMETERS, "index_angle_deg")
+OPTIONAL = ("temperature_c", "set", "round", "pass")
+MOVING_SIGMAS = 8.0
+"""Samples farther from the median of their stop were taken while something moved."""
+MOVING_SHARE = 0.2
+"""A stop with more of them is not used."""
+BUMPED_SHARE = 0.01
+"""A stop with more of them is told."""
+SHAKEN = 4.0
+"""A stop whose samples scatter so many times as much as those of the middle stop is not used."""
+LEAST_COMPARED, LEAST_SAMPLED = 3, 8
+"""Stops, and samples in each, from which their scatter is compared."""
+
+
+def stops_of(log: SensorLog) -> tuple[list[Stop], list[int], list[ResultWarning]]:
+    """Mean outputs of each index position, the rows at which each begins, and what was left out.
+
+    Raises
+    ------
+    SurveyError
+        Without any stop, or of a saturated gyro.
+    """
+    edges = _edges(log)
+    lengths = np.diff(edges).tolist()
+    problems = [*saturated(log, GYROS), *turning_problems(log, lengths)]
+    if problems:
+        raise SurveyError(problems)
+    least = max(int(0.05 * max(lengths)), 1)
+    rates, forces = (np.column_stack([log.columns[c] for c in n]) for n in (GYROS, ACCELEROMETERS))
+    stops: list[Stop] = []
+    rows: list[tuple[int, int]] = []
+    dropped, bumped = 0, 0
+    for first, last in pairwise(edges):
+        if last - first < least:
+            continue  # the index was still turning
+        keep = calm(rates[first:last]) & calm(forces[first:last])
+        if float(np.mean(~keep)) > MOVING_SHARE:
+            dropped += 1
+            continue
+        bumped += float(np.mean(~keep)) > BUMPED_SHARE
+        angle = math.radians(log.columns["index_angle_deg"][first])
+        stops.append(_stop(angle, rates[first:last][keep], forces[first:last][keep]))
+        rows.append((first, last - first))
+    quiet = _quiet(stops, [count for _, count in rows])
+    dropped += len(stops) - int(np.count_nonzero(quiet))
+    stops = [stop for stop, kept in zip(stops, quiet, strict=True) if kept]
+    rows = [row for row, kept in zip(rows, quiet, strict=True) if kept]
+    if not stops:
+        raise SurveyError(
+            Problem(
+                "no index position at rest was found",
+                log.path,
+                "the index turns or the unit moves throughout",
+                "stretches of constant index_angle_deg",
+            )
+        )
+    return stops, [first for first, _ in rows], _told_of_motion(dropped, bumped)
+
+
+def _edges(log: SensorLog) -> list[int]:
+    """Rows at which an index position or a set begins, and one behind the last."""
+    change = np.concatenate([[True], np.abs(np.diff(log.columns["index_angle_deg"])) > 1e-6])
+    for name in OPTIONAL[1:]:
+        if name in log.columns:
+            change[1:] |= np.diff(log.columns[name]) != 0.0
+    return [*np.flatnonzero(change).tolist(), log.size]
+
+
+def _told_of_motion(dropped: int, bumped: int) -> list[ResultWarning]:
+    """Positions that were not used, and those that were used in part."""
+    warnings = []
+    if dropped:
+        text = counted(
+            "an index position was not used: the unit was moving",
+            "{count} index positions were not used: the unit was moving",
+            count=dropped,
+        )
+        warnings.append(ResultWarning("motion_in_stop", text))
+    if bumped:
+        text = counted(
+            "in one index position the unit was bumped for a moment",
+            "in {count} index positions the unit was bumped for a moment",
+            count=bumped,
+        )
+        warnings.append(ResultWarning("bumped", text))
+    return warnings
+
+
+def _quiet(stops: Sequence[Stop], counts: Sequence[int]) -> np.ndarray:
+    """Stops in which no channel shakes several times as much as in the middle one of all."""
+    if len(stops) < LEAST_COMPARED or min(counts) < LEAST_SAMPLED:
+        return np.ones(len(stops), dtype=bool)
+    sigma = np.array([np.concatenate([s.rate_sigma, s.force_sigma]) for s in stops])
+    sample = sigma * np.sqrt(np.array(counts))[:, None]
+    return np.asarray(np.all(sample <= SHAKEN * np.median(sample, axis=0), axis=1))
+
+
+def calm(values: Floats) -> np.ndarray:
+    """Rows near the median of all in every channel, shape (n,)."""
+    if values.shape[0] < 8:
+        return np.ones(values.shape[0], dtype=bool)
+    off = np.abs(values - np.median(values, axis=0))
+    spread = 1.4826 * np.median(off, axis=0)
+    # of coarse digits the middle one may be most of them: then half a digit is the noise
+    digit = np.where(off > 0.0, off, np.inf).min(axis=0)
+    spread = np.where(spread > 0.0, spread, np.where(np.isfinite(digit), 0.5 * digit, 0.0))
+    return np.asarray(np.all(off <= MOVING_SIGMAS * spread + 1e-12, axis=1))
+
+
+def _stop(angle: float, rates: Floats, forces: Floats) -> Stop:
+    count = rates.shape[0]
+    if count < 2:
+        unknown = np.full(3, math.nan)
+        return Stop(angle, rates[0], unknown, forces[0], unknown)
+    root = math.sqrt(count)
+    return Stop(
+        angle,
+        rates.mean(axis=0),
+        np.maximum(rates.std(axis=0, ddof=1) / root, 1e-12),
+        forces.mean(axis=0),
+        np.maximum(forces.std(axis=0, ddof=1) / root, 1e-9),
+    )
+
+
+def with_sigmas(stops: list[Stop], axis: int) -> tuple[list[Stop], bool]:
+    """Stops of one row each get the scatter about the turned means as their sigma."""
+    if all(np.all(np.isfinite(s.rate_sigma)) for s in stops):
+        return stops, True
+    known = []
+    for name, floor in (("rate", 1e-9), ("force", 1e-5)):
+        values = np.array([getattr(s, name) for s in stops])
+        known.append(max(_residual_sd(values, [s.angle for s in stops], axis), floor))
+    filled = [
+        replace(s, rate_sigma=np.full(3, known[0]), force_sigma=np.full(3, known[1])) for s in stops
+    ]
+    return filled, False
+
+
+def _residual_sd(values: Floats, angles: Sequence[float], axis: int) -> float:
+    """Scatter about a vector that turns with the index and a constant one."""
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    rows, target = [], []
+    for value, angle in zip(values, angles, strict=True):
+        c, s = math.cos(angle), math.sin(angle)
+        rows += [[c, -s, 1.0, 0.0, 0.0], [s, c, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 0.0, 1.0]]
+        target += [value[i], value[j], value[axis]]
+    design = np.array(rows)
+    solution, *_ = np.linalg.lstsq(design, np.array(target), rcond=None)
+    rest = np.array(target) - design @ solution
+    dof = max(len(target) - int(np.linalg.matrix_rank(design)), 1)
+    return math.sqrt(float(rest @ rest) / dof)
