@@ -12,6 +12,7 @@ from surveyapp.errors import Problem, SurveyError
 if TYPE_CHECKING:
     from surveyapp.diagnosis.sensors.diagnosis import SensorDiagnosis
     from surveyapp.domain.advance import PartDone
+    from surveyapp.domain.sensor_entry import SensorLogEntry
     from surveyapp.workflows.diagnosing_sensor import SensorDiagnosed
 
 
@@ -68,6 +69,7 @@ def diagnose_log(
     second = None
     if confirm is not None:
         other = open_sensor_log(source, sensor=confirm, allow_outside=allow_outside)
+        _same_kind(entry, other.entry)
         second = SecondLog(confirm, other.file)
     kind = None if entry is None else entry.kind
     identity = opened.file.request.id if entry is None else entry.id
@@ -75,6 +77,19 @@ def diagnose_log(
     if entry is None or not (adopt or keep):
         return found
     return adopt_log(found, open_project(source), entry, adopt=adopt, software=SOFTWARE)
+
+
+def _same_kind(entry: SensorLogEntry | None, other: SensorLogEntry | None) -> None:
+    """A second log confirms only what its own kind of sensor can show.
+
+    Raises
+    ------
+    SurveyError
+    """
+    if entry is None or other is None or other.kind == entry.kind:
+        return
+    found, expected = other.kind or "", entry.kind or ""
+    raise SurveyError(Problem("the log is of another kind", "confirm", found, expected))
 
 
 def diagnose_sensor(
@@ -124,6 +139,7 @@ def diagnose_sensor(
     second = None
     if confirm is not None:
         other = open_sensor_log(folder, sensor=confirm, allow_outside=allow_outside)
+        _same_kind(opened.entry, other.entry)
         if other.entry is not None:
             second = Second(other.file, other.entry)
     return diagnose_log(

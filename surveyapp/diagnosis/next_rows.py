@@ -57,8 +57,10 @@ def rows_advice(case: Case, rng: np.random.Generator) -> Outlook | None:
         With a ``planner``, or with ``actions`` and the base design of other rows.
     rng : numpy.random.Generator
     """
+    if case.size > MOST_ROWS:
+        return None
     planner = case.planner() if case.planner is not None else _by_columns(case)
-    if planner is None or case.size > MOST_ROWS:
+    if planner is None:
         return None
     nu0 = 0.0 if case.sigma is None else NU0
     kept = _kept(case, planner, nu0)

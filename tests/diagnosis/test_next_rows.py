@@ -16,6 +16,7 @@ from surveyapp.diagnosis.engine import diagnose
 from surveyapp.diagnosis.next_rows import rows_advice
 from surveyapp.diagnosis.outlook import ActionResult, Outlook
 from surveyapp.diagnosis.subjects.traverse import traverse
+from surveyapp.diagnosis.subjects.traverse_actions import TraversePlanner
 from surveyapp.domain.observations import Observation, ObservationKind
 from surveyapp.domain.traverse import Network, NetworkPoint, Status
 from surveyapp.observation.next_action import next_actions
@@ -122,3 +123,28 @@ def test_after_an_automatic_gyro_the_screen_says_what_its_campaign_needs(tmp_pat
     actions = next_actions(project, project.sessions[-1].id)
     assert {item.action for item in actions} >= {"warmer", "other_line", "month"}
     assert all(len(line) <= WIDTH for line in next_lines(actions, shown=6))
+
+
+def test_offers_at_once_are_offers_one_by_one() -> None:
+    """And a basis that takes a mean over the rows takes that of the record."""
+    network = simulated(np.random.default_rng(4), Undeclared(), LENGTHS)
+    noted = tuple(
+        dataclasses.replace(obs, note=f"temp={10 + k % 7}") if obs.kind is K.DISTANCE else obs
+        for k, obs in enumerate(network.observations)
+    )
+    case = traverse(dataclasses.replace(network, observations=noted))
+    assert case.planner is not None
+    planner = case.planner()
+    assert isinstance(planner, TraversePlanner)
+    here, more = planner.adjusted.columns, planner.more
+    for name in ("distance_scale", "angle_bias"):
+        effect = planner.effects[name]
+        at_once = planner.rows_of(effect, {})
+        for i in range(0, len(planner.offers), 7):
+            table = {key: np.append(here[key], new[i]) for key, new in more.items()}
+            assert at_once[i] == pytest.approx(effect.basis(table)[-1], rel=1e-12)
+    observed = here["distance_m"] > 0.0
+    mean = here["distance_temperature_c"][observed].mean()
+    expected = more["distance_m"] * (more["distance_temperature_c"] - mean)
+    found = planner.rows_of(planner.effects["distance_temperature"], {})[:, 0]
+    assert found == pytest.approx(expected, rel=1e-9)

@@ -27,10 +27,10 @@ def about(axis: int, angle: float) -> Floats:
     return found
 
 
-def indexed(axis: int = 2) -> Columns:
+def indexed(axis: int = 2, heading: float = 40.0) -> Columns:
     """Heading 40, pitch 5, roll 3 degrees at latitude 35; four positions of 30 s at 10 Hz."""
     rng = np.random.default_rng(5)
-    h, p, r, lat = (math.radians(v) for v in (40.0, 5.0, 3.0, 35.0))
+    h, p, r, lat = (math.radians(v) for v in (heading, 5.0, 3.0, 35.0))
     body = about(2, -h) @ about(0, p) @ about(1, r)
     earth = POLE * np.array([0.0, math.cos(lat), math.sin(lat)])
     blocks = []
@@ -152,3 +152,18 @@ def test_the_biases_of_a_second_unit_hold_the_doubt_of_the_attitude(tmp_path: Pa
     assert sigma == pytest.approx(15.041 * math.cos(lat) * math.radians(heading), rel=0.2)
     for q in told["fixed_gyro"]["parameters"]:
         assert abs(q["value"]) < 4.0 * q["sigma"]
+
+
+def test_sets_in_which_the_unit_stood_differently_are_followed(tmp_path: Path) -> None:
+    """Two stops of a vehicle, turned by 110 degrees between: not one attitude for both."""
+    first, second = indexed(), indexed(heading=150.0)
+    both = {k: np.concatenate([v, second[k]]) for k, v in first.items()}
+    both["time_s"] = np.concatenate([first["time_s"], first["time_s"] + 200.0])
+    both["set"] = np.repeat([1.0, 2.0], first["time_s"].size)
+    code, told = found(tmp_path, both)
+    assert code == 0
+    assert any(w["code"] == "sets_differ" for w in told["warnings"])
+    assert told["heading"]["deg"] == pytest.approx(150.0, abs=0.3)
+    assert [t["heading_deg"] for t in told["tracking"]] == pytest.approx([40.0, 150.0], abs=0.3)
+    same = {**both, **{k: np.concatenate([v, v]) for k, v in first.items() if k != "time_s"}}
+    assert found(tmp_path, same)[1]["tracking"] == []

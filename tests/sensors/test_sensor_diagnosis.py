@@ -12,6 +12,8 @@ from scipy.signal import lfilter
 from surveyapp import api
 from surveyapp.api.sensors import LogOptions
 from surveyapp.cli.main import main
+from surveyapp.diagnosis.sensors.records import gross_rows
+from surveyapp.errors import SurveyError
 
 SHARED = Path(os.environ.get("SURVEYAPP_DATA", Path(__file__).parents[2] / "../shared/data"))
 BROAD = SHARED / "broad_magnetometer"
@@ -204,3 +206,24 @@ def test_a_calibrated_magnetometer_adopts_nothing(tmp_path: Path) -> None:
         header="time_s,mag_x_uT,mag_y_uT,mag_z_uT",
     )  # fmt: skip
     assert api.diagnose_log(path).to_dict()["adopted"] == []
+
+
+def test_wrong_readings_beside_each_other_are_gross_and_a_switch_is_none() -> None:
+    """Two in a row, and two about a good one, passed for a switch of two seconds."""
+    rng = np.random.default_rng(3)
+    residual = rng.normal(0.0, 0.5, (1000, 3))
+    residual[600:] += [8.0, -6.0, 5.0]
+    residual[[100, 300, 301, 500, 502]] += [[20.0, -18.0, 22.0]] * 5
+    residual[301] *= -1.0
+    assert [row for row, _ in gross_rows(residual)] == [100, 300, 301, 500, 502]
+
+    assert gross_rows(residual[550:]) == []
+
+
+def test_a_log_of_another_kind_confirms_nothing(tmp_path: Path) -> None:
+    made = api.simulate("compass", tmp_path / "p", effects=("hard_iron=12",), seed=1)
+    toml = Path(made.folder) / "project.toml"
+    kind = '\n[[sensor_log]]\nid = "other"\nkind = "tilt"\nfile = "sensors/compass.csv"\n'
+    toml.write_text(toml.read_text() + kind)
+    with pytest.raises(SurveyError, match="another kind"):
+        api.diagnose_log(made.folder, sensor="compass", confirm="other")

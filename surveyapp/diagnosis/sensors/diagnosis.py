@@ -21,6 +21,7 @@ from surveyapp.diagnosis.sensors.document import (
     candidates_of,
     gross_of,
     remedies_of,
+    rms_of,
     words_of,
 )
 from surveyapp.diagnosis.sensors.doubts import doubted
@@ -118,7 +119,7 @@ def diagnose_sensor(
     adopted = [adopted_of(record, found, after, c) for c in after.chosen]
     if record.gross:
         adopted.append(gross_of(record, n_log))
-    models = {name: _model(record, fit) for name, fit in fits.items()}
+    models = {name: _model(record, fit, gross=name == "before") for name, fit in fits.items()}
     if proof is not None:
         models["before"]["confirm_rms"] = proof.before
         models["after"]["confirm_rms"] = proof.after
@@ -258,17 +259,16 @@ def _plain(record: SensorRecord, fit: LoopFit) -> LoopFit:
     return fit_model(record.data, fit.chosen, only_white=True) or fit
 
 
-def _model(record: SensorRecord, fit: LoopFit) -> dict[str, Any]:
+def _model(record: SensorRecord, fit: LoopFit, *, gross: bool) -> dict[str, Any]:
     residual = _row_residual(record, _plain(record, fit))
     n = residual.shape[0] * residual.shape[1]
     dof = max(n - fit.parameters, 1)
-    # a compass: the length of the vector; a tilt sensor: one axis
-    divisor = residual.shape[0] if record.subject == "compass" else n
+    rms = rms_of(record, residual, gross=gross)
     return {
         "effects": list(fit.ids),
         "parameters": fit.parameters,
         "bic": fit.bic,
-        "rms": float(np.sqrt(np.sum(residual**2) / divisor)),
+        "rms": rms,
         "sigma0": float(np.sqrt(np.sum(residual**2) / dof)),
         "dof": dof,
         "loo_rms": _held_out(record, fit),

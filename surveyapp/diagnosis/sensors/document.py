@@ -12,6 +12,7 @@ from surveyapp.diagnosis.sensors.loop import Chosen, LoopFit, LoopResult, Trial
 from surveyapp.diagnosis.sensors.records import SensorRecord
 from surveyapp.languages import joined, said, term
 from surveyapp.languages.names import by_id, named
+from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Effect
 
@@ -78,6 +79,17 @@ def adopted_of(
         "p_family": None if trial is None else _p(trial, family),
         "margin_bic": None if trial is None else trial.gain,
     }
+
+
+def rms_of(record: SensorRecord, residual: Floats, *, gross: bool) -> float:
+    """Misfit of the rows of a model, with the gross errors still in it where that is asked.
+
+    Of a compass the length of the vector, of a tilt sensor one axis.
+    """
+    per_row = 1 if record.subject == "compass" else residual.shape[1]
+    out = [size for _, size in record.gross] if gross else []
+    squares = float(np.sum(residual**2)) + sum(size**2 for size in out)
+    return math.sqrt(squares / (per_row * (residual.shape[0] + len(out))))
 
 
 def gross_of(record: SensorRecord, n_log: int) -> dict[str, Any]:

@@ -113,8 +113,8 @@ def rotation_matrices(q: Floats) -> Floats:
 def gross_rows(residual: Floats) -> list[tuple[int, float]]:
     """Single rows that leave both their neighbours, with the size by which they do.
 
-    A switch leaves its neighbours on one side only: its second difference is as large in the next
-    row, that of a single wrong reading half as large.
+    Its neighbours agree with each other, as across a switch they do not. Two wrong readings in a
+    row are looked for as a pair.
     """
     if len(residual) < 8:
         return []
@@ -123,12 +123,35 @@ def gross_rows(residual: Floats) -> list[tuple[int, float]]:
     if np.any(spread <= 0.0):
         return []
     size = np.sqrt(np.sum((second / spread) ** 2, axis=1))
-    around = np.maximum(np.concatenate([[0.0], size[:-1]]), np.concatenate([size[1:], [0.0]]))
+    across = np.sqrt(np.sum(((residual[2:] - residual[:-2]) / spread) ** 2, axis=1))
     limit = GROSS * math.sqrt(residual.shape[1])
-    places = np.flatnonzero((size > limit) & (size > 1.5 * around))
-    if len(places) > max(MOST_GROSS * len(residual), 3.0):
+    places = np.flatnonzero((size > limit) & (across < 0.5 * size))
+    found = {int(i) + 1: float(np.linalg.norm(second[i])) for i in places}
+    # a good reading between two wrong ones that are alike leaves both of them as well
+    found = {row: s for row, s in found.items() if not {row - 1, row + 1} <= found.keys()}
+    found |= _gross_pairs(residual, spread, limit, taken=found)
+    if len(found) > max(MOST_GROSS * len(residual), 3.0):
         return []
-    return [(int(i) + 1, float(np.linalg.norm(second[i]))) for i in places]
+    return sorted(found.items())
+
+
+def _gross_pairs(
+    residual: Floats, spread: Floats, limit: float, *, taken: Mapping[int, float]
+) -> dict[int, float]:
+    """Two wrong readings in a row: both leave the line between their neighbours, which agree."""
+    before, after = residual[:-3], residual[3:]
+    first = residual[1:-2] - (2.0 * before + after) / 3.0
+    second = residual[2:-1] - (before + 2.0 * after) / 3.0
+    across, one, other = (
+        np.sqrt(np.sum((d / spread) ** 2, axis=1)) for d in (after - before, first, second)
+    )
+    least = np.minimum(one, other)
+    found: dict[int, float] = {}
+    for i in np.flatnonzero((least > limit) & (across < 0.5 * least)).tolist():
+        if not {i, i + 1, i + 2, i + 3} & (set(taken) | set(found)):
+            found[i + 1] = float(np.linalg.norm(first[i]))
+            found[i + 2] = float(np.linalg.norm(second[i]))
+    return found
 
 
 def compass_record(log: SensorLog, own: tuple[Effect, ...] = ()) -> SensorRecord:

@@ -123,28 +123,42 @@ class TraversePlanner:
         own = self.effects[effect.id]
         return np.asarray(self.adjusted.whitener @ own.basis(self.adjusted.columns, **point))
 
-    def _new(self, effect: Effect, point: Point, tables: Sequence[Columns]) -> Floats:
-        """Rows of an effect in every offer, in its sigmas, shape (offers, q)."""
+    def _new(self, effect: Effect, point: Point) -> Floats:
+        """Rows of an effect in every offer, in its sigmas, shape (offers, widest)."""
         own = self.effects[effect.id]
         found = np.zeros((len(self.offers), self.widest))
         if own.acts_on == "observation" or (own.event and own.per is None):
             return found
-        for row, (offer, table) in enumerate(zip(self.offers, tables, strict=True)):
-            if offer.other and own.per == "instrument":
-                continue
-            # what a gyro reads more, its constant is less
-            sign = -1.0 if offer.made.kind is K.GYRO_CONSTANT else 1.0
-            here = own.basis(table, **point)[-1]
-            found[row, : here.size] = sign * here / offer.made.sigma
+        rows = self.rows_of(own, point)
+        recurs = np.array([not (o.other and own.per == "instrument") for o in self.offers])
+        # what a gyro reads more, its constant is less
+        signs = [-1.0 if o.made.kind is K.GYRO_CONSTANT else 1.0 for o in self.offers]
+        factor = recurs * signs / np.array([o.made.sigma for o in self.offers])
+        found[:, : rows.shape[1]] = factor[:, None] * rows
         return found
+
+    def rows_of(self, own: Effect, point: Point) -> Floats:
+        """Rows of the basis in every offer as if it alone were added, shape (offers, q)."""
+        here = {name: self.adjusted.columns[name] for name in self.more}
+        n = self.adjusted.right.size
+        all_at_once = own.basis(
+            {name: np.concatenate([here[name], new]) for name, new in self.more.items()}, **point
+        )
+        if np.allclose(all_at_once[:n], own.basis(here, **point), rtol=1e-12, atol=0.0):
+            return np.asarray(all_at_once[n:])
+        # a basis that looks at all rows, such as at their mean
+        return np.stack(
+            [
+                own.basis(
+                    {name: np.append(here[name], new[i]) for name, new in self.more.items()},
+                    **point,
+                )[-1]
+                for i in range(len(self.offers))
+            ]
+        )
 
     def plans(self, kept: Sequence[Kept], /) -> list[Plan]:
         """The offers that promise most, at most two of a kind."""
-        here = self.adjusted.columns
-        tables = [
-            {name: np.append(here[name], values[i]) for name, values in self.more.items()}
-            for i in range(len(self.offers))
-        ]
         known: dict[tuple[object, ...], tuple[Floats, Floats]] = {}
         for item in kept:
             key = _key(item)
@@ -152,10 +166,10 @@ class TraversePlanner:
                 continue
             if item.effect is None:
                 nothing = np.zeros((self.adjusted.right.size, self.widest))
-                known[key] = nothing, np.zeros((len(tables), self.widest))
+                known[key] = nothing, np.zeros((len(self.offers), self.widest))
             else:
                 own = self._padded(self._whitened(item.effect, item.point))
-                known[key] = own, self._new(item.effect, item.point, tables)
+                known[key] = own, self._new(item.effect, item.point)
         columns = [known[_key(item)][0] for item in kept]
         new = np.stack([known[_key(item)][1] for item in kept])  # member, offer, coefficient
         chosen = self._shortlist(kept, columns, new)

@@ -36,6 +36,8 @@ from surveyapp_models.rate.attitude import azimuth_of, earth_rate
 
 LEVEL_AXIS = math.radians(10.0)
 EAST_WEST = math.radians(15.0)
+APART = 3.0
+"""Factor by which one attitude for all sets must fit worse than one for each."""
 ALIGNED = math.radians(5.0)
 """Within these angles a degenerate attitude is told [rad]."""
 
@@ -74,13 +76,20 @@ def find_heading(log: SensorLog, options: IndexingOptions) -> NorthResult:
         text = "one row a stop: the sigmas are the scatter of the stops about the solution"
         warnings.append(ResultWarning("rows_are_means", text))
     tracking: list[Tracked] = []
-    if options.track:
-        groups = _groups(log, stops, rows)
+    groups = _groups(log, stops, rows)
+    found, used = solve_indexing(stops, options.setting), len(stops)
+    apart = not options.track and _stood_differently(groups, found, options.setting)
+    if apart:
+        text = said(
+            "the unit stood differently in the {count} sets: the bias is followed from one to the "
+            "next as with `track`, and the heading is that of the last",
+            count=len(groups),
+        )
+        warnings.append(ResultWarning("sets_differ", text))
+    if options.track or apart:
         tracking = track_bias(groups, options.setting)
         last = tracking[-1]
         found, used = last.indexed, len(groups[-1][2])
-    else:
-        found, used = solve_indexing(stops, options.setting), len(stops)
     if not found.roots:
         raise SurveyError(Problem("no attitude fits the log", log.path))
     problems = rate_problems(
@@ -89,6 +98,17 @@ def find_heading(log: SensorLog, options: IndexingOptions) -> NorthResult:
     if problems:
         raise SurveyError(problems)
     return _result(log, options, found, tracking, warnings=warnings, stops=used)
+
+
+def _stood_differently(
+    groups: Sequence[tuple[int, float, list[Stop]]], together: Indexed, setting: Setting
+) -> bool:
+    """Whether each set fits an attitude of its own far better than all fit one."""
+    worst = max(together.residual_scale, together.misfit)
+    if len(groups) < 2 or worst <= APART:
+        return False
+    alone = [solve_indexing(inside, setting) for _, _, inside in groups]
+    return APART * max(max(one.residual_scale, one.misfit) for one in alone) < worst
 
 
 def _groups(

@@ -10,6 +10,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from surveyapp.core.sensors.rate.motion_doubts import odometer_problems, record_doubts
 from surveyapp.core.sensors.rate.motion_pieces import (
     ACCELEROMETERS,
     GYROS,
@@ -86,14 +87,20 @@ def judge_motion(log: SensorLog, options: MotionOptions) -> Motion:
     if log.size < LEAST_ROWS:
         found = said("{size} rows", size=log.size)
         raise SurveyError(Problem("the record is too short", log.path, found, "100 rows or more"))
+    falls = odometer_problems(log)
+    if falls:
+        raise SurveyError(falls)
     interval = 1.0 / (log.rate_hz or 100.0)
     states = states_of(log, false_alarm=options.false_alarm, factor=options.still_gate_factor)
     path, snapped, zero, warnings = _path(_Record(log, states, interval), options)
     time = log.columns["time_s"]
+    doubts = record_doubts(log, states.still, snapping=options.snap)
+    warnings = [*warnings, *doubts]
     unseen = _unseen(time, states.still, interval) if path is not None else None
     if unseen is not None:
         warnings = [*warnings, unseen]
-    consistent = unseen is None and (zero is None or zero["verdict"] == "consistent")
+    stands = any(w.code == "odometer_stands" for w in doubts)
+    consistent = unseen is None and not stands and (zero is None or zero["verdict"] == "consistent")
     return Motion(
         source=log.id,
         n=log.size,

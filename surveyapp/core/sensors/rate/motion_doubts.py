@@ -1,0 +1,78 @@
+"""What in a record of motion contradicts what its columns are taken for."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from surveyapp.core.sensors.rate.motion_pieces import ACCELEROMETERS
+from surveyapp.core.sensors.rate.still import Mask
+from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.errors import Problem
+from surveyapp.languages import said
+
+ODOMETER = "odometer_m"
+FALLS_M = 0.5
+"""By so much an odometer may count back: a wheel that rocks at a stop."""
+UPRIGHT = 0.7
+"""Share of gravity along z from which z is up or down, within 45 degrees."""
+LEAST_MOVING_S = 5.0
+
+
+def odometer_problems(log: SensorLog) -> list[Problem]:
+    """An odometer that counts back: what was driven then is not known."""
+    values = log.columns.get(ODOMETER)
+    if values is None:
+        return []
+    steps = np.diff(values)
+    back = float(-steps[steps < 0.0].sum())
+    if back <= FALLS_M:
+        return []
+    first = int(np.argmax(steps < 0.0)) + 1
+    return [
+        Problem(
+            said("the odometer counts back"),
+            said("{path}, row {row}", path=log.path, row=first + 1),
+            said("{back:.1f} m in all", back=back),
+            said("metres driven, which never fall"),
+            said("cut the log where the odometer was set back; a vehicle that backs drives on"),
+        )
+    ]
+
+
+def record_doubts(log: SensorLog, still: Mask, *, snapping: bool) -> list[ResultWarning]:
+    """What may be wrong although a result comes out.
+
+    Parameters
+    ----------
+    log : SensorLog
+    still : ndarray of bool, shape (n,)
+    snapping : bool
+        Whether the drift is to be laid back over the path.
+    """
+    found = []
+    rows = still if still.any() else np.ones(still.size, dtype=bool)
+    felt = np.array([float(np.mean(log.columns[c][rows])) for c in ACCELEROMETERS])
+    size = float(np.linalg.norm(felt))
+    if abs(felt[2]) < UPRIGHT * size:
+        along = "xyz"[int(np.argmax(np.abs(felt)))]
+        text = said(
+            "gravity lies along {along}, not along z: with X right, Y forward, Z up the states of "
+            "acceleration and turning do not mean what they say; are the columns exchanged?",
+            along=along,
+        )
+        found.append(ResultWarning("z_not_up", text))
+    odometer = log.columns.get(ODOMETER)
+    if odometer is None:
+        if snapping:
+            text = "nothing was snapped: the drift is laid back over what an odometer counted"
+            found.append(ResultWarning("no_odometer", text))
+        return found
+    moving_s = float(np.count_nonzero(~still)) / (log.rate_hz or 100.0)
+    if float(np.ptp(odometer)) == 0.0 and moving_s > LEAST_MOVING_S:
+        text = said(
+            "the odometer stands while the sensors move for {moving_s:.0f} s: the path is no path",
+            moving_s=moving_s,
+        )
+        found.append(ResultWarning("odometer_stands", text))
+    return found
