@@ -1,6 +1,6 @@
 """What the size of a magnetometer's field tells where its attitude is not known.
 
-Temperature and gradient have forms of their own there, and a distortion must be one that iron makes.
+Temperature and gradient have forms of their own there; a distortion must be one that iron makes.
 """
 
 from __future__ import annotations
