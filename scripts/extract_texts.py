@@ -15,20 +15,24 @@ import ast
 import json
 import string
 import sys
+import tomllib
 from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Final, get_args
 
+import numpy as np
+
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "models")]
 
 from scripts import problem_texts  # noqa: E402
-from surveyapp.languages import LANGUAGES  # noqa: E402
-from surveyapp.languages.names import OF, QUANTITIES, WORDS  # noqa: E402
+from surveyapp.languages import LANGUAGES, Said  # noqa: E402
+from surveyapp.languages.names import OF, QUANTITIES, WORDS, named  # noqa: E402
 from surveyapp.languages.po_file import read_po  # noqa: E402
 from surveyapp.languages.vocabulary import VOCABULARY  # noqa: E402
+from surveyapp_models.effects.effect import Effect  # noqa: E402
 
 Key = tuple[str, str | None]
 FOLDER: Final = ROOT / "surveyapp" / "languages"
@@ -133,13 +137,48 @@ def _tables() -> Iterator[tuple[str, str]]:
         "domain/penetration.py": STEP_TITLES,
         "domain/project.py": (*get_args(Method), *get_args(Purpose)),
         "domain/shaft.py": CHECK_IDS,
-        "models/effects": [text for effect in CATALOGUE for text in (effect.id, effect.title)],
+        "models/effects": [text for effect in CATALOGUE for text in _effect(effect)],
+        "models/tolerances": _rule_books(),
         "languages/names.py": (*QUANTITIES, *OF, *WORDS),
         "languages/vocabulary.py": VOCABULARY,
     }
     for place, names in tables.items():
         for name in names:
             yield name.replace("_", " "), f"surveyapp/{place}"
+
+
+def _rule_books() -> Iterator[str]:
+    """Titles and clauses of the rule books that come with the program."""
+    for path in sorted((ROOT / "models" / "surveyapp_models" / "tolerances").glob("*.toml")):
+        book = tomllib.loads(path.read_text(encoding="utf-8"))
+        yield book["title"]
+        yield from (limit["clause"] for limit in book["limit"] if "clause" in limit)
+
+
+def _effect(effect: Effect) -> Iterator[str]:
+    """What a diagnosis says of an effect: its texts, its names in words, units that have words."""
+    yield from (effect.id, effect.title, effect.title.lower())
+    yield from (effect.remedy, effect.symptom, effect.separate_by)
+    names = [*(c.name for c in effect.coefficients), *(g.name for g in effect.grid)]
+    units = [*(c.unit for c in effect.coefficients), *(g.unit for g in effect.grid)]
+    for name in (effect.id, *names):
+        yield from (text for text in _leaves(named(name)) if set(text) - set("xyz"))
+    yield from units
+    if effect.subject in ("reversal_run", "campaign", "traverse"):
+        yield from (need.unit for need in effect.needs)  # told where a project lacks it
+    if effect.at_datum is not None:
+        columns = {need.name: np.zeros(4) for need in effect.needs}
+        states = [text for text, _ in effect.at_datum(columns, {}) if not text[0].isdigit()]
+        yield from states
+
+
+def _leaves(text: str) -> Iterator[str]:
+    """The texts without fields that a text is made of."""
+    if isinstance(text, Said):
+        if not text.fields:
+            yield text.template
+        for value in text.fields.values():
+            yield from _leaves(value)
 
 
 def _strings(value: Any) -> Iterator[str]:

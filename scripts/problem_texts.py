@@ -45,7 +45,7 @@ def texts_of(trees: dict[Path, ast.Module]) -> dict[Path, Found]:
         "ResultWarning": {"text": 1},
         **{name: {"message": 0} for name in ERRORS},
     }
-    calls = {path: list(_calls(tree, None)) for path, tree in trees.items()}
+    calls = {path: list(_calls(tree)) for path, tree in trees.items()}
     while True:
         found = {path: _of_module(tree, calls[path], sinks) for path, tree in trees.items()}
         grown = _grown(sinks, (pair for one in found.values() for pair in one.handed))
@@ -83,11 +83,16 @@ def _of_module(tree: ast.Module, calls: list[_Call], sinks: Sinks) -> Found:
     return found
 
 
-def _calls(node: ast.AST, inside: _Function | None) -> Iterator[_Call]:
-    for child in ast.iter_child_nodes(node):
-        if isinstance(child, ast.Call):
-            yield inside, child
-        yield from _calls(child, child if isinstance(child, _Function) else inside)
+def _calls(tree: ast.Module) -> Iterator[_Call]:
+    """Every call in the order of the source, and the function that it stands in."""
+    waiting: list[tuple[_Function | None, ast.AST]] = [(None, tree)]
+    while waiting:
+        inside, node = waiting.pop()
+        if isinstance(node, ast.Call):
+            yield inside, node
+        if isinstance(node, _Function):
+            inside = node
+        waiting += [(inside, child) for child in reversed(list(ast.iter_child_nodes(node)))]
 
 
 def _given(call: ast.Call, argument: str, place: int) -> list[ast.expr]:

@@ -21,6 +21,7 @@ from typing import Final
 from surveyapp.api.orientation import orient
 from surveyapp.api.project import Folder
 from surveyapp.domain.filing import BATCH_COLUMNS, BatchResult, BatchRow
+from surveyapp.domain.records import not_a_formula
 from surveyapp.domain.results import LineResult, to_arcsec, to_degrees
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.guarded import ON_WINDOWS
@@ -175,7 +176,7 @@ def batch(
                 counts[row.status] += 1
                 if row.status == "failed":
                     failures.append((row.path, row.problem))
-                stream.write(_line([str(value) for value in row.to_dict().values()]))
+                stream.write(_line([not_a_formula(str(x)) for x in row.to_dict().values()]))
                 if progress is not None:
                     progress(done, len(folders), len(failures))
     except OSError as error:

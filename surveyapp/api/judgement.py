@@ -48,6 +48,7 @@ def check(
         If the project cannot be used; what was changed after its closing is among the problems.
     """
     from surveyapp.workflows.computing import judged
+    from surveyapp.workflows.record_on_disk import record_warnings
 
     if not isinstance(source, Project | str | PathLike):
         found = source
@@ -56,6 +57,7 @@ def check(
         made = oriented(project, even_unfinished=bool(project.traverses), advance=advance)
         found = judged(made, software=SOFTWARE)
     told = tuple(w for w in found.result.warnings if w.code == "session_unfinished")
+    told = (*told, *record_warnings(found.project))
     checks = found.result.checks
     if seal is not None:
         from surveyapp.core.checks.filing_checks import seal_check

@@ -11,7 +11,7 @@ from surveyapp.domain.project import Project, ResultWarning
 from surveyapp.domain.records import Listing
 from surveyapp.domain.results import OrientationResult
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.languages import said
+from surveyapp.languages import joined, said
 
 if TYPE_CHECKING:
     import numpy as np
@@ -171,7 +171,7 @@ def with_line(found: Computed, line: str | tuple[str, str]) -> OrientationResult
     result = found.result
     stations = [item.name for item in found.project.stations]
     told = [item.text for item in result.warnings if item.code == "session_unfinished"]
-    found_line = resolve_line(line, stations, result.lines, more="; ".join(told))
+    found_line = resolve_line(line, stations, result.lines, more=joined("; ", told))
     own = tuple(x for x in result.lines if StationLine(x.station, x.target) == found_line)
     if all(item.true_azimuth is None for item in own):
         raise SurveyError(

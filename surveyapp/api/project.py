@@ -13,7 +13,7 @@ from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import Project
 from surveyapp.domain.records import Listing
 from surveyapp.errors import Problem, SurveyError, nearest_names
-from surveyapp.languages import said
+from surveyapp.languages import joined, said, term
 
 if TYPE_CHECKING:
     from surveyapp.io.simulated import SimulatedFiles
@@ -50,11 +50,11 @@ def require(name: str, known: Iterable[str], kind: str, more: str = "") -> None:
     if name not in names:
         raise SurveyError(
             Problem(
-                what=said("there is no {kind} of this name", kind=kind),
+                what=said("there is no {kind} of this name", kind=term(kind)),
                 where=kind,
                 found=name,
-                expected=said("the name of a {kind} of the project", kind=kind),
-                hint=". ".join(filter(None, [nearest_names(name, names), more])),
+                expected=said("the name of a {kind} of the project", kind=term(kind)),
+                hint=joined(". ", filter(None, [nearest_names(name, names), more])),
             )
         )
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from surveyapp.cli.output import WIDTH, number, print_json, table
 from surveyapp.domain.adjustment import AdjustmentResult
+from surveyapp.languages import joined, said, said_each, shown, term
 from surveyapp_models.angles import RHO_ARCSEC, AngleUnit
 
 if TYPE_CHECKING:
@@ -66,10 +67,11 @@ def _snooped(found: SnoopingResult | None, unit: AngleUnit) -> str:
     if found is None:
         return ""
     if not found.removed:
-        return "Data snooping: nothing is taken out"
-    names = "; ".join(item.description for item in found.removed)
-    head = f"Data snooping takes out, in this order: {names}"
-    return f"{head}\n\n{adjustment_text(found.adjustment, 'without them', unit)}"
+        return shown(said("Data snooping: nothing is taken out"))
+    names = joined("; ", [item.description for item in found.removed])
+    head = shown(said("Data snooping takes out, in this order: {names}", names=names))
+    text = adjustment_text(found.adjustment, said("without them"), unit)
+    return f"{head}\n\n{text}"
 
 
 def _compass(items: Sequence[CompassResult]) -> str:
@@ -81,11 +83,15 @@ def _compass(items: Sequence[CompassResult]) -> str:
             for name, e, n in zip(item.stations, item.e, item.n, strict=True)
         ]
         angular = number(None if item.angular is None else item.angular * RHO_ARCSEC)
-        gap = f"{_mm(item.misclosure_e)} {_mm(item.misclosure_n)} mm on {item.length_m:.1f} m"
-        parts.append(
-            f'Compass rule, no sigmas: {angular}" and {gap} distributed\n'
-            + table(["station", "e", "n"], rows)
+        gap = f"{_mm(item.misclosure_e)} {_mm(item.misclosure_n)}"
+        head = said(
+            'Compass rule, no sigmas: {angular}" and {gap} mm on {length:.1f} m distributed',
+            angular=angular,
+            gap=gap,
+            length=item.length_m,
         )
+        columns = said_each("station", "e", "n")
+        parts.append(f"{shown(head)}\n{table(columns, rows)}")
     return "\n\n".join(parts)
 
 
@@ -93,17 +99,20 @@ def _components(items: Sequence[VarianceComponent]) -> str:
     """Factor of the stated sigmas of each kind."""
     rows = [
         [
-            item.group,
+            term(item.group),
             number(item.factor, 3),
             number(item.sigma, 3),
             number(item.redundancy, 1),
             str(item.observations),
-            "goes to zero: stated sigmas kept" if item.vanishing else "",
+            said("goes to zero: stated sigmas kept") if item.vanishing else "",
         ]
         for item in items
     ]
-    head = ["group", "factor", "±", "redundancy", "observations", ""]
-    return "Variance components: factors of the stated sigmas\n" + table(head, rows) if rows else ""
+    if not rows:
+        return ""
+    columns = (*said_each("group", "factor", "±", "redundancy", "observations"), "")
+    head = shown(said("Variance components: factors of the stated sigmas"))
+    return f"{head}\n{table(columns, rows)}"
 
 
 def adjustment_text(result: AdjustmentResult, name: str, unit: AngleUnit) -> str:
@@ -112,7 +121,7 @@ def adjustment_text(result: AdjustmentResult, name: str, unit: AngleUnit) -> str
     from surveyapp.report.sections import traverse as section
     from surveyapp.report.text import blocks_text
 
-    made = section.blocks(name, result, unit=unit, title=f"{name}: adjustment")
+    made = section.blocks(name, result, unit=unit, title=said("{name}: adjustment", name=name))
     return blocks_text((block for block in made if not isinstance(block, Figure)), WIDTH)
 
 

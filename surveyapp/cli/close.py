@@ -8,6 +8,7 @@ import sys
 from surveyapp.cli.output import print_json
 from surveyapp.cli.password import asked_password
 from surveyapp.domain.filing import ClosingResult
+from surveyapp.languages import counted, said, shown
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -41,19 +42,33 @@ def tell(result: ClosingResult, *, as_json: bool, folder: str) -> int:
 
     outdated = outdated_told(folder)
     if outdated:
-        print(outdated, file=sys.stderr)
+        print(shown(outdated), file=sys.stderr)
     if as_json:
         print_json(result.to_dict())
         return 0
-    what = f"session {result.session}" if result.session else "project"
+    what = said("session {name}", name=result.session) if result.session else said("project")
     if result.seal:
-        print(f"{what} closed, {result.files} files sealed")
-        print(f"  at    {result.at}\n  seal  {result.head}")
-        print(f"  surveyapp check DIR --seal {result.head} verifies it")
+        _say(
+            counted(
+                "{what} closed, {count} file sealed",
+                "{what} closed, {count} files sealed",
+                count=result.files,
+                what=what,
+            )
+        )
+        _say(said("  at    {time}", time=result.at))
+        _say(said("  seal  {head}", head=result.head))
+        _say(said("  surveyapp check DIR --seal {head} verifies it", head=result.head))
         if result.signature:
-            print(f"  signed {result.signature}")
+            _say(said("  signed {name}", name=result.signature))
     else:
-        print(f"{what} reopened: {result.reason}\n  at    {result.at}")
+        _say(said("{what} reopened: {reason}", what=what, reason=result.reason))
+        _say(said("  at    {time}", time=result.at))
         for text in result.found:
-            print(f"  changed since it was closed: {text}")
+            _say(said("  changed since it was closed: {text}", text=text))
     return 0
+
+
+def _say(text: str) -> None:
+    """Print a text in the language in use."""
+    print(shown(text))

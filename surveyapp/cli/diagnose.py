@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import textwrap
 from typing import TYPE_CHECKING
 
-from surveyapp.cli.output import WIDTH, heading, number, print_json, table
-from surveyapp.languages import said
+from surveyapp.cli.output import WIDTH, heading, number, paragraph, print_json, table
+from surveyapp.languages import said, said_each, shown, term
+from surveyapp.languages.names import by_id
 
 if TYPE_CHECKING:
     from surveyapp.workflows.diagnosing import Diagnosed
@@ -85,7 +85,7 @@ def run(options: argparse.Namespace) -> int:
         made = section.blocks(found.diagnosis, found.words, {}, unit=project.angle_unit)
         print(blocks_text(made, WIDTH))
         for place in found.written:
-            print(f"written: {place}")
+            print(shown(said("written: {place}", place=place)))
     return 0
 
 
@@ -150,9 +150,9 @@ def _sensor(options: argparse.Namespace) -> int:
         print_json(found.to_dict())
         return 0
     for sentence in found.words:
-        print(textwrap.fill(sentence, 80, subsequent_indent="  "))
+        print(paragraph(sentence, indent=0))
     for place in found.written:
-        print(f"written: {place}")
+        print(shown(said("written: {place}", place=place)))
     return 0
 
 
@@ -178,7 +178,7 @@ def _rate_sensor(options: argparse.Namespace) -> int:
         made = section.blocks(found_sensor.diagnosis, found_sensor.words, {}, unit=unit)
         print(blocks_text(made, WIDTH))
         for place in found_sensor.written:
-            print(f"written: {place}")
+            print(shown(said("written: {place}", place=place)))
     return 0
 
 
@@ -200,36 +200,42 @@ def _refuse_archive(options: argparse.Namespace) -> None:
 
 def instrument_text(result: InstrumentDiagnosis) -> str:
     """What all records of an instrument say, in words and tables."""
-    parts = [heading(f"instrument {result.instrument.id}: {result.verdict.replace('_', ' ')}")]
-    parts.append("\n".join(textwrap.fill(text, 79) for text in result.words()))
+    verdict = term(result.verdict.replace("_", " "))
+    head = said("instrument {name}: {verdict}", name=result.instrument.id, verdict=verdict)
+    parts = [heading(head)]
+    parts.append("\n".join(paragraph(text, indent=0, hanging=0) for text in result.words()))
     if result.pooled is not None:
         rows = [
             [
-                item.effect,
+                by_id(item.effect),
                 number(item.evidence, 2),
                 number(item.p, 3),
                 "" if item.coefficient is None else f"{item.coefficient:.3g}",
                 "" if item.sigma is None else f"{item.sigma:.2g}",
-                item.unit,
+                term(item.unit),
                 str(item.sessions),
             ]
             for item in result.pooled.effects
         ]
-        head = ["effect", "evidence", "p", "coefficient", "sigma", "unit", "runs"]
-        parts.append(table(head, rows, indent=0))
+        columns = said_each("effect", "evidence", "p", "coefficient", "sigma", "unit", "runs")
+        parts.append(table(columns, rows, indent=0))
     if result.priors is not None:
         shares = sorted(result.priors.shares.items(), key=lambda item: -item[1])
-        rows = [[unit, f"{share:.3f}"] for unit, share in shares]
-        parts.append(table(["prior of", "share"], rows, indent=0))
+        rows = [[by_id(unit), f"{share:.3f}"] for unit, share in shares]
+        parts.append(table(said_each("prior of", "share"), rows, indent=0))
     return "\n\n".join(parts)
 
 
 def subjects_text(found: Diagnosed) -> str:
     """What could be diagnosed."""
     if not found.subjects:
-        return "\n".join(textwrap.fill(text, 79) for text in found.words)
+        return "\n".join(paragraph(text, indent=0, hanging=0) for text in found.words)
     rows = [
         [f"--{s.keyword}", s.id, "" if s.observations is None else str(s.observations)]
         for s in found.subjects
     ]
-    return "Choose one:\n" + table(["option", "", "rows"], rows)
+    return (
+        shown(said("Choose one:"))
+        + "\n"
+        + table((*said_each("option"), "", *said_each("rows")), rows)
+    )

@@ -1,7 +1,7 @@
 """The language of the screens and the record: an option, else the user's setting, else the locale.
 
-Results of commands and JSON are English, so that a script reads the same everywhere; refusals are
-said to a person, in the language wished for.
+JSON is English, so that a script reads the same everywhere; refusals, and results that are made of
+the blocks of the record, are said to a person, in the language wished for.
 """
 
 from __future__ import annotations

@@ -40,15 +40,26 @@ class Command:
     summary: str
     waits: bool = True
     """Whether a bar is shown while it runs; screens and those with a bar of their own have none."""
+    speaks: bool = False
+    """Whether what it prints is made of the texts of the record and follows the language."""
 
 
 COMMANDS: tuple[Command, ...] = (
     Command("open", "open_project", "open the terminal screens on one project", waits=False),
-    Command("orient", "orient", "field book to gyro north, constant and grid azimuth"),
-    Command("check", "check", "apply every limit and test that the data can answer"),
-    Command("adjust", "adjust", "traverse or .gkf network to coordinates, sigmas and tests"),
-    Command("report", "report", "the survey record as PDF, or a blank field-book form"),
-    Command("diagnose", "diagnose", "which effect does the model lack, and how sure is that"),
+    Command("orient", "orient", "field book to gyro north, constant and grid azimuth", speaks=True),
+    Command("check", "check", "apply every limit and test that the data can answer", speaks=True),
+    Command(
+        "adjust", "adjust", "traverse or .gkf network to coordinates, sigmas and tests", speaks=True
+    ),
+    Command(
+        "report", "report", "the survey record as PDF, or a blank field-book form", speaks=True
+    ),
+    Command(
+        "diagnose",
+        "diagnose",
+        "which effect does the model lack, and how sure is that",
+        speaks=True,
+    ),
     Command(
         "calibrate",
         "calibrate",
@@ -81,8 +92,10 @@ COMMANDS: tuple[Command, ...] = (
         "a filter on a sensor log: deviation before, after, and its lag",
         waits=False,
     ),
-    Command("close", "close", "seal a project or a session with a hash chain in the ledger"),
-    Command("reopen", "reopen", "open what was closed; the ledger keeps the reason"),
+    Command(
+        "close", "close", "seal a project or a session with a hash chain in the ledger", speaks=True
+    ),
+    Command("reopen", "reopen", "open what was closed; the ledger keeps the reason", speaks=True),
     Command("compare", "compare", "what changed between two results, and because of what"),
     Command(
         "import",
@@ -311,8 +324,11 @@ def _run(arguments: list[str]) -> int:
     parser = parser_of(command)
     options = parser.parse_strictly(arguments[1:])
     try:
-        with Waiting(first, sys.stderr if command.waits else None) as waiting:
-            options.advance = waiting.advance
+        with contextlib.ExitStack() as stack:
+            if command.speaks:
+                stack.enter_context(in_wished())
+            bar = Waiting(first, sys.stderr if command.waits else None)
+            options.advance = stack.enter_context(bar).advance
             return int(_module(command.module).run(options))
     except SurveyError as error:
         raise SurveyError([parser.as_typed(problem) for problem in error.problems]) from None

@@ -7,6 +7,7 @@ import argparse
 from surveyapp.cli.output import WIDTH, heading, print_json
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
+from surveyapp.languages import said
 
 ESTIMATORS = ("least-squares", "schuler", "amplitude", "transit")
 
@@ -60,5 +61,5 @@ def orientation_text(
     from surveyapp.report.text import blocks_text
 
     made = result_blocks(project, result, reduction=reduction)
-    head = heading(f"{result.project}: orientation")
+    head = heading(said("{name}: orientation", name=result.project))
     return f"{head}\n\n{blocks_text(without_figures(made), WIDTH)}"

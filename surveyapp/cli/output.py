@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 import re
 import sys
-import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
+from surveyapp.languages import shown
 from surveyapp.report.blocks import Table
-from surveyapp.report.text import display_width, table_text
+from surveyapp.report.in_words import in_words
+from surveyapp.report.text import display_width, filled, table_text
 
 WIDTH: Final = 80
 """Columns of a terminal; a table that is wider has its texts wrapped."""
@@ -40,7 +41,7 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]], *, indent: int = 2
         "r" if all(_is_number(row[i]) for row in rows) else "l" for i in range(len(head))
     )
     block = Table(tuple(head), tuple(tuple(row) for row in rows), align)
-    return table_text(block, WIDTH, indent=indent)
+    return table_text(in_words(block), WIDTH, indent=indent)
 
 
 def columns(text: str) -> int:
@@ -54,13 +55,7 @@ def _is_number(cell: str) -> bool:
 
 def paragraph(text: str, *, indent: int = 2, hanging: int = 2) -> str:
     """A text wrapped to the terminal, its further lines indented by ``hanging`` more."""
-    return textwrap.fill(
-        text,
-        WIDTH,
-        initial_indent=" " * indent,
-        subsequent_indent=" " * (indent + hanging),
-        break_on_hyphens=False,
-    )
+    return filled(" " * indent + shown(text), WIDTH, set_in=" " * (indent + hanging))
 
 
 def number(value: float | None, decimals: int = 1, *, sign: bool = False) -> str:
@@ -72,4 +67,5 @@ def number(value: float | None, decimals: int = 1, *, sign: bool = False) -> str
 
 def heading(text: str) -> str:
     """A heading with a rule below."""
+    text = shown(text)
     return f"{text}\n{'-' * min(columns(text), WIDTH)}"

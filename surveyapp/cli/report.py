@@ -9,6 +9,7 @@ from surveyapp.cli.languages import add_language, wished
 from surveyapp.cli.output import print_json
 from surveyapp.cli.password import asked_password
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.languages import counted, said, shown
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -59,18 +60,21 @@ def run(options: argparse.Namespace) -> int:
             advance=options.advance,
         )
     for warning in written.warnings:
-        print(warning.text, file=sys.stderr)
+        print(shown(warning.text), file=sys.stderr)
     sheets = api.SheetsResult((), ())
     if options.sheets and options.blank is None:
         sheets = api.write_sheets(options.folder, options.output, language=language)
     if options.json:
         print_json({**written.to_dict(), **sheets.to_dict()})
     else:
-        print(f"{written.path}: {written.pages} pages\n  sha256 {written.sha256}")
+        pages = counted(
+            "{path}: {count} page", "{path}: {count} pages", count=written.pages, path=written.path
+        )
+        print(f"{shown(pages)}\n  sha256 {written.sha256}")
         if written.signature:
-            print(f"  signed {written.signature}")
+            print(shown(said("  signed {name}", name=written.signature)))
         for text in (*sheets.paths, *sheets.problems):
-            print(f"  {text}")
+            print(f"  {shown(text)}")
     return 0
 
 

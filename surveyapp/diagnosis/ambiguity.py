@@ -9,7 +9,7 @@ from surveyapp.diagnosis.compare import added_signal, best_with
 from surveyapp.diagnosis.fits import Fit
 from surveyapp.diagnosis.loop import NOISE_WORDS, Search, noise_words
 from surveyapp.diagnosis.result import Ambiguity
-from surveyapp.languages import said
+from surveyapp.languages import joined, said, term
 
 MOST_OPTIONS = 8
 """Sets that are told; the ledger has them all."""
@@ -59,7 +59,7 @@ def ambiguities(problem: Case, found: Search) -> tuple[Ambiguity, ...]:
             tuple(options),
             tuple(fit.bic - best for fit in fits),
             _collinearity(fits, found.adopted),
-            "; ".join(texts),
+            joined("; ", texts),
         ),
     )
 
@@ -67,7 +67,7 @@ def ambiguities(problem: Case, found: Search) -> tuple[Ambiguity, ...]:
 def _separating(problem: Case, identity: str) -> str:
     for effect in problem.effects:
         if effect.id == identity:
-            return effect.separate_by
+            return term(effect.separate_by)
     return SEPARATING.get(identity, "")
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.shifts import shift
-from surveyapp.languages import said
+from surveyapp.languages import joined, said, term
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Effect
 
@@ -147,7 +147,7 @@ def missing_columns(effect: Effect, columns: Mapping[str, Floats]) -> str:
     for need in effect.needs:
         values = columns.get(need.name)
         if values is None:
-            lacking.append(f"no {need.name} [{need.unit}]")
+            lacking.append(said("no {name} [{unit}]", name=need.name, unit=term(need.unit)))
         elif not np.isfinite(values).all():
             gone = int((~np.isfinite(values)).sum())
             lacking.append(
@@ -160,7 +160,7 @@ def missing_columns(effect: Effect, columns: Mapping[str, Floats]) -> str:
             )
         elif values.size > 1 and np.ptp(values) == 0.0 and need.name not in CONSTANT_COLUMNS:
             lacking.append(said("{name} has one value only", name=need.name))
-    return "; ".join(lacking)
+    return joined("; ", lacking)
 
 
 CONSTANT_COLUMNS = frozenset(

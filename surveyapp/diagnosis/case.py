@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from surveyapp.diagnosis.action import Action, Planner
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.subject import Subject
+from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Columns, Effect, SubjectId
@@ -160,7 +161,7 @@ class Case:
     warnings: tuple[ResultWarning, ...] = ()
     position_unit: str = ""
     title: str = ""
-    value_name: str = "the result"
+    value_name: str = said("the result")
     actions: tuple[Action, ...] = ()
     members: tuple[Subject, ...] = ()
     base_of: Callable[[Columns], Floats] | None = None

@@ -50,7 +50,7 @@ from surveyapp.diagnosis.run_value import (
     value_of,
 )
 from surveyapp.domain.project import ResultWarning
-from surveyapp.languages import joined, said
+from surveyapp.languages import joined, said, term
 
 
 def diagnose(
@@ -146,7 +146,7 @@ def _diagnosed(
         ledger=ledger_entry(problem, found, battery, digest=digest, draws=draws),
         residuals_before=_residuals(problem, base),
         residuals_best=_residuals(problem, best),
-        title=problem.title or problem.subject.replace("_", " "),
+        title=term(problem.title or problem.subject.replace("_", " ")),
         value_name=problem.value_name,
         prediction=held_out_prediction(
             problem, before=models[0].forecast_rms, after=models[2].forecast_rms
@@ -317,7 +317,7 @@ def _competing_level(found: Search, identity: str) -> Level | None:
 
 def _remedies(problem: Case, found: Search) -> tuple[str, ...]:
     wanted = {i for fit in found.near for i in fit.key} | set(found.adopted)
-    return tuple(e.remedy for e in problem.effects if e.id in wanted)
+    return tuple(term(e.remedy) for e in problem.effects if e.id in wanted)
 
 
 def _warnings(problem: Case, found: Search) -> list[ResultWarning]:

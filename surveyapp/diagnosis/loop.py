@@ -31,7 +31,7 @@ from surveyapp.diagnosis.gate import GATE, Gate, open_gate
 from surveyapp.diagnosis.held_out import confirm_rms, flagged, leave_one_out, unforetold
 from surveyapp.diagnosis.run_value import plausible
 from surveyapp.diagnosis.wandering import imitates, refuted
-from surveyapp.languages import said
+from surveyapp.languages import said, term
 from surveyapp_models.arrays import Floats
 
 DEFAULT_DRAWS = 4000
@@ -293,7 +293,7 @@ def partly_missing(name: str, pool: Iterable[Candidate]) -> str:
         if alike and " missing at " in other.missing:
             return said(
                 "{lower} cannot be tested ({missing}) and",
-                lower=other.effect.title.lower(),
+                lower=term(other.effect.title.lower()),
                 missing=other.missing,
             )
     return ""

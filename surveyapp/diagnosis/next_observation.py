@@ -23,7 +23,7 @@ from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.later_visits import campaign_data, is_campaign
 from surveyapp.diagnosis.outlook import ActionResult, Outlook
 from surveyapp.domain.priors import DEFAULT_PRIORS, GROSS, Priors
-from surveyapp.languages import said
+from surveyapp.languages import joined, said, term
 from surveyapp_models.arrays import Floats
 
 DRAWS = 200
@@ -179,12 +179,12 @@ def worth_in_words(outlook: Outlook, *, scale: float, unit: str) -> list[str]:
     best = outlook.actions[0]
     if outlook.unit:
         scale, unit = outlook.scale, outlook.unit
-    sign = '"' if unit == "arcsec" else f" {unit}"
+    sign = '"' if unit == "arcsec" else joined("", (" ", term(unit)))
 
     def figure(value: float) -> str:
         return format(value, ".1f" if unit == "arcsec" else ".3g")
 
-    now = f"+-{figure(outlook.interval / scale)}{sign}"
+    now = joined("", (f"+-{figure(outlook.interval / scale)}", sign))
 
     def told(item: ActionResult) -> str:
         return said(
@@ -207,8 +207,16 @@ def worth_in_words(outlook: Outlook, *, scale: float, unit: str) -> list[str]:
     ]
     others = [told(item) for item in outlook.actions[1:3]]
     if others:
-        sentences.append(said("Else: {others}.", others="; or ".join(others)))
+        sentences.append(said("Else: {others}.", others=_alternatives(others)))
     return sentences
+
+
+def _alternatives(texts: Sequence[str]) -> str:
+    """Clauses of which one is to be done."""
+    whole, *others = texts
+    for text in others:
+        whole = said("{before}; or {last}", before=whole, last=text)
+    return whole
 
 
 __all__ = ["Outlook", "advice", "worth_in_words"]

@@ -20,15 +20,20 @@ from surveyapp.diagnosis.linear_outlook import State, counting, worth
 from surveyapp.diagnosis.outlook import Outlook
 from surveyapp.diagnosis.run_average import reading_noise
 from surveyapp.diagnosis.run_rivals import SLIPS, RunAction, design_of, rivals_of
+from surveyapp.languages import said
 
 LEAST, MOST = 6, 60
 """Turning points of a run for which advice is given."""
 
 RUN_ACTIONS = (
-    RunAction("two_points", "read two more turning points", anew=False),
-    RunAction("reversed_start", "observe a second run now, begun on the other side", reversed=True),
-    RunAction("second_run", "observe a second run in four hours, set up anew", later=True),
-    RunAction("other_observer", "let another observer do a second run now", other_observer=True),
+    RunAction("two_points", said("read two more turning points"), anew=False),
+    RunAction(
+        "reversed_start", said("observe a second run now, begun on the other side"), reversed=True
+    ),
+    RunAction("second_run", said("observe a second run in four hours, set up anew"), later=True),
+    RunAction(
+        "other_observer", said("let another observer do a second run now"), other_observer=True
+    ),
 )
 
 
@@ -59,7 +64,7 @@ def run_advice(case: Case, base: Fit, rng: np.random.Generator) -> Outlook | Non
         results.append(worth(state, (action.id, action.text), rng, sigma=noise[0]))
     results.sort(key=lambda item: (-item.information, item.interval95))
     assert now is not None
-    return Outlook(now[0], now[1] * noise[0], tuple(results), "north at")
+    return Outlook(now[0], now[1] * noise[0], tuple(results), said("north at"))
 
 
 __all__ = ["RUN_ACTIONS", "RunAction", "run_advice"]

@@ -13,6 +13,7 @@ from surveyapp.diagnosis.long_records.lines import SpectralLine
 from surveyapp.diagnosis.outlook import PredictionErrors
 from surveyapp.diagnosis.result import Adoption, Diagnosis, Estimate, ModelResult
 from surveyapp.languages import either, joined, said, sentence, term
+from surveyapp.languages.names import by_id, named, spoken
 from surveyapp_models.effects.effect import Effect
 
 NOISE_AND_SHAPES = {
@@ -31,6 +32,11 @@ NOISE_AND_SHAPES = {
 }
 
 
+CHANNELS = {
+    "amplitude": spoken("amplitude", said("amplitude channel")),
+    "midpoint": spoken("midpoint", said("midpoint channel")),
+    "residual": spoken("residual", said("residuals")),
+}
 HALF_SWINGS = said("half swing")
 """Unit of places in a run: half swings since the first turning point."""
 Labels = Mapping[str, Mapping[float, str]]
@@ -80,13 +86,13 @@ def words_of(result: Diagnosis, problem: Case) -> list[str]:
 
 
 def _unit(result: Diagnosis) -> str:
-    return '"' if result.unit == "arcsec" else f" {result.unit}"
+    return '"' if result.unit == "arcsec" else joined("", (" ", term(result.unit)))
 
 
 def _small(result: Diagnosis, value: float | None) -> str:
     if value is None:
-        return "unknown"
-    return f"{_figure(result, value / result.scale)}{_unit(result)}"
+        return said("unknown")
+    return joined("", (_figure(result, value / result.scale), _unit(result)))
 
 
 def _figure(result: Diagnosis, value: float, sign: str = "") -> str:
@@ -100,7 +106,7 @@ def _name(identity: str, known: dict[str, Effect]) -> str:
     if any(effect.subject == "rate" for effect in known.values()):
         shapes = {**shapes, "random_walk": said("a bias that wanders at random")}
     titles = [
-        shapes.get(part, term(known[part].title.lower()) if part in known else part)
+        shapes.get(part, term(known[part].title.lower()) if part in known else by_id(part))
         for part in parts
     ]
     whole = titles[0]
@@ -130,8 +136,8 @@ def _seen(result: Diagnosis) -> str:
         test = min(result.battery, key=lambda t: t.p)
         tail = said(
             " (plainest in the {channel}: {name}, p = {p:.3f})",
-            channel=test.channel,
-            name=test.name,
+            channel=CHANNELS.get(test.channel, term(test.channel)),
+            name=term(test.name),
             p=test.p,
         )
     return said("The residuals of {error} are more than noise{tail}.", error=error, tail=tail)
@@ -142,9 +148,9 @@ def _adopted(result: Diagnosis, item: Adoption, known: dict[str, Effect], labels
     parts = [
         said(
             "{name} {value:.3g} {unit} (sigma {sigma:.1g})",
-            name=c.name,
+            name=by_id(c.name),
             value=c.value,
-            unit=c.unit,
+            unit=term(c.unit),
             sigma=c.sigma or 0.0,
         )
         for c in item.coefficients
@@ -163,7 +169,7 @@ def _adopted(result: Diagnosis, item: Adoption, known: dict[str, Effect], labels
     return said(
         "{title}: it looks as if {symptom}{place}: {parts}{margin}.",
         title=term(item.title),
-        symptom=symptom,
+        symptom=term(symptom),
         place=place,
         parts=joined(", ", parts),
         margin=margin,
@@ -185,7 +191,7 @@ def _place(name: str, value: float, labels: Labels) -> str:
     """A scanned parameter in words: a line and a sight by their names, not by a number."""
     base, _, number = name.rpartition("_")
     own = labels.get(name) or (labels.get(base) if number.isdigit() else None) or {}
-    return own.get(value, f"{name.replace('_', ' ')} {value:g}")
+    return own.get(value) or joined(" ", (named(name), f"{value:g}"))
 
 
 def _ambiguous(result: Diagnosis, known: dict[str, Effect]) -> list[str]:
@@ -203,7 +209,7 @@ def _ambiguous(result: Diagnosis, known: dict[str, Effect]) -> list[str]:
             )
         if item.separate_by:
             sentences.append(
-                said("To decide, observe: {separate_by}.", separate_by=item.separate_by)
+                said("To decide, observe: {separate_by}.", separate_by=term(item.separate_by))
             )
     return sentences
 
@@ -229,7 +235,7 @@ def _line(result: Diagnosis, line: SpectralLine, known: dict[str, Effect]) -> st
     elif line.shared_with:
         whose = said(
             "{replace} has it too, and it is left to that",
-            replace=term(line.shared_with.replace("_", " ")),
+            replace=named(line.shared_with),
         )
     else:
         whose = said("no known cause is named")
@@ -273,14 +279,22 @@ def _consequence(result: Diagnosis) -> list[str]:
                 said(
                     "With {effect} in the model: {text} {apart}{unit} from the average (sigma "
                     "{sigma}).",
-                    effect=term(datum.effect.replace("_", " ")),
-                    text=text,
+                    effect=named(datum.effect),
+                    text=_state(text),
                     apart=_figure(result, apart, "+"),
                     unit=_unit(result),
                     sigma=_small(result, quantity.sigma),
                 )
             )
     return sentences
+
+
+def _state(text: str) -> str:
+    """A state of ``value_at_datum`` in words."""
+    value, _, unit = text.partition(" degrees Celsius")
+    if value != text and not unit:
+        return said("{value} degrees Celsius", value=value)
+    return term(text)
 
 
 def _predicted(result: Diagnosis) -> list[str]:

@@ -22,6 +22,7 @@ from surveyapp.diagnosis.result import Adoption, CandidateResult, Diagnosis, Nam
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.domain.line_spectrum import InterferenceLine
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.languages import term
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.rate import DEG_S
 from surveyapp_models.effects.rate.interference_line import EFFECT
@@ -238,7 +239,7 @@ def with_lines_of(found: Diagnosis, judged: LineJudgement) -> Diagnosis:
         candidates=(*others, verdict),
         adopted=(*found.adopted, *named),
         lines=(*found.lines, *(one.line for one in judged.lines)),
-        remedy=(*found.remedy, EFFECT.remedy) if named else found.remedy,
+        remedy=(*found.remedy, term(EFFECT.remedy)) if named else found.remedy,
         frequency_unit="Hz",
     )
 

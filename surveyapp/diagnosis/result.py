@@ -15,6 +15,7 @@ from surveyapp.diagnosis.long_records.lines import SpectralLine
 from surveyapp.diagnosis.outlook import ActionResult, HeldOut
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.domain.project import ResultWarning
+from surveyapp.languages import joined, said
 from surveyapp_models.angles import wrap_two_pi
 
 Verdict = Literal["adequate", "explained", "not_separable", "unattributed"]
@@ -212,7 +213,7 @@ class Diagnosis:
     lines: tuple[SpectralLine, ...] = ()
     frequency_unit: str = "Hz"
     title: str = ""
-    value_name: str = "the result"
+    value_name: str = said("the result")
     prediction: HeldOut | None = None
     actions: tuple[ActionResult, ...] = ()
     advice: tuple[str, ...] = ()
@@ -220,8 +221,10 @@ class Diagnosis:
     @property
     def heading(self) -> str:
         """What was diagnosed: the subject, and which one."""
-        told = f"{self.identity} ".startswith(f"{self.title} ")
-        return self.identity if told else f"{self.title} {self.identity}"
+        which = self.identity.removeprefix(f"{self.title} ")
+        if which == self.title:
+            return self.title
+        return joined(" ", (self.title, which))
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON of ``diagnose`` (design.md section 5)."""

@@ -13,7 +13,8 @@ from enum import StrEnum
 import numpy as np
 
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.languages import said
+from surveyapp.languages import joined, said
+from surveyapp.languages.names import by_id
 
 
 class ObservationKind(StrEnum):
@@ -208,9 +209,9 @@ class Observation:
     @property
     def where(self) -> str:
         """Where the observation stands, for messages."""
-        place = f"line {self.line}, " if self.line else ""
         sight = "-".join(name for name in (self.back, self.at, self.to) if name)
-        return f"{place}{self.kind} {sight}"
+        what = joined(" ", (by_id(self.kind.value), sight))
+        return said("line {line}, {what}", line=self.line, what=what) if self.line else what
 
 
 def _observation_problems(obs: Observation) -> list[Problem]:

@@ -6,11 +6,13 @@ values are joined by blanks, lists of objects have tables of their own and are l
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Final, Generic, Protocol, TypeVar
 
 Cell = str | int | float | bool | None
+_SIGNED: Final = re.compile(r"[+-](\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE)
 
 
 class Recorded(Protocol):
@@ -35,6 +37,17 @@ def flat(item: Mapping[str, Any]) -> dict[str, Cell]:
         else:
             row[key] = value
     return row
+
+
+def not_a_formula(text: str) -> str:
+    """A text as a cell of CSV: one that a spreadsheet would take for a formula is quoted.
+
+    A signed number is left alone; a name such as ``=1+2``, ``@SUM`` or ``-1-2`` is not.
+    """
+    formula = text[:1] in ("=", "@", "\t", "\r") or (
+        text[:1] in ("+", "-") and not _SIGNED.fullmatch(text)
+    )
+    return f"'{text}" if formula else text
 
 
 def rows_of(items: Sequence[Recorded]) -> list[dict[str, Cell]]:

@@ -83,7 +83,7 @@ def atomic_write(path: Path, data: bytes | Iterable[bytes]) -> None:
                 path.name,
                 shown_path(path),
                 "a folder with room that may be written to",
-                "the old file stands",
+                "the old file stands" if path.exists() else "nothing was written",
             )
         ) from None
     finally:

@@ -1,8 +1,8 @@
 """The languages of the screens and the record: English, and catalogues beside this module.
 
 Texts are written in English where they arise (``said``); the screens and the record show them with
-``shown`` in the language in use. JSON, files, ids and the command line stay English, so that what a
-script reads does not depend on who runs it. Numbers keep the decimal point in every language.
+``shown`` in the language in use. JSON, files and ids stay English, so that what a script reads does
+not depend on who runs it. Numbers keep the decimal point in every language.
 """
 
 from __future__ import annotations

@@ -82,8 +82,17 @@ QUANTITIES: Final = (
     "reduced",
     "flip error",
     "quadratic",
+    "quadratic drag",
+    "scale nonlinearity",
+    "cross axis",
     "smooth",
     "periodic",
+    "pulse",
+    "long oscillation",
+    "amplitude smooth",
+    "amplitude step",
+    "amplitude walk",
+    "outlier",
 )
 OF: Final = ("along", "across", "upper", "lower", "small angle", "arcsine")
 """What a quantity is of, behind its name, where that is a word."""
@@ -170,6 +179,9 @@ def named(name: str) -> str:
             return term(words)
         if words.startswith(f"{quantity} "):
             return joined(" ", (term(quantity), *_behind(words[len(quantity) + 1 :])))
+    whole, _, number = words.rpartition(" ")
+    if whole and number.isdigit():
+        return joined(" ", (named(whole), number))
     return term(words)
 
 
@@ -184,10 +196,19 @@ def _behind(words: str) -> Iterable[str]:
 
 
 def by_id(name: str) -> str:
-    """A name where English prints the id: ``hard_iron_x``, in German ``Hard-Iron x``."""
+    """A name where English prints the id: ``hard_iron_x``, in German ``Hard-Iron x``.
+
+    Several effects together are told each by itself: ``warm_up + midpoint_step``.
+    """
     if isinstance(name, Said):
         return name
-    return _Id("{words}", {"id": name, "words": named(name)})
+    words = joined(" + ", [named(part) for part in name.split(" + ")])
+    return _Id("{words}", {"id": name, "words": words})
+
+
+def spoken(identity: str, words: str) -> str:
+    """A word that English prints as it is, and other languages by the text that it stands for."""
+    return _Id("{words}", {"id": identity, "words": words})
 
 
 def ids(names: Iterable[str]) -> str:

@@ -47,7 +47,27 @@ CHOICES: Final = (
 ESTIMATORS: Final = ("least-squares", "schuler", "amplitude", "transit", "mean", "median")
 SIGMA_SOURCES: Final = ("residuals", "card", "rounds")
 REFERENCES: Final = ("astronomic", "true", "grid", "gyro")
-PARTS: Final = ("lateral", "longitudinal", "vertical", "before", "after", "between", "surface")
+PARTS: Final = (
+    "lateral",
+    "longitudinal",
+    "vertical",
+    "before",
+    "after",
+    "between",
+    "surface",
+    "underground",
+)
+ROUTES: Final = ("loop", "connecting", "height")
+CARD_KINDS: Final = ("suspended", "automatic")
+SHAFT_BUDGET: Final = (
+    "surface angles",
+    "surface distances",
+    "surface azimuths",
+    "underground angles",
+    "underground distances",
+    "underground azimuths",
+    "plumbing",
+)
 QUANTITIES: Final = (
     "clamp reading",
     "middle of the swing",
@@ -56,6 +76,7 @@ QUANTITIES: Final = (
     "transit constant",
     "centre of the swing",
 )
+KINDS_OF_NAMES: Final = ("campaign", "instrument", "sensor", "session", "station", "traverse")
 VOCABULARY: Final = (
     *VERDICTS,
     *UNITS,
@@ -64,5 +85,9 @@ VOCABULARY: Final = (
     *SIGMA_SOURCES,
     *REFERENCES,
     *PARTS,
+    *ROUTES,
+    *CARD_KINDS,
+    *KINDS_OF_NAMES,
+    *SHAFT_BUDGET,
     *QUANTITIES,
 )

@@ -7,14 +7,18 @@ from pathlib import Path
 from typing import Final
 
 from surveyapp import api
-from surveyapp.domain.project import Project
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.io.files import read_inside
 from surveyapp.io.guarded import checked_inside, is_regular
 from surveyapp.languages import current, said
-from surveyapp.report.stamp import stamp_in, stamp_of
+from surveyapp.workflows.record_on_disk import (
+    RECORD,
+    outdated_text,
+    record_outdated,
+    record_written,
+)
 
-RECORD: Final = "results/record.pdf"
+__all__ = ["outdated_told", "record_outdated", "record_written", "write_record"]
+
 OLD_S: Final = 600.0
 """A temporary file of this age [s] belongs to nobody any more."""
 
@@ -46,32 +50,6 @@ def _take_away_leftovers(results: Path) -> None:
             item.unlink(missing_ok=True)
 
 
-def record_written(folder: api.Folder) -> bool:
-    """Whether a record of the project stands in its results folder."""
-    return is_regular(Path(folder) / RECORD)
-
-
-def record_outdated(project: Project) -> bool:
-    """Whether the record in the results folder shows another state than the project has now.
-
-    Compared are the sha256 of everything that was read and the closings in force.
-    """
-    folder = Path(project.path)
-    if not record_written(folder):
-        return False
-    try:
-        data = read_inside(folder, RECORD, where=RECORD)
-    except SurveyError:
-        return True
-    now = stamp_of(project.digest, [item.head for item in project.filing.closings])
-    return stamp_in(data) != now
-
-
 def outdated_told(folder: api.Folder) -> str:
     """A sentence about a record that a closing or reopening makes out of date; else empty."""
-    if not record_written(folder):
-        return ""
-    return said(
-        "{record} is out of date: surveyapp report DIR -o DIR/{record} makes it again",
-        record=RECORD,
-    )
+    return outdated_text() if record_written(str(folder)) else ""

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from surveyapp.domain.adjustment import AdjustedObservation, AdjustedPoint, AdjustmentResult
 from surveyapp.domain.angle_result import AngleResult
 from surveyapp.domain.observations import ObservationKind
+from surveyapp.domain.records import not_a_formula
 from surveyapp.domain.results import OrientationResult
 from surveyapp.languages import current, joined, said, said_each, shown, term
 from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, format_angle, wrap_pi, wrap_two_pi
@@ -237,21 +238,11 @@ def sheet_csv(sheet: Sheet) -> str:
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(sheet.head)
-    writer.writerows([[_safe(cell) for cell in row] for row in sheet.rows])
+    writer.writerows([[not_a_formula(cell) for cell in row] for row in sheet.rows])
     if sheet.remarks:
         writer.writerow([])
-        writer.writerows([[_safe(text)] for text in sheet.remarks])
+        writer.writerows([[not_a_formula(text)] for text in sheet.remarks])
     return stream.getvalue()
-
-
-def _safe(cell: str) -> str:
-    """A text that a spreadsheet would take for a formula is quoted; numbers are left alone."""
-    if (
-        cell[:1] in ("=", "@", "+", "-", "\t", "\r")
-        and not cell.lstrip("+-").replace(".", "", 1).isdigit()
-    ):
-        return f"'{cell}"
-    return cell
 
 
 def sheet_html(sheet: Sheet, *, project: str, software: str) -> str:

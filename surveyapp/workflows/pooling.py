@@ -24,7 +24,8 @@ from surveyapp.domain.instrument import Instrument
 from surveyapp.domain.priors import BASE, UNITS, Priors
 from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.languages import counted, said, some
+from surveyapp.languages import counted, joined, listed, said, sentence, some, term
+from surveyapp.languages.names import named
 
 LEAST_CAMPAIGN = 4
 """Determinations from which a campaign teaches anything."""
@@ -198,22 +199,17 @@ class InstrumentDiagnosis:
 
     def words(self) -> list[str]:
         """The result in plain sentences."""
-        said = []
+        words = []
         if self.pooled is None:
-            said.append("No run of this instrument can be pooled.")
+            words.append(said("No run of this instrument can be pooled."))
         else:
-            said += _pooled_words(self.pooled)
+            words += _pooled_words(self.pooled)
         if self.priors is not None:
-            campaigns = "1 campaign" if self.campaigns == 1 else f"{self.campaigns} campaigns"
-            said.append(
-                f"{campaigns} with {self.priors.sessions} determinations: nothing but noise is "
-                f"taken for likely in {self.priors.share(BASE):.0%} of the next ones; where "
-                f"something is at work it is mostly {_likeliest(self.priors)}."
-            )
-        said += [f"{w.text[0].upper()}{w.text[1:].rstrip('.')}." for w in self.warnings]
+            words.append(_learned(self.priors, self.campaigns))
+        words += [sentence(w.text) for w in self.warnings]
         if self.written:
-            said.append(f"The priors are in {self.written}.")
-        return said
+            words.append(said("The priors are in {place}.", place=self.written))
+        return words
 
 
 def _effect(item: PooledEffect) -> dict[str, Any]:
@@ -230,24 +226,55 @@ def _effect(item: PooledEffect) -> dict[str, Any]:
 
 def _pooled_words(pooled: Pooled) -> list[str]:
     count = len(pooled.sessions)
-    runs = f"{count} run{'s' if count > 1 else ''} together"
+    runs = counted("{count} run together", "{count} runs together", count=count)
     if pooled.named is not None:
         e = pooled.named
         return [
-            f"{runs} name {e.title.lower()}: {e.coefficient:.3g} {e.unit} (sigma {e.sigma:.1g}), "
-            f"p = {e.p:.3f}; every rival is at least 2 nats less likely."
+            said(
+                "{runs} name {effect}: {coefficient:.3g} {unit} (sigma {sigma:.1g}), "
+                "p = {p:.3f}; every rival is at least 2 nats less likely.",
+                runs=runs,
+                effect=term(e.title.lower()),
+                coefficient=e.coefficient,
+                unit=term(e.unit),
+                sigma=e.sigma,
+                p=e.p,
+            )
         ]
     if not pooled.fired:
-        return [f"{runs} show no effect of the instrument that noise does not show as well."]
+        return [
+            said(
+                "{runs} show no effect of the instrument that noise does not show as well.",
+                runs=runs,
+            )
+        ]
     near = [
-        e.title.lower() for e in pooled.effects if e.evidence > pooled.effects[0].evidence - 2.0
+        term(e.title.lower())
+        for e in pooled.effects
+        if e.evidence > pooled.effects[0].evidence - 2.0
     ]
-    return [f"{runs} are more than noise; {' and '.join(near[:4])} cannot be told apart."]
+    names = listed(near[:4])
+    return [
+        said("{runs} are more than noise; {names} cannot be told apart.", runs=runs, names=names)
+    ]
+
+
+def _learned(priors: Priors, campaigns: int) -> str:
+    """What the campaigns let expect of the next one."""
+    return said(
+        "{campaigns} with {count} determinations: nothing but noise is taken for likely in "
+        "{noise:.0%} of the next ones; where something is at work it is mostly {likeliest}.",
+        campaigns=counted("{count} campaign", "{count} campaigns", count=campaigns),
+        count=priors.sessions,
+        noise=priors.share(BASE),
+        likeliest=_likeliest(priors),
+    )
 
 
 def _likeliest(priors: Priors) -> str:
     order = sorted((u for u in UNITS if u != BASE), key=lambda u: -priors.share(u))
-    return ", ".join(f"{u.replace('_', ' ')} ({priors.share(u):.0%})" for u in order[:3])
+    shares = [joined(" ", (named(u), f"({priors.share(u):.0%})")) for u in order[:3]]
+    return joined(", ", shares)
 
 
 def diagnose_parts(

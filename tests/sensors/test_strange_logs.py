@@ -14,7 +14,7 @@ import pytest
 from surveyapp import api
 from surveyapp.core.sensors.clipping import ends_of_range
 from surveyapp.core.sensors.compensation import force_sigma
-from surveyapp.diagnosis.sensors.records import possible_iron
+from surveyapp.diagnosis.sensors.field_size import possible_iron
 from surveyapp.errors import SurveyError
 from surveyapp_models.arrays import Floats
 

@@ -8,7 +8,7 @@ from typing import Final
 from surveyapp.domain.closing import Closing, Filing
 from surveyapp.domain.results import Check
 from surveyapp.domain.subject import Subject
-from surveyapp.languages import said
+from surveyapp.languages import joined, said
 
 LEDGER: Final = "ledger.jsonl"
 _CLAUSE: Final = said("closing of the project")
@@ -97,6 +97,6 @@ def _check(
         passed=not found,
         unit="changes",
         where=where or subject.text,
-        text="; ".join(found[:_SHOWN]) + more if found else good,
+        text=joined("; ", found[:_SHOWN]) + more if found else good,
         subject=subject,
     )

@@ -10,7 +10,7 @@ from surveyapp.core.swing.levelling import session_tilt
 from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.results import Check
 from surveyapp.domain.subject import Subject
-from surveyapp.languages import said
+from surveyapp.languages import joined, said
 from surveyapp_models.angles import RHO_ARCSEC
 
 PRE_ORIENTATION: Final = {"tracking": 60.0, "transit": 10.0}
@@ -58,7 +58,7 @@ def _card_check(session: OrientationSession) -> list[Check]:
     log = session.levelling
     if log is None:
         return []
-    text = "; ".join(log.refusals) + said(": the tilt log is not applied")
+    text = joined("; ", log.refusals) + said(": the tilt log is not applied")
     return [
         Check(
             rule="levelling.card_valid",
@@ -83,7 +83,7 @@ def _pre_orientation(session: OrientationSession) -> list[Check]:
         return []
     value, interval = None, aimed.interval95
     if aimed.refusals:
-        text = "; ".join(aimed.refusals)
+        text = joined("; ", aimed.refusals)
     elif aimed.offset is None or interval is None:
         text = said("a MAGNETIC heading without declination_deg says nothing of north")
     else:

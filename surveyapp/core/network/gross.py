@@ -16,7 +16,7 @@ from surveyapp.core.network.solving import solve_network
 from surveyapp.domain.adjustment import AdjustedObservation, LeftOut
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network
-from surveyapp.languages import said
+from surveyapp.languages import joined, said
 from surveyapp_models.arrays import Floats
 
 
@@ -83,7 +83,7 @@ def without_gross(network: Network, model: Model, state: Converged) -> Cleaned |
         "{names} observations miss by more than {tolerance_m:g} m and were left out: {names2}",
         names=len(names),
         tolerance_m=network.tolerance_m,
-        names2="; ".join(names),
+        names2=joined("; ", names),
     )
     values, misses = _against(whole, (model, state))
     misfits = gross_misfit(network, whole, values, np.nan_to_num(misses))

@@ -20,7 +20,7 @@ from surveyapp.domain.network_tests import GlobalTest
 from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.traverse import Network
 from surveyapp.errors import SurveyError
-from surveyapp.languages import said
+from surveyapp.languages import joined, said
 
 K = ObservationKind
 _SIGHTED: Final = frozenset(
@@ -187,11 +187,17 @@ def unsettled(network: Network, error: UnsettledError) -> SurveyError:
     if not found:
         return error
     found.sort()
-    names = "; ".join(where for _, where in found[:_MOST_NAMED])
-    more = f" and {len(found) - _MOST_NAMED} more" if len(found) > _MOST_NAMED else ""
+    names = joined("; ", [where for _, where in found[:_MOST_NAMED]])
+    more = (
+        said(" and {number} more", number=len(found) - _MOST_NAMED)
+        if len(found) > _MOST_NAMED
+        else ""
+    )
     first = error.problems[0]
-    hint = (
+    hint = said(
         "It converges, and the global test is met, without one of these, the likeliest first: "
-        f"{names}{more}."
+        "{names}{more}.",
+        names=names,
+        more=more,
     )
     return SurveyError(replace(first, hint=hint))

@@ -20,7 +20,7 @@ from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network, Status
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.languages import said
+from surveyapp.languages import joined, said
 from surveyapp_models.arrays import Floats
 
 _IN_THE_PLANE = frozenset(
@@ -182,7 +182,7 @@ def mirror_warning(network: Network, found: Solution) -> list[ResultWarning]:
         "another observation, to decide",
         sum_of_squares=found.other.sum_of_squares,
         sum_of_squares2=found.state.sum_of_squares,
-        places="; ".join(places),
+        places=joined("; ", places),
         more=more,
     )
     return [ResultWarning("mirror_solution", text)]

@@ -7,7 +7,7 @@ from collections.abc import Collection, Sequence
 from surveyapp.domain.results import LineResult
 from surveyapp.domain.station_line import StationLine, meanings
 from surveyapp.errors import Problem, SurveyError, nearest_names
-from surveyapp.languages import either
+from surveyapp.languages import either, joined
 
 
 def resolve_line(
@@ -57,6 +57,6 @@ def resolve_line(
             where="line",
             found=shown,
             expected="station-target of a survey session",
-            hint=". ".join(filter(None, [nearest_names(shown, names), more])),
+            hint=joined(". ", filter(None, [nearest_names(shown, names), more])),
         )
     )

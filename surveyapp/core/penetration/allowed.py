@@ -12,7 +12,7 @@ from surveyapp.domain.penetration import Penetration, StatedTolerance
 from surveyapp.domain.penetration_result import MissSigma, Tolerance
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.rulebook import Limit, RuleBook
-from surveyapp.languages import joined, said
+from surveyapp.languages import joined, said, term
 
 DEFAULT_FACTOR = 2.0
 QUANTITIES = ("lateral", "longitudinal", "vertical")
@@ -88,7 +88,7 @@ def tolerance_of(
         names = [q for q, sure in zip(QUANTITIES, parts, strict=True) if not sure]
         text = said(
             "the limit of {names} is not confirmed in a source: it only warns",
-            names=joined(", ", names),
+            names=joined(", ", [term(name) for name in names]),
         )
         warnings.append(ResultWarning("tolerance_unconfirmed", text))
     return found, tuple(warnings)

@@ -18,7 +18,7 @@ from surveyapp.core.penetration.covariance import Contribution
 from surveyapp.core.penetration.mine import Mine
 from surveyapp.core.penetration.rows import HeadingRows, RowKind
 from surveyapp.domain.penetration_result import SectionedSigma
-from surveyapp.languages import said
+from surveyapp.languages import joined, said
 from surveyapp_models.arrays import Floats
 
 LEAST_QUOTIENT = 1.0
@@ -41,7 +41,7 @@ def sectioned(mine: Mine, parts: Sequence[Contribution]) -> SectionedSigma:
         float(part.plane[0, 0]) for part in parts if part.source not in ("angles", "gyro_sides")
     )
     reasons = _reasons(mine, parts)
-    return SectionedSigma(math.sqrt(variance + others), not reasons, "; ".join(reasons))
+    return SectionedSigma(math.sqrt(variance + others), not reasons, joined("; ", reasons))
 
 
 def _azimuths(heading: HeadingRows) -> dict[int, float]:

@@ -34,7 +34,7 @@ from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.domain.project import OrientationSession, ResultWarning
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.domain.results import PointResult
-from surveyapp.languages import said
+from surveyapp.languages import listed, said
 from surveyapp_models.arrays import Floats
 
 LARGEST_SCALE_SIGMA_DIV = 0.3
@@ -227,7 +227,7 @@ def _constants(
     if ratio is None or card.scale_value is None:
         missing = said("the torsion ratio (lambda, or both periods)") if ratio is None else ""
         if card.scale_value is None:
-            missing = " and ".join(filter(None, [missing, said("the scale value")]))
+            missing = listed(filter(None, [missing, said("the scale value")]))
         raise session_problem(
             session,
             said(

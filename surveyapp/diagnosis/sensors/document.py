@@ -10,7 +10,7 @@ import numpy as np
 from surveyapp.diagnosis.result import CandidateVerdict
 from surveyapp.diagnosis.sensors.loop import Chosen, LoopFit, LoopResult, Trial
 from surveyapp.diagnosis.sensors.records import SensorRecord
-from surveyapp.languages import joined, said
+from surveyapp.languages import joined, said, term
 from surveyapp.languages.names import by_id, named
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
@@ -31,7 +31,7 @@ def effect_of(record: SensorRecord, identity: str) -> Effect | None:
 def remedies_of(record: SensorRecord, adopted: list[dict[str, Any]]) -> list[str]:
     """What is to be done about each named effect."""
     found = [effect_of(record, item["effect"]) for item in adopted]
-    return [effect.remedy for effect in found if effect is not None]
+    return [term(effect.remedy) for effect in found if effect is not None]
 
 
 def _p(trial: Trial, family: int) -> float:
@@ -113,9 +113,11 @@ def ambiguous_of(record: SensorRecord, found: LoopResult) -> list[dict[str, Any]
     if not found.ambiguous:
         return []
     top = found.ambiguous[0].gain or 0.0
-    separate = "a record with the attitude and the place beside it, or one more at another place"
+    separate = said(
+        "a record with the attitude and the place beside it, or one more at another place"
+    )
     if record.subject == "tilt":
-        separate = "a repeated record, its temperatures and tilts in another order"
+        separate = said("a repeated record, its temperatures and tilts in another order")
     return [
         {
             "any_of": [t.id for t in found.ambiguous],

@@ -14,13 +14,14 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from surveyapp.core.sensors.compass_calibration import MOST_UNEQUAL
 from surveyapp.diagnosis.candidates import missing_columns
+from surveyapp.diagnosis.sensors.field_size import possible_iron, size_candidates
 from surveyapp.diagnosis.sensors.loop import Candidate, Data
 from surveyapp.diagnosis.sensors.noise import whiteners
 from surveyapp.diagnosis.sensors.turn import turn
 from surveyapp.diagnosis.sensors.windows import Blocks, block_means, blocks_of, switch
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
 from surveyapp_models.effects.effect import Effect
@@ -299,8 +300,8 @@ def _size_record(log: SensorLog, effects: tuple[Effect, ...]) -> SensorRecord:
     candidates = [
         replace(c, possible=possible_iron) if c.id == "soft_iron" else c for c in candidates
     ]
-    missing.append(("misalignment", "no reference attitude (ref_q)"))
-    candidates += _size_candidates(columns, missing, m, block)
+    missing.append(("misalignment", said("no reference attitude (ref_q)")))
+    candidates += size_candidates(columns, missing, m, block)
     time = log.columns["time_s"][kept]
     step = np.concatenate([m, one], axis=2)
     step_names = ("step_x", "step_y", "step_z", "step_size")
@@ -309,42 +310,6 @@ def _size_record(log: SensorLog, effects: tuple[Effect, ...]) -> SensorRecord:
         "compass", "uT", time, block, y, one, block_means(y, block), block_means(one, block),
         tuple(candidates), step, tuple(gross), "size", None, used, scale, tuple(missing),
     )  # fmt: skip
-
-
-def possible_iron(elements: Floats) -> bool:
-    """Whether a distortion S leaves m' (1 - 2 S) m a sphere that iron can bend.
-
-    Where the attitudes are few, S = diag(1/2, 1/2, -1) with a hard iron along z makes a constant of
-    any reading: the scales would differ by far more than iron can make them.
-    """
-    xx, yy, xy, xz, yz = elements
-    matrix = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, -xx - yy]])
-    squares = 1.0 - 2.0 * np.linalg.eigvalsh(matrix)
-    return bool(squares.min() > 0.0 and squares.max() <= MOST_UNEQUAL**2 * squares.min())
-
-
-def _size_candidates(
-    columns: Mapping[str, Floats], missing: list[tuple[str, str]], m: Floats, block: Blocks
-) -> list[Candidate]:
-    """Temperature and gradient as the size of the field shows them."""
-    found = []
-    theta, place = columns.get("temperature_c"), columns.get("place_x")
-    if theta is not None and np.all(np.isfinite(theta)) and np.ptp(theta) > 0.0:
-        warmer = (theta[::3] - theta.mean())[:, None, None]
-        design = np.concatenate([warmer * m, warmer**2], axis=2)
-        names = (*(f"temperature_{a}" for a in "xyz"), "temperature_square")
-        found.append(_plain("temperature", (design, block), names, "uT/K"))
-    else:
-        missing.append(("temperature", "no temperature_c [degree Celsius] that varies"))
-    if place is not None and np.all(np.isfinite(place)):
-        at = np.column_stack([columns[f"place_{a}"][::3] for a in "xyz"])
-        squares = np.column_stack([at, at**2, at[:, [0]] * at[:, [1]], at[:, [0]] * at[:, [2]],
-                                   at[:, [1]] * at[:, [2]]])  # fmt: skip
-        names = tuple(f"gradient_{s}" for s in ("x", "y", "z", "xx", "yy", "zz", "xy", "xz", "yz"))
-        found.append(_plain("field_gradient", (squares[:, None, :], block), names, "uT/m"))
-    else:
-        missing.append(("field_gradient", "no place (ref_px_m, ref_py_m, ref_pz_m)"))
-    return found
 
 
 def tilt_record(log: SensorLog, own: tuple[Effect, ...] = ()) -> SensorRecord:
@@ -399,16 +364,3 @@ def _outliers(residual: Floats) -> list[tuple[int, float]]:
 
 
 Designs = Callable[[Floats], Sequence[tuple[dict[str, float], Floats]]]
-
-
-def _plain(
-    identity: str, rows: tuple[Floats, Blocks], names: tuple[str, ...], unit: str
-) -> Candidate:
-    design, block = rows
-    means = block_means(design, block)
-
-    def designs(residual: Floats) -> Sequence[tuple[dict[str, float], Floats]]:
-        del residual
-        return [({}, means)]
-
-    return Candidate(identity, designs, names, unit, rows=lambda _: design)

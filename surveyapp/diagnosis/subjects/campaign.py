@@ -199,7 +199,7 @@ def campaign(
     offset = float(np.median(values))
     return Case(
         subject="campaign",
-        title="campaign",
+        title=said("campaign"),
         value_name=said("the constant"),
         actions=ACTIONS,
         observations=values - offset,

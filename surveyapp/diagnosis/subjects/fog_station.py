@@ -116,8 +116,8 @@ def fog_case(turns: Sequence[FogTurn], *, identity: str, extra: tuple[Effect, ..
     columns |= {"half_size_x": 0.5 * own, "half_size_y": 0.0 * own, "half_size_z": 0.0 * own}
     subject = DiagnosedSubject(
         id="rate",
-        title="a gyro on a total station",
-        value_name="the mean bias of the gyro",
+        title=said("a gyro on a total station"),
+        value_name=said("the mean bias of the gyro"),
         columns=(*COLUMNS, PASS, TABLE),
         base=base,
         base_names=tuple(

@@ -138,8 +138,8 @@ def _warmer(columns: Columns, /) -> dict[str, Floats] | None:
 
 
 ACTIONS = (
-    Action("upside_down", "repeat the last stop upside down", _upside_down),
-    Action("warmer", "repeat the last stop 5 K warmer", _warmer),
+    Action("upside_down", said("repeat the last stop upside down"), _upside_down),
+    Action("warmer", said("repeat the last stop 5 K warmer"), _warmer),
 )
 NODE = Column("node", "number of the chamber's temperature, from 1")
 COLUMNS = (
@@ -158,8 +158,8 @@ def rate_subject(*, turned: bool, nodes: int = 0) -> DiagnosedSubject:
     names = (*biases, *matrix) if turned else biases
     return DiagnosedSubject(
         id="rate",
-        title="a rate sensor",
-        value_name="the mean bias of the three gyros",
+        title=said("a rate sensor"),
+        value_name=said("the mean bias of the three gyros"),
         columns=COLUMNS,
         base=turned_base if turned else rest_base,
         base_names=names,

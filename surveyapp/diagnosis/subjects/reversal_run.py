@@ -85,7 +85,7 @@ def reversal_run(points: TurningPoints, extra: tuple[Effect, ...] = ()) -> Case:
     temperature = points.reference_temperature_c
     return Case(
         subject="reversal_run",
-        title="run",
+        title=said("run"),
         value_name=said("north over the run"),
         observations=y,
         base=np.ones((n, 1)),

@@ -103,7 +103,7 @@ def traverse(
     base[0, 0] = 1.0
     return Case(
         subject="traverse",
-        title="traverse",
+        title=said("traverse"),
         value_name=said("the place of the least certain point"),
         observations=adjusted.transform @ adjusted.right,
         base=base,

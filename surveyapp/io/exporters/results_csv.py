@@ -8,11 +8,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 from surveyapp.core.differences import label, leaves
-from surveyapp.domain.records import flat
+from surveyapp.domain.records import flat, not_a_formula
 from surveyapp.domain.results import OrientationResult
 
 TABLES: Final = ("lines", "sessions", "constants", "checks", "all")
-_NUMBER: Final = "+-.0123456789"
 _LONG: Final = ("table", "row", "quantity", "value")
 
 
@@ -52,9 +51,7 @@ def _cell(value: object) -> str:
         return "true" if value else "false"
     if isinstance(value, int | float):
         return repr(value)
-    text = str(value)
-    formula = text[:1] in ("=", "+", "@", "\t", "\r") or (text[:1] == "-" and text.strip(_NUMBER))
-    return f"'{text}" if formula else text
+    return not_a_formula(str(value))
 
 
 def _text(columns: Sequence[str], rows: Sequence[Mapping[str, str]]) -> str:

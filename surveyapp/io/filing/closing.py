@@ -16,7 +16,7 @@ from surveyapp.io.filing.lock import ProjectLock
 from surveyapp.io.filing.seals import CLOSING, REOPENING, changes, closings_in_force, seal_of
 from surveyapp.io.filing.witness import add_witness, head_of
 from surveyapp.io.project import read_project
-from surveyapp.languages import said
+from surveyapp.languages import joined, said
 
 
 def close_project(
@@ -46,7 +46,7 @@ def close_project(
                 )
             )
         if ledger.faults or ledger.tail_altered:
-            found = "; ".join(ledger.faults) or "the newline of the last line was changed"
+            found = joined("; ", ledger.faults) or said("the newline of the last line was changed")
             raise SurveyError(
                 Problem(
                     "the ledger was changed",

@@ -140,7 +140,7 @@ def _steps(
     choice = line.constant_choice or ""
     origin = said("no constant of this instrument is known")
     if choice:
-        origin = joined(", ", (line.instrument, choice))
+        origin = joined(", ", (line.instrument, term(choice)))
     small(said("+ instrument constant"), line.constant, line.constant_sigma, origin)
     if line.true_azimuth is not None:
         strong.add(len(rows))

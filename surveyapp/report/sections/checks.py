@@ -44,7 +44,7 @@ _TERMINAL: Final = (
 COLUMNS: Final = (
     *_TERMINAL,
     Column(said("what"), lambda check: check.text, open_head=said("what is missing")),
-    Column(said("clause"), lambda check: check.clause, open_head=said("clause")),
+    Column(said("clause"), lambda check: term(check.clause), open_head=said("clause")),
 )
 """Everything that is told of a check: a new field is one entry."""
 HEAD: Final = tuple(column.head for column in _TERMINAL)
@@ -130,7 +130,7 @@ def _narrow(checks: Sequence[Check], warnings: Sequence[ResultWarning]) -> tuple
     clauses: dict[str, dict[str, None]] = {}
     for check in checks:
         clauses.setdefault(check.clause, {})[check.rule] = None
-    facts = tuple((clause, ", ".join(rules)) for clause, rules in clauses.items())
+    facts = tuple((term(clause), ", ".join(rules)) for clause, rules in clauses.items())
     return (*found, *(Paragraph(joined(": ", fact), "small") for fact in facts))
 
 

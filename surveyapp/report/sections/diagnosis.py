@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from surveyapp.diagnosis.result import Diagnosis, Estimate, ModelResult
 from surveyapp.languages import joined, said, said_each, term
+from surveyapp.languages.names import by_id, ids
 from surveyapp.report.blocks import Block, Figure, Heading, Paragraph, Table
 from surveyapp.report.numbers import plain
 from surveyapp.report.plots import Frame, axis
@@ -63,7 +64,7 @@ def candidates(diagnosis: Diagnosis) -> tuple[Block, ...]:
             key = (item.verdict.replace("_", " "), item.reason)
             reasons.setdefault(key, []).append(item.effect)
     found += [
-        Paragraph(joined(": ", (term(verdict), ", ".join(names), reason)), "small")
+        Paragraph(joined(": ", (term(verdict), ids(names), reason)), "small")
         for (verdict, reason), names in reasons.items()
     ]
     if diagnosis.lines:
@@ -102,7 +103,7 @@ def models(diagnosis: Diagnosis, unit: AngleUnit) -> Table:
     def row(name: str, model: ModelResult) -> tuple[str, ...]:
         return (
             name,
-            " + ".join(model.effects) or said("base model"),
+            joined(" + ", map(by_id, model.effects)) or said("base model"),
             plain(model.parameters, 0),
             small(model.rms),
             small(model.loo_rms),
@@ -119,7 +120,7 @@ def models(diagnosis: Diagnosis, unit: AngleUnit) -> Table:
         said("model"),
         said("effects"),
         said("param."),
-        said("rms {unit}", unit=diagnosis.unit),
+        said("rms {unit}", unit=term(diagnosis.unit)),
         said("left out"),
         said("second set"),
         said("value and sigma"),
@@ -141,20 +142,20 @@ def _figures(
             axis([y for _, y in points], about_zero=True),
             height_mm=40.0,
         )
-        parts = frame.axes(said("observation"), diagnosis.unit)
+        parts = frame.axes(said("observation"), term(diagnosis.unit))
         parts.append(frame.level(0.0, "axis"))
         for x, y in points:
             parts += frame.bar(x, low=min(0.0, y), high=max(0.0, y))
         parts += frame.marks(points, "dot")
-        figures.append(frame.figure(f"{title}, {state}", parts))
+        figures.append(frame.figure(joined(", ", (title, state)), parts))
     return figures
 
 
 def _candidates(diagnosis: Diagnosis) -> Table:
     rows = tuple(
         (
-            item.effect,
-            item.verdict.replace("_", " "),
+            by_id(item.effect),
+            term(item.verdict.replace("_", " ")),
             plain(item.p, 4),
             plain(item.p_family, 4),
             plain(item.delta_bic, 1),
@@ -179,9 +180,9 @@ def _lines(diagnosis: Diagnosis) -> Table:
             f"{line.amplitude / diagnosis.scale:.3g}",
             f"{line.sigma_amplitude / diagnosis.scale:.1g}",
             f"{line.false_alarm:.1g}",
-            line.effect
+            by_id(line.effect)
             or (
-                said("left to {shared_with}", shared_with=line.shared_with)
+                said("left to {shared_with}", shared_with=by_id(line.shared_with))
                 if line.shared_with
                 else said("unattributed")
             ),
@@ -191,7 +192,7 @@ def _lines(diagnosis: Diagnosis) -> Table:
     head = (
         said("frequency {frequency_unit}", frequency_unit=diagnosis.frequency_unit),
         said("sigma"),
-        said("amplitude {unit}", unit=diagnosis.unit),
+        said("amplitude {unit}", unit=term(diagnosis.unit)),
         said("sigma"),
         said("false alarm"),
         said("cause"),
@@ -202,9 +203,9 @@ def _lines(diagnosis: Diagnosis) -> Table:
 def _ambiguous(diagnosis: Diagnosis) -> Table:
     rows = tuple(
         (
-            ", ".join(item.any_of),
+            ids(item.any_of),
             ", ".join(plain(value, 1) for value in item.delta_bic),
-            item.separate_by,
+            term(item.separate_by),
         )
         for item in diagnosis.ambiguous
     )

@@ -8,7 +8,7 @@ from surveyapp.domain.mine_grid import MineGrid
 from surveyapp.domain.project import Project, Station
 from surveyapp.domain.results import OrientationResult
 from surveyapp.domain.rulebook import RuleBook
-from surveyapp.languages import counted, said, said_each, term
+from surveyapp.languages import counted, joined, said, said_each, term
 from surveyapp.report.blocks import Block, Heading, KeyValues, Paragraph, Table
 from surveyapp.report.numbers import NOTHING, plain, seconds
 from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, format_angle
@@ -32,7 +32,9 @@ def blocks(
         (said("unit of angles"), term(str(project.angle_unit))),
         (
             said("rule book"),
-            NOTHING if rule_book is None else f"{rule_book.title} ({rule_book.id})",
+            NOTHING
+            if rule_book is None
+            else joined(" ", (term(rule_book.title), f"({rule_book.id})")),
         ),
         (said("software"), result.software),
         (said("sha256 of the input"), result.input_sha256),
@@ -109,7 +111,7 @@ def _instrument(project: Project, identity: str) -> str:
         title=item.card.title,
         serial=serial,
         id=item.card.id,
-        kind=item.card.kind,
+        kind=term(item.card.kind),
     )
 
 

@@ -74,7 +74,7 @@ def _facts(result: Prediction) -> tuple[tuple[str, str], ...]:
     facts = [(said("factor"), f"{result.factor:g} ({result.factor_source})")]
     if result.tolerance is not None:
         sure = "" if result.tolerance.confirmed else said(", not confirmed")
-        facts.append((said("allowed by"), f"{result.tolerance.source}{sure}"))
+        facts.append((said("allowed by"), joined("", (result.tolerance.source, sure))))
     if sections.lateral_m is not None:
         why = "" if sections.valid else said("; does not hold here: {why}", why=sections.why)
         facts.append(
@@ -151,7 +151,7 @@ def _measured(test: MissTest) -> list[Block]:
             (
                 joined(" ", (term(item.effect.replace("_", " ")), item.subject)),
                 term(item.component),
-                f"{item.needed:+.4g} {item.unit}",
+                joined(" ", (f"{item.needed:+.4g}", term(item.unit))),
                 plain(item.sigmas, 1),
             )
             for item in test.candidates

@@ -7,7 +7,7 @@ from typing import Final
 
 from surveyapp.domain.session_result import SessionResult
 from surveyapp.domain.session_sensors import LogLevelling, PreOrientation
-from surveyapp.languages import said, said_each
+from surveyapp.languages import joined, said, said_each
 from surveyapp.report.blocks import Block, Table
 from surveyapp.report.numbers import NOTHING, direction, plain, seconds
 from surveyapp_models.angles import AngleUnit
@@ -48,8 +48,8 @@ def levelling_rows(item: SessionResult) -> list[Row]:
 def _log_rows(log: LogLevelling) -> list[Row]:
     source = said("tilt log {log}, card {card}", log=log.log, card=log.card)
     if log.run is None:
-        why = "; ".join(log.refusals) or said("no sample during the run")
-        return [(said("tilt during the run"), NOTHING, "", f"{source}: {why}")]
+        why = joined("; ", log.refusals) or said("no sample during the run")
+        return [(said("tilt during the run"), NOTHING, "", joined(": ", (source, why)))]
     sigma = seconds(log.run.sigma)
     return [
         (said("tilt along the sight"), f'{seconds(log.run.along, sign=True)}"', sigma, source),
@@ -68,8 +68,8 @@ def pre_orientation_rows(aimed: PreOrientation | None, unit: AngleUnit) -> list[
         return []
     source = said("compass log {log}, card {card}", log=aimed.log, card=aimed.card)
     if aimed.heading is None:
-        why = "; ".join(aimed.refusals)
-        return [(said("magnetic heading of the alidade"), NOTHING, "", f"{source}: {why}")]
+        why = joined("; ", aimed.refusals)
+        return [(said("magnetic heading of the alidade"), NOTHING, "", joined(": ", (source, why)))]
     rows = [
         (said("magnetic heading of the alidade"), direction(aimed.heading, unit), "", source),
         (

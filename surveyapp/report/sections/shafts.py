@@ -85,7 +85,7 @@ def _checks(shaft: ShaftOrientation) -> Table:
             said(
                 "distance of the wires from {station}, {place}",
                 station=item.station,
-                place=item.place,
+                place=term(item.place),
             ),
             f"{item.f_mm:+.2f}",
             f"{item.limit_mm:.2f}",

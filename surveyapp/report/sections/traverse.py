@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from surveyapp.domain.adjustment import AdjustedObservation, AdjustmentResult, Closure
+from surveyapp.domain.adjustment import AdjustedObservation, AdjustmentResult, Closure, SharedValue
 from surveyapp.domain.observations import ObservationKind
 from surveyapp.languages import joined, said, said_each, term
 from surveyapp.report.blocks import Block, Heading, KeyValues, Paragraph, Table
@@ -222,7 +222,7 @@ def _closures(closures: Sequence[Closure]) -> Table:
             relative = f"1 : {item.length_m / item.linear_m:.0f}"
         rows.append(
             (
-                item.kind,
+                term(item.kind),
                 _route(item.stations),
                 plain(None if item.angular is None else item.angular * RHO_ARCSEC, sign=True),
                 plain(None if item.angular_sigma is None else item.angular_sigma * RHO_ARCSEC),
@@ -272,6 +272,14 @@ def points(result: AdjustmentResult) -> Table:
     return _filled(head, rows, "lrrrrrrr")
 
 
+def _of(item: SharedValue) -> str:
+    """Whose it is: a set by its name, a constant by its instrument and how it is chosen."""
+    if item.kind == "orientation":
+        return item.name
+    instrument, space, choice = item.name.rpartition(" ")
+    return joined("", (instrument, space, term(choice)))
+
+
 def shared(result: AdjustmentResult, unit: AngleUnit) -> tuple[Block, ...]:
     """Constants of instruments and orientations of sets; none where there are none."""
     rows = []
@@ -282,7 +290,7 @@ def shared(result: AdjustmentResult, unit: AngleUnit) -> tuple[Block, ...]:
             else f'{item.value * RHO_ARCSEC:+.1f}"'
         )
         rows.append(
-            (term(item.kind.replace("_", " ")), item.name, value, plain(item.sigma * RHO_ARCSEC))
+            (term(item.kind.replace("_", " ")), _of(item), value, plain(item.sigma * RHO_ARCSEC))
         )
     if not rows:
         return ()

@@ -40,7 +40,7 @@ from surveyapp.io.importers.fieldfiles.gsi_words import (
     words,
 )
 from surveyapp.io.importers.fieldfiles.lines import FieldText, look_through
-from surveyapp.languages import said
+from surveyapp.languages import joined, said
 
 _READINGS: Final = ("21", "22", "31", "32")
 _STATION: Final = frozenset({"84", "85", "86", "88"})
@@ -108,8 +108,12 @@ def _tell_unlike(state: State) -> None:
         if kind not in state.cut
     )
     if found:
-        places = "; ".join(
-            f"line {line} without {', '.join(words)}" for line, words in found[:_SHOWN]
+        places = joined(
+            "; ",
+            [
+                said("line {line} without {words}", line=line, words=", ".join(words))
+                for line, words in found[:_SHOWN]
+            ],
         )
         told = said(
             "blocks lack words that all others have ({places}): were they damaged?", places=places
