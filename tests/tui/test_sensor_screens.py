@@ -71,7 +71,9 @@ async def test_a_compass_is_calibrated_drawn_and_its_card_saved(compass: Path) -
         sensor = screen.entry.id
         expected = api.calibrate("compass", compass, sensor=sensor)
         assert screen.found.calibration.parameters == expected.parameters
-        assert screen.query_one(TitleBar).state == texts.TASK_DONE.format(task="calibrate")
+        assert screen.query_one(TitleBar).state == texts.TASK_DONE.format(
+            task=texts.TASK_NAMES["calibrate"]
+        )
         await pilot.press("v")
         await pilot.pause()
         assert screen.query_one(TabbedContent).active == "pictures"

@@ -195,16 +195,17 @@ class ProgrammeScreen(Screen[None]):
 
     def action_finish(self) -> None:
         """Calibrate with the options that stand in the line."""
-        task = self.desk.programme.ends_in
+        task = texts.TASK_NAMES[self.desk.programme.ends_in]
         self.query_one(TitleBar).state = texts.TASK_COMPUTING.format(task=task)
         self.finish(self.query_one("#line", Input).value.strip())
 
     @work(thread=True, exclusive=True, group="finish")
     def finish(self, options: str) -> None:
         """Calibrate in a thread."""
+        task = texts.TASK_NAMES[self.desk.programme.ends_in]
 
         def advance(share: float) -> None:
-            line = texts.TASK_RUNNING.format(task=self.desk.programme.ends_in, share=share)
+            line = texts.TASK_RUNNING.format(task=task, share=share)
             self.app.call_from_thread(partial(setattr, self.query_one(TitleBar), "state", line))
 
         try:

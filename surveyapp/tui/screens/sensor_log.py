@@ -128,7 +128,7 @@ class SensorLogScreen(Screen[None]):
     def action_run(self, task: str) -> None:
         """Begin a task."""
         self.chosen_task = task
-        self.query_one(TitleBar).state = texts.TASK_COMPUTING.format(task=task)
+        self.query_one(TitleBar).state = texts.TASK_COMPUTING.format(task=texts.TASK_NAMES[task])
         self.job = self.work_on(task, typed(self, "options"))
 
     def on_input_submitted(self, _: Input.Submitted) -> None:
@@ -161,7 +161,7 @@ class SensorLogScreen(Screen[None]):
         """How much of the log was read."""
         done = share >= 1.0
         line = texts.TASK_COMPUTING if done else texts.TASK_RUNNING
-        self.query_one(TitleBar).state = line.format(task=task, share=share)
+        self.query_one(TitleBar).state = line.format(task=texts.TASK_NAMES[task], share=share)
 
     def action_cancel(self) -> None:
         """Forget what is being computed."""
@@ -173,7 +173,7 @@ class SensorLogScreen(Screen[None]):
         """Show a result and its first picture."""
         self.found, self.place = message.found, 0
         line = texts.TASK_DONE if message.found.met else texts.TASK_NOT_MET
-        self.query_one(TitleBar).state = line.format(task=message.found.task)
+        self.query_one(TitleBar).state = line.format(task=texts.TASK_NAMES[message.found.task])
         self.show_result()
         self.show_picture()
         if not message.found.pictures:

@@ -87,6 +87,16 @@ Options stand in the line below (Tab), key=value each, as on the
 command line: latitude=47.1 programme=six-position map.time_s=t
 unit.out=LSB scale.out=0.001 rate-hz=100
 """
+TASK_NAMES: Final = {
+    "calibrate": "calibration",
+    "diagnose": "diagnosis",
+    "allan": "Allan deviation",
+    "filter": "filter",
+    "spectrum": "spectrum",
+    "motion": "motion",
+    "north": "north",
+    "plan": "plan of the stops",
+}
 TASK_RUNNING: Final = "{task}: reading {share:.0%}"
 TASK_COMPUTING: Final = "{task}: computing"
 TASK_CANCELLED: Final = "cancelled; nothing was written"
