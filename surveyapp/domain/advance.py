@@ -17,7 +17,7 @@ PartDone = Callable[[float], None]
 
 
 def stage(progress: PartDone | None, start: float, end: float) -> PartDone | None:
-    """What a part of a work tells: its 0 to 1 is ``start`` to ``end`` of the whole."""
+    """What a part of a work tells: its 0 to 1 is ``start`` to ``end`` of the whole [-]."""
     if progress is None:
         return None
     return lambda share: progress(start + share * (end - start))

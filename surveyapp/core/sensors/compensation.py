@@ -111,7 +111,7 @@ def compensate_compass(
         Whether the sigma is that of each heading; without, of the calibration alone, as a mean
         over many readings takes it.
     force_noise : float, optional
-        Noise of the specific force as a share of it; by default what the rows of ``log`` tell.
+        Noise of the specific force as a share of it [-]; by default what the rows of ``log`` tell.
     """
     points = np.column_stack([log.columns[f"mag_{axis}_uT"] for axis in BODY])
     up = log.vector("acc")

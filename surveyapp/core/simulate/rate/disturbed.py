@@ -69,7 +69,10 @@ def switched_field(
     names: Sequence[str],
     rng: np.random.Generator,
 ) -> dict[str, Floats]:
-    """A fluxgate beside the gyros in a field that is switched, and what the gyros make of it."""
+    """A fluxgate beside the gyros in a field that is switched, and what the gyros make of it.
+
+    ``sensitivity`` [unit of the gyros / uT].
+    """
     time = columns["time_s"]
     found: dict[str, Floats] = {}
     for k, (axis, name) in enumerate(zip("xyz", names, strict=True)):
