@@ -317,7 +317,7 @@ class SessionDesk:
         own = target_of(self.session, None)
         if own is not None:
             return Aim(own)
-        unusable = [w.text for w in self.project.warnings if w.code == "rule_bookunusable"]
+        unusable = [w.text for w in self.project.warnings if w.code == "rule_book_unusable"]
         if unusable:
             return Aim(None, self.project.rule_book or "", unusable[0])
         book = self.project.rules
