@@ -167,3 +167,27 @@ def test_sets_in_which_the_unit_stood_differently_are_followed(tmp_path: Path) -
     assert [t["heading_deg"] for t in told["tracking"]] == pytest.approx([40.0, 150.0], abs=0.3)
     same = {**both, **{k: np.concatenate([v, v]) for k, v in first.items() if k != "time_s"}}
     assert found(tmp_path, same)[1]["tracking"] == []
+
+
+@pytest.mark.parametrize(("rows", "quantile"), [(1, 2.3646), (300, 1.95996)])
+def test_few_means_have_the_interval_of_their_degrees_of_freedom(
+    tmp_path: Path, rows: int, quantile: float
+) -> None:
+    """Four positions of one row: 12 readings, 5 unknowns, t(.975, 7); samples tell their own."""
+    whole = indexed()
+    starts = [300 * k for k in range(4)]
+    few = {
+        name: np.array([np.mean(column[i : i + 300]) for i in starts]) if rows == 1 else column
+        for name, column in whole.items()
+    }
+    path = tmp_path / "few.csv"
+    np.savetxt(
+        path, np.column_stack(list(few.values())), delimiter=",", header=",".join(few), comments=""
+    )
+    answer = run(
+        "north", path, "--method", "indexing", "--latitude", "35", "--allow-outside", "--json"
+    )
+    heading = answer.json["heading"]
+    assert heading["interval95_arcsec"] / heading["sigma_arcsec"] == pytest.approx(
+        quantile, abs=1e-4
+    )

@@ -22,7 +22,7 @@ from surveyapp.core.sensors.rate.indexing_stops import (
 from surveyapp.core.sensors.rate.indexing_values import Indexed, Root, Setting, Stop
 from surveyapp.core.sensors.rate.parameters import DEG_H
 from surveyapp.core.sensors.rate.strapdown import skew
-from surveyapp.core.statistics.distributions import NORMAL_95
+from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp.domain.calibration import SensorParameter, with_reasons
 from surveyapp.domain.north import NorthDirection, NorthResult
 from surveyapp.domain.project import ResultWarning
@@ -40,6 +40,24 @@ APART = 3.0
 """Factor by which one attitude for all sets must fit worse than one for each."""
 ALIGNED = math.radians(5.0)
 """Within these angles a degenerate attitude is told [rad]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """What stands beside the solution.
+
+    Parameters
+    ----------
+    warnings : list of ResultWarning
+    stops : int
+        That were used.
+    quantile : float
+        Of Student's distribution: half of the 95 % interval in sigmas [-].
+    """
+
+    warnings: list[ResultWarning]
+    stops: int
+    quantile: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,12 +85,12 @@ def find_heading(log: SensorLog, options: IndexingOptions) -> NorthResult:
     SurveyError
     """
     stops, rows, warnings = stops_of(log)
-    stops, sampled = with_sigmas(stops, options.setting.axis)
+    stops, dof = with_sigmas(stops, options.setting.axis)
     for _, _, inside in _groups(log, stops, rows):
         problems = index_problems(inside, options.setting, log.path)
         if problems:
             raise SurveyError(problems)
-    if not sampled:
+    if math.isfinite(dof):
         text = "one row a stop: the sigmas are the scatter of the stops about the solution"
         warnings.append(ResultWarning("rows_are_means", text))
     tracking: list[Tracked] = []
@@ -97,7 +115,8 @@ def find_heading(log: SensorLog, options: IndexingOptions) -> NorthResult:
     )
     if problems:
         raise SurveyError(problems)
-    return _result(log, options, found, tracking, warnings=warnings, stops=used)
+    seen = Seen(warnings, used, student_quantile(0.975, dof))
+    return _result(log, options, found, tracking, seen=seen)
 
 
 def _stood_differently(
@@ -130,8 +149,7 @@ def _result(
     found: Indexed,
     tracking: Sequence[Tracked],
     *,
-    warnings: list[ResultWarning],
-    stops: int,
+    seen: Seen,
 ) -> NorthResult:
     setting = options.setting
     best = found.roots[0]
@@ -152,7 +170,7 @@ def _result(
     direction = NorthDirection(
         math.degrees(best.heading) if resolved else None,
         sigma / ARCSEC if resolved else None,
-        NORMAL_95 * sigma / ARCSEC if resolved else None,
+        seen.quantile * sigma / ARCSEC if resolved else None,
     )
     geometry, told = _geometry(best, found, setting)
     q = quaternions.from_matrix(best.attitude)
@@ -167,7 +185,7 @@ def _result(
         },
         "geometry": geometry,
         "tracking": [t.to_dict() for t in tracking],
-        "stops": stops,
+        "stops": seen.stops,
         "fixed_gyro": None if options.fixed is None else _fixed(options.fixed, best, setting),
     }
     return NorthResult(
@@ -177,7 +195,7 @@ def _result(
         direction=direction,
         parameters=tuple(parameters),
         undetermined=missing,
-        warnings=(*log.warnings, *warnings, *told, *_warnings(found)),
+        warnings=(*log.warnings, *seen.warnings, *told, *_warnings(found)),
         met=resolved and not missing,
         n=log.size,
         sha256=log.sha256,

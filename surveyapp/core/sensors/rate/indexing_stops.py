@@ -143,22 +143,30 @@ def _stop(angle: float, rates: Floats, forces: Floats) -> Stop:
     )
 
 
-def with_sigmas(stops: list[Stop], axis: int) -> tuple[list[Stop], bool]:
-    """Stops of one row each get the scatter about the turned means as their sigma."""
+def with_sigmas(stops: list[Stop], axis: int) -> tuple[list[Stop], float]:
+    """Stops of one row each get the scatter about the turned means as their sigma.
+
+    Returns
+    -------
+    stops : list of Stop
+    dof : float
+        Degrees of freedom of that scatter; infinite where the samples of the stops tell.
+    """
     if all(np.all(np.isfinite(s.rate_sigma)) for s in stops):
-        return stops, True
-    known = []
+        return stops, math.inf
+    known, dof = [], 1
     for name, floor in (("rate", 1e-9), ("force", 1e-5)):
         values = np.array([getattr(s, name) for s in stops])
-        known.append(max(_residual_sd(values, [s.angle for s in stops], axis), floor))
+        scatter, dof = _residual_sd(values, [s.angle for s in stops], axis)
+        known.append(max(scatter, floor))
     filled = [
         replace(s, rate_sigma=np.full(3, known[0]), force_sigma=np.full(3, known[1])) for s in stops
     ]
-    return filled, False
+    return filled, float(dof)
 
 
-def _residual_sd(values: Floats, angles: Sequence[float], axis: int) -> float:
-    """Scatter about a vector that turns with the index and a constant one."""
+def _residual_sd(values: Floats, angles: Sequence[float], axis: int) -> tuple[float, int]:
+    """Scatter about a vector that turns with the index and a constant one, and its freedom."""
     i, j = (axis + 1) % 3, (axis + 2) % 3
     rows, target = [], []
     for value, angle in zip(values, angles, strict=True):
@@ -169,4 +177,4 @@ def _residual_sd(values: Floats, angles: Sequence[float], axis: int) -> float:
     solution, *_ = np.linalg.lstsq(design, np.array(target), rcond=None)
     rest = np.array(target) - design @ solution
     dof = max(len(target) - int(np.linalg.matrix_rank(design)), 1)
-    return math.sqrt(float(rest @ rest) / dof)
+    return math.sqrt(float(rest @ rest) / dof), dof
