@@ -133,6 +133,29 @@ def test_the_attitude_after_the_run_is_that_of_the_body(
     assert found.extra["levelling"]["case"] == "A4"
 
 
+def test_a_unit_that_is_levelled_within_the_phase_is_seen_before_and_after() -> None:
+    """The tilt to take out is that of the beginning, the run goes on from the end."""
+    rest, turned = 0.0 * Z, math.radians(-120.0) * Z
+    log, end = moved_log(
+        [
+            ("b", rest, 20.0),
+            ("b", math.radians(9.0) * Y, 10.0),
+            ("b", math.radians(-12.0) * X, 10.0),
+            ("b", rest, 20.0),
+            ("n", turned, 30.0),
+        ]
+    )
+    words = list(log.texts["phase"])
+    words[600:1200] = ["level"] * 600
+    options = RotationOptions(heading=math.radians(77.0), reference="ASTRONOMIC", latitude=LATITUDE)
+    found = find_heading(as_read(SimulatedLog(log.columns, {"phase": words})), options)
+    assert found.extra["levelling"]["pitch_deg"] == pytest.approx(12.0, abs=1e-6)
+    assert found.extra["levelling"]["roll_deg"] == pytest.approx(-9.0, abs=1e-6)
+    assert [w.code for w in found.warnings].count("level_turned") == 1
+    wanted = math.degrees(math.atan2(end[0, 1], end[1, 1])) % 360.0
+    assert found.direction.deg == pytest.approx(wanted, abs=0.01)
+
+
 def test_without_a_latitude_the_sigma_holds_what_the_earth_did() -> None:
     """A unit that is pitched for five minutes sees another part of the earth's rate."""
     moves = [("b", math.radians(40.0) * X, 30.0), ("b", 0.0 * Z, 600.0)]

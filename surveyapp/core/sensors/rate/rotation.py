@@ -15,6 +15,7 @@ from typing import Any, Final, Literal
 import numpy as np
 
 from surveyapp.core.sensors.rate.carried import Carried, Rest, Run, carry, tilt_of
+from surveyapp.core.sensors.rate.level_phase import still_ends
 from surveyapp.core.sensors.rate.parameters import DEG_H
 from surveyapp.core.statistics.distributions import NORMAL_95, student_tail
 from surveyapp.domain.calibration import SensorParameter
@@ -106,23 +107,27 @@ def find_heading(log: SensorLog, options: RotationOptions) -> NorthResult:
     forces = np.column_stack([log.columns[c] for c in ACCELEROMETERS])
     interval = 1.0 / (log.rate_hz or 100.0)
     warm = _warm_up(rates[phases == "warm-up"], interval)
-    rest_rows = np.flatnonzero((phases == "filter") | (phases == "level"))
+    level_rows = np.flatnonzero(phases == "level")
+    before, after = still_ends(forces[level_rows])
+    filter_rows = np.flatnonzero(phases == "filter")
+    rest_rows = np.union1d(filter_rows, np.union1d(level_rows[before], level_rows[after]))
     rest, rest_sigma, gained = _filtered(rates[rest_rows])
-    levelling = _levelling(forces[phases == "level"])
+    levelling, levelled = _levelling(forces[level_rows][before]), forces[level_rows][after]
     carried = carry(
         _run_of(log, rates, forces, np.flatnonzero(phases == "run")),
         Rest(
             rest,
             rest_sigma,
             np.std(np.diff(rates[rest_rows], axis=0), axis=0) / math.sqrt(2.0),
-            (levelling.pitch, levelling.roll),
-            float(np.mean(forces[phases == "level"].std(axis=0, ddof=1))),
+            tilt_of(levelled.mean(axis=0)),
+            float(np.mean(levelled.std(axis=0, ddof=1))),
         ),
         heading=options.heading + (options.declination or 0.0),
         latitude=options.latitude,
     )
     sigma = math.hypot(carried.sigma, options.declination_sigma or 0.0)
-    return _result(log, options, carried, sigma, found=(warm, levelling, rest, gained))
+    turned = before != after
+    return _result(log, options, carried, sigma, found=(warm, levelling, rest, gained, turned))
 
 
 def _run_of(log: SensorLog, rates: Floats, forces: Floats, rows: np.ndarray) -> Run:
@@ -246,9 +251,9 @@ def _result(
     carried: Carried,
     sigma: float,
     *,
-    found: tuple[WarmUp, Levelling, Floats, dict[str, float]],
+    found: tuple[WarmUp, Levelling, Floats, dict[str, float], bool],
 ) -> NorthResult:
-    warm, levelling, rest, gained = found
+    warm, levelling, rest, gained, turned = found
     reference: Reference = options.reference if options.declination is None else "ASTRONOMIC"
     parameters = tuple(
         SensorParameter(f"rest_rate_{a}", float(rest[i]) / DEG_H, None, "deg/h")
@@ -262,7 +267,7 @@ def _result(
             math.degrees(carried.heading), sigma / ARCSEC, NORMAL_95 * sigma / ARCSEC, reference
         ),
         parameters=parameters,
-        warnings=(*log.warnings, *_warnings(options, warm)),
+        warnings=(*log.warnings, *_warnings(options, warm, turned=turned)),
         n=log.size,
         sha256=log.sha256,
         extra={
@@ -284,8 +289,14 @@ def _result(
     )
 
 
-def _warnings(options: RotationOptions, warm: WarmUp) -> list[ResultWarning]:
+def _warnings(options: RotationOptions, warm: WarmUp, *, turned: bool) -> list[ResultWarning]:
     warnings = []
+    if turned:
+        text = (
+            "the unit turned within the phase level: the tilt is that of its beginning, and the "
+            "run goes on from the attitude of its end"
+        )
+        warnings.append(ResultWarning("level_turned", text))
     if not warm.ended:
         text = said(
             "the last ten minutes of the warm-up still drift by "
