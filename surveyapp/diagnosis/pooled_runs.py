@@ -17,7 +17,7 @@ import numpy as np
 from surveyapp.diagnosis.candidates import Candidate, single_effects
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.compare import orthonormal_design
-from surveyapp.diagnosis.fits import Fit, fit_members
+from surveyapp.diagnosis.fits import fit_members
 from surveyapp.domain.priors import NU0
 from surveyapp_models.arrays import Floats
 
@@ -43,6 +43,8 @@ class Run:
         Orthonormal columns of the base.
     sigma, nu0 : float
         Prior standard deviation of a reading, in the case's unit, and its degrees of freedom.
+    candidates : tuple of Candidate
+        Single effects at their places, about the base.
     """
 
     case: Case
@@ -50,6 +52,7 @@ class Run:
     q: Floats
     sigma: float
     nu0: float
+    candidates: tuple[Candidate, ...]
 
     def likelihood(
         self, column: Floats, readings: Floats, total: Floats
@@ -76,28 +79,29 @@ class Run:
         return b, rest / nu / square, height, sensitivity
 
 
-def run_of(case: Case, base: Fit) -> Run:
+def run_of(case: Case) -> Run:
     """A run with the noise that is stated for it, or its own scatter where none is."""
+    base = fit_members(case, ())
     q = orthonormal_design(base)
-    if case.sigma is not None:
-        return Run(case, base.residual, q, float(np.median(case.sigma)), NU0)
     scatter = float(np.sqrt(base.sum_of_squares / max(case.size - q.shape[1], 1)))
-    return Run(case, base.residual, q, max(scatter, case.noise_floor, 1e-12), 0.0)
+    sigma, nu0 = max(scatter, case.noise_floor, 1e-12), 0.0
+    if case.sigma is not None:
+        sigma, nu0 = float(np.median(case.sigma)), NU0
+    candidates = tuple(single_effects(case, base.theta))
+    return Run(case, base.residual, q, sigma=sigma, nu0=nu0, candidates=candidates)
 
 
-def event_evidence(cases: Sequence[Case]) -> list[tuple[str, str, float]]:
+def event_evidence(runs: Sequence[Run]) -> list[tuple[str, str, float]]:
     """Id, title and log evidence of every event of one size, against nothing at work.
 
     Parameters
     ----------
-    cases : sequence of Case
+    runs : sequence of Run
     """
     told: dict[str, list[Floats]] = {}
     titles: dict[str, str] = {}
-    for case in cases:
-        base = fit_members(case, ())
-        run = run_of(case, base)
-        for candidate in single_effects(case, base.theta):
+    for run in runs:
+        for candidate in run.candidates:
             effect = candidate.effect
             if effect is None or not effect.event or candidate.count != 1:
                 continue
@@ -105,7 +109,7 @@ def event_evidence(cases: Sequence[Case]) -> list[tuple[str, str, float]]:
             if len(effect.coefficients) == 1 and places.size:
                 told.setdefault(effect.id, []).append(places)
                 titles[effect.id] = effect.title
-    return [(name, titles[name], _event(runs)) for name, runs in told.items()]
+    return [(name, titles[name], _event(places)) for name, places in told.items()]
 
 
 def _places(run: Run, candidate: Candidate) -> Iterator[tuple[float, float, float, float]]:
@@ -132,12 +136,12 @@ def _event(runs: Sequence[Floats]) -> float:
             for b, v, h, _ in (places.T for places in runs):
                 wide = (v + (spread * a) ** 2)[:, None]
                 off = 0.5 * (b[:, None] - mu) ** 2 / wide
-                along += _log_mean(h[:, None] + 0.5 * np.log(v[:, None] / wide) - off)
-            found.append(float(_log_mean(along + np.log(prior / prior.mean()))))
-    return float(_log_mean(np.array(found)))
+                along += log_mean(h[:, None] + 0.5 * np.log(v[:, None] / wide) - off)
+            found.append(float(log_mean(along + np.log(prior / prior.mean()))))
+    return float(log_mean(np.array(found)))
 
 
-def _log_mean(values: Floats) -> Floats:
+def log_mean(values: Floats) -> Floats:
     """Logarithm of the mean of exponentials along the first axis."""
     top = values.max(axis=0)
     return np.asarray(top + np.log(np.mean(np.exp(values - top), axis=0)))

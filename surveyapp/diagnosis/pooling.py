@@ -18,10 +18,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from surveyapp.diagnosis.candidates import Candidate, single_effects
+from surveyapp.diagnosis.candidates import Candidate
 from surveyapp.diagnosis.case import Case
-from surveyapp.diagnosis.fits import fit_members
-from surveyapp.diagnosis.pooled_runs import SIZES, SPREADS, event_evidence, run_of
+from surveyapp.diagnosis.pooled_runs import SIZES, SPREADS, Run, event_evidence, log_mean, run_of
 from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 
@@ -125,13 +124,17 @@ def pool(cases: Sequence[Case], rng: np.random.Generator) -> Pooled:
     rng : numpy.random.Generator
         For the null distribution of the largest evidence.
     """
-    columns = _columns(cases)
-    told = [_session(case, columns, rng) for case in cases]
+    runs = [run_of(case) for case in cases]
+    columns = _columns(runs)
+    told = [_session(run, columns, rng) for run in runs]
     evidence = _evidence(told)
     names = list(dict.fromkeys(name for name, _ in columns))
     found = []
     per_effect = np.column_stack(
-        [_mean([evidence[:, i] for i, (n, _) in enumerate(columns) if n == name]) for name in names]
+        [
+            log_mean(np.stack([evidence[:, i] for i, (n, _) in enumerate(columns) if n == name]))
+            for name in names
+        ]
     )
     null = per_effect[1:].max(axis=1) if names else np.zeros(0)
     for k, name in enumerate(names):
@@ -144,10 +147,12 @@ def pool(cases: Sequence[Case], rng: np.random.Generator) -> Pooled:
     split = len(WALKS)
     for name, values in zip(NOISES, (noises[:split], noises[split:]), strict=True):
         title = {"random_walk": said("a north that wanders"), "ar1": said("correlated noise")}[name]
-        found.append(PooledEffect(name, title, _log_mean(values), None, None, None, "", len(cases)))
+        found.append(
+            PooledEffect(name, title, float(log_mean(values)), None, None, None, "", len(cases))
+        )
     found += [
         PooledEffect(event, title, value, None, None, None, "", len(cases))
-        for event, title, value in event_evidence(cases)
+        for event, title, value in event_evidence(runs)
     ]
     found = [item for item in found if _plausible(cases, item)]
     found.sort(key=lambda item: -item.evidence)
@@ -174,12 +179,11 @@ def _named(found: Sequence[PooledEffect]) -> PooledEffect | None:
     return first if not rivals or first.evidence >= max(rivals) + MARGIN else None
 
 
-def _columns(cases: Sequence[Case]) -> list[tuple[str, tuple[tuple[str, float], ...]]]:
+def _columns(runs: Sequence[Run]) -> list[tuple[str, tuple[tuple[str, float], ...]]]:
     """Every effect at every grid point that any session knows."""
     found: dict[tuple[str, tuple[tuple[str, float], ...]], None] = {}
-    for case in cases:
-        base = fit_members(case, ())
-        for candidate in single_effects(case, base.theta):
+    for run in runs:
+        for candidate in run.candidates:
             if poolable(candidate):
                 for point in candidate.points:
                     found[candidate.id, tuple(sorted(point.items()))] = None
@@ -187,15 +191,13 @@ def _columns(cases: Sequence[Case]) -> list[tuple[str, tuple[tuple[str, float], 
 
 
 def _session(
-    case: Case,
+    run: Run,
     columns: Sequence[tuple[str, tuple[tuple[str, float], ...]]],
     rng: np.random.Generator,
 ) -> _Told:
-    base = fit_members(case, ())
-    run = run_of(case, base)
-    q, n, sigma = run.q, case.size, run.sigma
+    case, q, sigma, n = run.case, run.q, run.sigma, run.case.size
     noise = sigma * rng.standard_normal((NULL_DRAWS, n))
-    readings = np.vstack([base.residual, noise])
+    readings = np.vstack([run.residual, noise])
     readings -= (readings @ q) @ q.T
     total = run.nu0 * sigma**2 + np.sum(readings**2, axis=1)
     size = len(columns)
@@ -203,7 +205,7 @@ def _session(
     variances, heights = estimates.copy(), estimates.copy()
     sensitivity = np.full(size, np.nan)
     place = {name: i for i, name in enumerate(columns)}
-    for candidate in single_effects(case, base.theta):
+    for candidate in run.candidates:
         if not poolable(candidate):
             continue
         for g, point in enumerate(candidate.points):
@@ -212,7 +214,7 @@ def _session(
             if found is None:
                 continue
             estimates[:, i], variances[:, i], heights[:, i], sensitivity[i] = found
-    noises = _noises(case, q, base.residual, (sigma, run.nu0))
+    noises = _noises(case, q, run.residual, (sigma, run.nu0))
     return _Told(estimates, variances, heights, sensitivity, noises)
 
 
@@ -234,19 +236,7 @@ def _evidence(told: Sequence[_Told]) -> Floats:
             along = np.where(able, b / wide, 0.0).sum(axis=0)
             common = 0.5 * along**2 / (precision + 1.0 / a**2)
             found.append(own + common - 0.5 * np.log1p(a**2 * precision))
-    return _mean(found)
-
-
-def _mean(items: Sequence[Floats]) -> Floats:
-    """Logarithm of the mean of exponentials, elementwise."""
-    stacked = np.stack(items)
-    top = stacked.max(axis=0)
-    return np.asarray(top + np.log(np.mean(np.exp(stacked - top), axis=0)))
-
-
-def _log_mean(values: Floats) -> float:
-    top = float(values.max())
-    return top + float(np.log(np.mean(np.exp(values - top))))
+    return log_mean(np.stack(found))
 
 
 def _effect(
