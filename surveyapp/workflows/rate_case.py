@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 import numpy as np
 
 from surveyapp.core.sensors.rate.position_log import ACCELEROMETERS, GYROS
+from surveyapp.diagnosis.crooked_seats import Seats, with_seats
 from surveyapp.diagnosis.rate_lines import Stretch, with_lines_beside
 from surveyapp.diagnosis.rate_stops import stops_of
 from surveyapp.diagnosis.result import Diagnosis
-from surveyapp.diagnosis.subjects.rate import RateTurn, rate_case
+from surveyapp.diagnosis.subjects.rate import RateTurn, rate_case, seats_of
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.workflows.adopted_effects import stop_datum
 from surveyapp.workflows.diagnosing_sensor import SensorCase
 from surveyapp_models.effects.effect import Effect
+
+Finish = Callable[[Diagnosis], tuple[Diagnosis, dict[str, Any]]]
 
 OPTIONAL = (
     "table_rate_deg_s",
@@ -56,7 +60,8 @@ def case_of_log(log: SensorLog, entry: SensorLogEntry, own: tuple[Effect, ...] =
         for stop in stops
         if stop.rows is not None
     ]
-    made = rate_case(stops, turns, identity=entry.id, extra=own)
+    seats = None if turns else seats_of(stops)
+    made = rate_case(stops, turns, identity=entry.id, extra=own, seats=seats)
     lines = partial(
         with_lines_beside,
         log=log,
@@ -69,9 +74,17 @@ def case_of_log(log: SensorLog, entry: SensorLogEntry, own: tuple[Effect, ...] =
         (*log.warnings, *told),
         {"stops": len(stops), "turns": len(turns)},
         partial(_directions, turns=turns) if turns else None,
-        lines,
+        partial(_finished, lines=lines, seats=seats),
         log.sha256 or "",
     )
+
+
+def _finished(
+    found: Diagnosis, *, lines: Finish, seats: Seats | None
+) -> tuple[Diagnosis, dict[str, Any]]:
+    """The diagnosis with the lines of its samples, and with the seats that its base model holds."""
+    found, keys = lines(found)
+    return (found if seats is None else with_seats(found, seats)), keys
 
 
 def _directions(diagnosis: Diagnosis, *, turns: list[RateTurn]) -> dict[str, Any]:

@@ -16,6 +16,7 @@ import numpy as np
 from surveyapp.core.sensors.rate.hand_held import TurnRows
 from surveyapp.diagnosis.action import Action, last_rows
 from surveyapp.diagnosis.case import Case, OwnScale
+from surveyapp.diagnosis.crooked_seats import Seats, crooked_seats
 from surveyapp.diagnosis.subject import DiagnosedSubject, Record, case_of
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
@@ -40,6 +41,8 @@ from surveyapp_models.effects.rate import (
 from surveyapp_models.effects.rate.gross_error import rows as rows_of
 
 LEAST_STOPS = 4
+SEAT = "seat_"
+"""Columns of what crooked seats do begin so."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,19 +152,29 @@ COLUMNS = (
 )
 
 
-def rate_subject(*, turned: bool, nodes: int = 0) -> DiagnosedSubject:
-    """The subject of stops at rest, or of stops on a table that turned, perhaps in a chamber."""
+def seated_base(columns: Columns, /) -> Floats:
+    """Bias, response, and what crooked seats do, shape (n, 12 + k)."""
+    names = sorted((n for n in columns if n.startswith(SEAT)), key=lambda n: int(n[len(SEAT) :]))
+    return np.column_stack([turned_base(columns), *(columns[name] for name in names)])
+
+
+def rate_subject(*, turned: bool, nodes: int = 0, seats: int = 0) -> DiagnosedSubject:
+    """The subject of stops at rest, or of stops on a table that turned, perhaps in a chamber.
+
+    ``seats`` columns of the record say what crooked seats do.
+    """
     biases = tuple(f"bias_{a}" for a in "xyz")
     if nodes:
         biases = tuple(f"bias_{a}_node_{k + 1}" for k in range(nodes) for a in "xyz")
     matrix = tuple(f"response_{a}{b}" for a in "xyz" for b in "xyz")
     names = (*biases, *matrix) if turned else biases
+    names = (*names, *(f"{SEAT}{k + 1}" for k in range(seats)))
     return DiagnosedSubject(
         id="rate",
         title=said("a rate sensor"),
         value_name=said("the mean bias of the three gyros"),
         columns=COLUMNS,
-        base=turned_base if turned else rest_base,
+        base=seated_base if seats else (turned_base if turned else rest_base),
         base_names=names,
         effects=of_subject("rate"),
         value=tuple(1.0 / len(biases) if k < len(biases) else 0.0 for k in range(len(names))),
@@ -178,6 +191,7 @@ def rate_case(
     *,
     identity: str,
     extra: tuple[Effect, ...] = (),
+    seats: Seats | None = None,
 ) -> Case:
     """The case of the stops of a record and of the turns between them.
 
@@ -196,6 +210,8 @@ def rate_case(
             )
         )
     columns = _stop_columns(stops)
+    if seats is not None:
+        columns |= {f"{SEAT}{k + 1}": c for k, c in enumerate(seats.columns.T)}
     observed = np.concatenate([s.output for s in stops])
     labels = [f"{s.label or f'stop {k + 1}'}, gyro {a}" for k, s in enumerate(stops) for a in "xyz"]
     series, rests = columns["axis"], observed.size
@@ -220,10 +236,22 @@ def rate_case(
     )
     turned = bool(turns) or any(s.known is not None for s in stops)
     nodes = np.unique(columns["node"]).size if "node" in columns else 0
-    case = case_of(rate_subject(turned=turned, nodes=nodes), record)
+    effective = 0 if seats is None else seats.effective
+    case = case_of(rate_subject(turned=turned, nodes=nodes, seats=effective), record)
     told = np.arange(observed.size) < rests
     weights = np.where(told, 1.0 / rests, 0.0)
     return replace(case, value_weights=weights, reported=told.astype(np.float64), own_scales=scales)
+
+
+def seats_of(stops: Sequence[RateStop]) -> Seats | None:
+    """Whether every position of a table sits crookedly; in a chamber the matrix may vary too."""
+    if any(s.known is None or s.place is None or s.node is not None for s in stops):
+        return None
+    if len(stops) < LEAST_STOPS:
+        return None
+    rates = np.array([s.known for s in stops], dtype=np.float64)
+    places = np.array([s.place for s in stops], dtype=np.float64)
+    return crooked_seats(np.array([s.output for s in stops]), rates, places, unit=DEG_S)
 
 
 def _stop_columns(stops: Sequence[RateStop]) -> dict[str, Floats]:

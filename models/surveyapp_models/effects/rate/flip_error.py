@@ -9,6 +9,9 @@ from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Coefficient, Columns, Effect, GridParameter
 from surveyapp_models.effects.rate import AXIS, INPUTS, PLACE
 
+SEAT_SD = "seat_sd"
+"""Coefficient where every position sits crookedly: standard deviation about either axis."""
+
 
 def basis(columns: Columns, /, **grid: float) -> Floats:
     """Small rotations across the table's axis times known rate in the rows of one position.

@@ -24,6 +24,7 @@ from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects import of_subject
+from surveyapp_models.effects.rate.flip_error import SEAT_SD
 
 GYROS: Final = {a: f"gyr_{a}_rad_s" for a in "xyz"}
 NEEDED: Final[Mapping[str, tuple[str, ...]]] = {
@@ -247,8 +248,18 @@ def adopted_parameters(effects: Sequence[AdoptedEffect]) -> tuple[SensorParamete
 def adopted_flip_sigma(effects: Sequence[AdoptedEffect]) -> float:
     """Standard deviation of a flip [rad] that an adopted one shows; 0 where there is none.
 
-    A crooked seat is seen as the difference of two flips, across the axis of its position.
+    A crooked seat is seen as the difference of two flips, across the axis of its position; where
+    every position sits crookedly the standard deviation itself was named.
     """
+    stated = [
+        value * ARCSEC
+        for effect in effects
+        if effect.id == "flip_error"
+        for name, value, _, _ in effect.coefficients
+        if name == SEAT_SD
+    ]
+    if stated:
+        return max(stated)
     turns = [
         value * ARCSEC
         for effect in effects
