@@ -239,7 +239,7 @@ def motion(
     allow_outside : bool
     options : mapping, optional
         ``false_alarm``, ``path``, ``begin`` ("E,N,AZIMUTH"), ``end`` ("E,N"), ``snap``,
-        ``snap_power_cycle``, ``still_gate_factor``.
+        ``snap_power_cycle``, ``still_gate_factor``; over those of the log's entry.
     progress : callable, optional
 
     Raises
@@ -248,9 +248,10 @@ def motion(
         For input that cannot be used.
     """
     from surveyapp.workflows.adopted_effects import not_taken_out
-    from surveyapp.workflows.motion import find_motion
+    from surveyapp.workflows.motion import find_motion, options_of
 
     opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
-    found = find_motion(opened.file, options or {}, progress=progress)
+    asked = options_of(opened.entry, options or {})
+    found = find_motion(opened.file, asked, progress=progress)
     found = replace(found, warnings=(*found.warnings, *not_taken_out(opened.entry)))
     return told_about(found, opened.subject)
