@@ -16,10 +16,12 @@ from surveyapp.core.sensors.rate.motion_log import (
 )
 from surveyapp.domain.advance import PartDone
 from surveyapp.domain.motion import Motion
+from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.languages import said
+from surveyapp.workflows.adopted_effects import read_without_adopted
 
 LONGEST_PATH_M: Final = 1e6
 """Of the odometer in one record."""
@@ -29,9 +31,13 @@ SMALLEST_ALARM: Final = 1e-9
 
 
 def find_motion(
-    file: LogFile, options: Mapping[str, object], *, progress: PartDone | None = None
+    file: LogFile,
+    options: Mapping[str, object],
+    *,
+    entry: SensorLogEntry | None = None,
+    progress: PartDone | None = None,
 ) -> Motion:
-    """Read a record and judge its motion.
+    """Read a record, without effects that were adopted for it, and judge its motion.
 
     Raises
     ------
@@ -40,7 +46,8 @@ def find_motion(
     problems: list[Problem] = []
     asked = motion_options(options, problems)
     try:
-        log = file.read(Need(columns=NEEDED, varying=NEEDED, optional=OPTIONAL), progress=progress)
+        need = Need(columns=NEEDED, varying=NEEDED, optional=OPTIONAL)
+        log = read_without_adopted(file, need, entry, progress=progress)
     except SurveyError as error:
         raise SurveyError([*problems, *error.problems]) from None
     if asked.path or asked.snap:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from surveyapp.core.sensors.adopted_effects import EVENT_COLUMNS
 from surveyapp.diagnosis.long_records.interference import (
     Interference,
     find_interference,
@@ -16,10 +17,12 @@ from surveyapp.diagnosis.long_records.interference import (
 from surveyapp.domain.advance import PartDone
 from surveyapp.domain.line_spectrum import LineSpectrum, MagneticBudget
 from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import NUMBER_COLUMNS, SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.languages import said
+from surveyapp.workflows.adopted_effects import read_without_adopted
 from surveyapp.workflows.noise import FEWEST
 from surveyapp_models.rate.triad import magnetic_bias
 
@@ -41,9 +44,10 @@ def find_spectrum(
     *,
     magnetic: MagneticOptions,
     against: LogFile | None = None,
+    entry: SensorLogEntry | None = None,
     progress: PartDone | None = None,
 ) -> LineSpectrum:
-    """Lines of a column.
+    """Lines of a column, without effects that were adopted for the log of the entry.
 
     Raises
     ------
@@ -53,7 +57,7 @@ def find_spectrum(
     column = _canonical(file, column)
     columns = [column] if against is None else _axes(file, against, column)
     try:
-        log = _read(file, list(dict.fromkeys([column, *columns])), progress)
+        log = _read(file, list(dict.fromkeys([column, *columns])), progress, entry)
     except SurveyError as error:
         raise SurveyError([*problems, *error.problems]) from None
     if problems:
@@ -88,12 +92,17 @@ def _axes(file: LogFile, other: LogFile, column: str) -> list[str]:
     return [column]
 
 
-def _read(file: LogFile, columns: list[str], progress: PartDone | None) -> SensorLog:
+def _read(
+    file: LogFile,
+    columns: list[str],
+    progress: PartDone | None,
+    entry: SensorLogEntry | None = None,
+) -> SensorLog:
     known = tuple(c for c in columns if c in NUMBER_COLUMNS)
     others = tuple(c for c in columns if c not in NUMBER_COLUMNS)
-    log = file.read(
-        Need(columns=known, varying=tuple(columns), optional=(), others=others), progress=progress
-    )
+    need = Need(columns=known, varying=tuple(columns), optional=(), others=others)
+    changed = [c for c in columns if c in GYROS or c in EVENT_COLUMNS]
+    log = read_without_adopted(file, need, entry if changed else None, progress=progress)
     if log.size < FEWEST:
         found, expected = (
             said("{size} rows", size=log.size),

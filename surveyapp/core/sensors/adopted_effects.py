@@ -19,6 +19,8 @@ from surveyapp.languages import said
 from surveyapp_models.effects import of_subject
 
 AXES = ("along", "across")
+EVENT_COLUMNS = (*(f"mag_{a}_uT" for a in "xyz"), *(f"tilt_{a}_arcsec" for a in AXES))
+"""Columns in which an event was seen."""
 
 
 def without_events(
