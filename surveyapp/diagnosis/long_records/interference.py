@@ -78,22 +78,24 @@ class Interference:
     unsearched: str = ""
 
 
-def find_interference(time_s: Floats, values: Floats) -> Interference:
+def find_interference(time_s: Floats, values: Floats, *, slowest_hz: float = 0.0) -> Interference:
     """Lines and families of a record of any length.
 
     Parameters
     ----------
     time_s, values : ndarray, shape (n,)
         Sorted by time.
+    slowest_hz : float
+        Frequency from which on lines are looked for: of a record whose parts were levelled.
     """
     if values.size > LONGEST:
-        return _long(time_s, values)
+        return _long(time_s, values, slowest_hz)
     centred = values - values.mean()
     grid = even_grid(time_s) if time_s.size > 64 else "fewer than 65 samples"
     if isinstance(grid, str):
         return Interference((), (), centred, grid)
-    search = find_lines(time_s, centred, columns={}, effects=())
-    families, sines, length = find_families(time_s, centred)
+    search = find_lines(time_s, centred, columns={}, effects=(), slowest=slowest_hz)
+    families, sines, length = find_families(time_s, centred, slowest=slowest_hz)
     singles = [
         InterferenceLine(
             line.frequency,
@@ -139,7 +141,7 @@ def _family_of(frequency: float, families: tuple[Family, ...], length: float) ->
     return None
 
 
-def _long(time_s: Floats, values: Floats) -> Interference:
+def _long(time_s: Floats, values: Floats, slowest_hz: float) -> Interference:
     """A very long record: averaged blocks; families among the lines that stand out."""
     step = float(time_s[-1] - time_s[0]) / (time_s.size - 1)
     uneven = _uneven(time_s)
@@ -150,6 +152,8 @@ def _long(time_s: Floats, values: Floats) -> Interference:
     resolution = 1.0 / (seen.block * step)
     lines = []
     for cycles, amplitude, p in seen.lines():
+        if cycles / step < slowest_hz:
+            continue
         k = min(max(round(cycles * seen.block), 1), seen.background.size - 1)
         noise = float(seen.background[k])
         sigma = math.sqrt(6.0 * noise / values.size) / (math.pi * max(amplitude, 1e-300))
