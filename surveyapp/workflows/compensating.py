@@ -23,12 +23,14 @@ from surveyapp.core.sensors.compensation import (
     force_sigma,
 )
 from surveyapp.domain.advance import PartDone
+from surveyapp.domain.columns import pieces
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_card import SensorCard
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.sensor_cards import read_sensor_card
+from surveyapp.io.sensor_logs.blocks import room_for
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.io.sensor_logs.writing import write_parts
 from surveyapp.languages import said
@@ -138,7 +140,7 @@ def compensate_log(
     if kind == "rate":
         log = without_adopted(log, entry)
     elif entry is not None and entry.effects:
-        log, told = without_events(log, entry.effects)
+        log, told = without_events(log, entry.effects, room=room_for)
         log = replace(log, warnings=(*log.warnings, *told))
     day = entry.calibrated_on if entry is not None and entry.calibrated_on else today
     problems = card.refusals(on=day, temperature_c=temperatures(log), where=where)
@@ -157,11 +159,11 @@ def compensate_log(
             "degrees: --declination D,SIGMA"
         )
         log = replace(log, warnings=(*log.warnings, ResultWarning("no_declination_sigma", text)))
-    part = log.rows(slice(None, None, max(log.size // FORCE_ROWS, 1)))
-    noise = force_sigma(part.vector("acc")) if kind == "compass" else 0.0
-    starts = range(0, log.size, BLOCK_ROWS)
-    blocks = (log.rows(slice(start, start + BLOCK_ROWS)) for start in starts)
-    return (_run(kind, block, card, (declination, where, noise)) for block in blocks), log, card
+    noise = 0.0
+    if kind == "compass":
+        noise = force_sigma(log.every(max(log.size // FORCE_ROWS, 1)).vector("acc"))
+    rest = (declination, where, noise)
+    return (_run(kind, block, card, rest) for block in log.pieces(BLOCK_ROWS)), log, card
 
 
 def _need(kind: str, file: LogFile, card: SensorCard, entry: SensorLogEntry | None) -> Need:
@@ -194,9 +196,16 @@ def _run(
 def temperatures(log: SensorLog) -> tuple[float, float] | None:
     """Lowest and highest temperature of a record, None where it holds none."""
     values = log.columns.get("temperature_c")
-    if values is None or not np.any(np.isfinite(values)):
+    if values is None:
         return None
-    return float(np.nanmin(values)), float(np.nanmax(values))
+    low, high = np.inf, -np.inf
+    for piece in pieces(values):
+        known = piece[np.isfinite(piece)]
+        low, high = (
+            min(low, float(known.min(initial=low))),
+            max(high, float(known.max(initial=high))),
+        )
+    return (low, high) if low <= high else None
 
 
 def other_instrument(card: SensorCard, entry: SensorLogEntry | None, where: str) -> list[Problem]:

@@ -14,6 +14,7 @@ from typing import Final, Literal
 import numpy as np
 
 from surveyapp.domain.advance import PartDone
+from surveyapp.domain.columns import pieces
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import (
     NUMBER_COLUMNS,
@@ -26,7 +27,7 @@ from surveyapp.domain.sensor_log import (
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.files import decode, shown, shown_path
 from surveyapp.io.sensor_logs import checks
-from surveyapp.io.sensor_logs.blocks import Rows, Wrong, count_lines, read_rows
+from surveyapp.io.sensor_logs.blocks import Rows, Wrong, count_lines, read_rows, room_for
 from surveyapp.io.sensor_logs.layout import LOOKED_AT, Layout, find_layout
 from surveyapp.io.sensor_logs.units import COUNTS, DIMENSIONLESS, UNITS, factor_to, unit_in_name
 from surveyapp.languages import said
@@ -202,7 +203,8 @@ class LogFile:
         for row, name in enumerate(numbers):
             factor = self.places[name].factor
             if factor != 1.0:
-                rows.numbers[row] *= factor
+                for piece in pieces(rows.numbers[row]):
+                    piece *= factor
 
     def _column_problems(self, need: Need, columns: Mapping[str, Array]) -> list[Problem]:
         where, first = self.request.where, self.layout.first_row
@@ -240,7 +242,7 @@ class LogFile:
             interval, gaps = checks.gaps_of(columns["time_s"])
             rate = rate or (1.0 / interval if interval > 0.0 else None)
         elif need.timed != "no" and rate is not None:
-            columns["time_s"] = np.arange(size) / rate
+            columns["time_s"] = _even_times(size, rate)
         clipped = checks.clipped_columns(columns)
         warnings: list[ResultWarning] = checks.gap_warning(gaps) + checks.clip_warning(clipped)
         return SensorLog(
@@ -387,6 +389,15 @@ def _place(
         problems.append(Problem(what, where, "LSB", "the value of one count", hint))
     held = unit if canonical == "output" and unit is not None else NUMBER_COLUMNS[canonical]
     return Place(index, name, held, factor * (scale or 1.0), stated, scale is not None)
+
+
+def _even_times(size: int, rate: float) -> Array:
+    """Times of a log without any [s], from its rate [Hz]."""
+    times, start = room_for(size), 0
+    for piece in pieces(times):
+        np.divide(np.arange(start, start + piece.size), rate, out=piece)
+        start += piece.size
+    return times
 
 
 def _pinned(request: LogRequest, sha256: str) -> list[Problem]:

@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from surveyapp.domain.columns import let_go
 from surveyapp.io.outputs import check_output
 from surveyapp.io.tomltext import atomic_write
 from surveyapp_models.arrays import Floats
@@ -52,6 +53,9 @@ def _pieces(parts: Iterable[Columns]) -> Iterator[bytes]:
         for start in range(0, size, BLOCK_ROWS):
             block = {name: values[start : start + BLOCK_ROWS] for name, values in part.items()}
             yield _rows(block).encode()
+            for values in part.values():
+                if isinstance(values, np.ndarray):
+                    let_go(values)
 
 
 def write_columns(path: Path, columns: Columns, *, inputs: Iterable[Path] = ()) -> None:
