@@ -255,7 +255,7 @@ def write_compensated(
     if card.temperature_c is not None and span is None:
         text = "the log holds no temperature: whether the card holds was not judged by it"
         warnings.append(ResultWarning("temperature_unknown", text))
-    if kind == "compass" and log.vector("acc") is None:
+    if kind == "compass" and not log.has(*ACC):
         text = "no specific force: the headings are taken as level, not tilt-compensated"
         warnings.append(ResultWarning("not_tilt_compensated", text))
     if "restricted" in card.notes:

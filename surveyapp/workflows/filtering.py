@@ -83,23 +83,8 @@ def filter_log(
         model_name, series, model, rng, room=room_for, progress=stage(progress, 0.5, 0.8)
     )
     rate = log.rate_hz or 1.0
-    factors = octaves(series.size)
-    before = channel_of(
-        names[0],
-        unit,
-        series,
-        rate_hz=rate,
-        factors=factors,
-        progress=stage(progress, 0.8, 0.88),
-    )
-    after = channel_of(
-        names[0],
-        unit,
-        filtered.estimate,
-        rate_hz=rate,
-        factors=factors,
-        highest_hz=PASS_BAND * model.steady_gain * rate / (2.0 * math.pi),
-        progress=stage(progress, 0.88, 0.96),
+    before, after = _channels(
+        (names[0], unit), (series, filtered.estimate), (rate, model), stage(progress, 0.8, 0.96)
     )
     lags = _lags(model_name, model, seed)
     if progress is not None:
@@ -132,6 +117,29 @@ def filter_log(
         names[0]: series,
         f"filtered_{names[0]}": filtered.estimate,
     }
+
+
+def _channels(
+    named: tuple[str, str],
+    both: tuple[Floats, Floats],
+    known: tuple[float, LocalLevel],
+    progress: PartDone | None,
+) -> tuple[AllanChannel, AllanChannel]:
+    """Allan deviation of a series and of what a filter made of it."""
+    rate, model = known
+    pass_band = PASS_BAND * model.steady_gain * rate / (2.0 * math.pi)
+    made = [
+        channel_of(
+            *named,
+            series,
+            rate_hz=rate,
+            factors=octaves(series.size),
+            highest_hz=highest_hz,
+            progress=stage(progress, 0.5 * k, 0.5 * k + 0.5),
+        )
+        for k, (series, highest_hz) in enumerate(zip(both, (None, pass_band), strict=True))
+    ]
+    return made[0], made[1]
 
 
 def _one_column(file: LogFile, column: str | None) -> tuple[str, ...]:

@@ -23,7 +23,8 @@ LONG = 2 * PIECE + 12_345
 
 def mapped(values: Floats) -> Floats:
     """The same numbers in a file without a name."""
-    store = blocks.make_room(1, max(values.size, blocks.MAPPED_VALUES + 1))[0][: values.size]
+    room = blocks.make_room(1, max(values.size, blocks.MAPPED_VALUES + 1))
+    store: Floats = room[0, : values.size]
     store[:] = values
     let_go(store)
     return store
@@ -102,7 +103,7 @@ def test_allan_of_a_mapped_series_is_that_of_one_in_memory() -> None:
     series = np.random.default_rng(2).standard_normal(LONG) + 1e-6 * np.arange(LONG)
     column = mapped(series)
     for estimator in ("oadev", "adev"):
-        ours = allan_variances(column, (1, 8, 300_000), estimator=estimator, room=blocks.room_for)  # type: ignore[arg-type]
+        ours = allan_variances(column, (1, 8, 300_000), estimator=estimator, room=blocks.room_for)
         phase = np.concatenate([[0.0], np.cumsum(series - series.mean())])
         for m, variance in zip((1, 8, 300_000), ours, strict=True):
             thin, lag = (phase, m) if estimator == "oadev" else (phase[::m], 1)

@@ -20,7 +20,7 @@ from typing import Final
 import numpy as np
 
 from surveyapp.domain.advance import PartDone
-from surveyapp.domain.columns import let_go
+from surveyapp.domain.columns import let_go, pieces
 from surveyapp.domain.sensor_log import Array
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import shown, shown_path
@@ -189,6 +189,15 @@ def room_for(size: int) -> Array:
     """Room for one series, shape (size,); a ``columns.Room``."""
     found: Array = make_room(1, size)[0]
     return found
+
+
+def even_times(size: int, rate: float) -> Array:
+    """Times of a log without any [s], from its rate [Hz]."""
+    times, start = room_for(size), 0
+    for piece in pieces(times):
+        np.divide(np.arange(start, start + piece.size), rate, out=piece)
+        start += piece.size
+    return times
 
 
 def _decoded(block: bytes, line: int, where: str) -> str:
