@@ -94,13 +94,23 @@ def compass_doubts(log: SensorLog, card: SensorCard, *, where: str) -> list[Resu
 
 
 def tilt_doubts(log: SensorLog, card: SensorCard) -> list[ResultWarning]:
-    """Readings beyond those of the calibration, and an axis that never changes."""
-    found = []
+    """Readings beyond those of the calibration, and an axis that never changes.
+
+    A card written before cards held a range is used, and that it is not judged is told.
+    """
+    found: list[ResultWarning] = []
     if card.get("sensitivity") is not None:
         names, centre, span = ["output"], card.get("zero") or 0.0, abs(card.get("sensitivity") or 0)
     else:
         names, centre = ["tilt_along_arcsec", "tilt_across_arcsec"], 0.0
-        span = RANGE * card.constants.get("largest_reading_arcsec", np.inf)
+        largest = card.constants.get("largest_reading_arcsec")
+        span = np.inf if largest is None else RANGE * largest
+        if largest is None:
+            text = said(
+                "the card holds no range of its calibration: whether these tilts lie within it "
+                "is not judged; a new calibration from its log writes it"
+            )
+            found.append(ResultWarning("range_unknown", text))
     for name in names:
         values = log.columns[name]
         beyond = sum(int(np.count_nonzero(np.abs(p - centre) > span)) for p in pieces(values))
