@@ -22,7 +22,7 @@ from surveyapp.core.sensors.compensation import (
     compensate_tilt,
     force_sigma,
 )
-from surveyapp.domain.advance import PartDone
+from surveyapp.domain.advance import PartDone, stage
 from surveyapp.domain.columns import pieces
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_card import SensorCard
@@ -42,12 +42,19 @@ BLOCK_ROWS: Final = 50_000
 FORCE_ROWS: Final = 20_000
 """Rows that tell the noise of the specific force, of the whole log."""
 
+READING: Final = 0.25
+"""Share of the work that is reading; the rest is writing."""
+
 KINDS: Final = ("compass", "tilt", "rate")
 MAG: Final = ("mag_x_uT", "mag_y_uT", "mag_z_uT")
 ACC: Final = ("acc_x_m_s2", "acc_y_m_s2", "acc_z_m_s2")
 TILT: Final = ("tilt_along_arcsec", "tilt_across_arcsec")
 TABLE_COLUMNS: Final = ("table_rate_deg_s", "table_angle_deg", "round", "temperature_c")
 GYR: Final = ("gyr_x_rad_s", "gyr_y_rad_s", "gyr_z_rad_s")
+
+
+_Rest = tuple[Declination | None, str, float]
+"""Declination, name of the card, noise of the specific force."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +143,7 @@ def compensate_log(
         raise SurveyError(
             Problem("a declination is added to magnetic headings only", "declination", found)
         )
-    log = file.read(_need(kind, file, card, entry), progress=progress)
+    log = file.read(_need(kind, file, card, entry), progress=stage(progress, 0.0, READING))
     if kind == "rate":
         log = without_adopted(log, entry)
     elif entry is not None and entry.effects:
@@ -163,7 +170,20 @@ def compensate_log(
     if kind == "compass":
         noise = force_sigma(log.every(max(log.size // FORCE_ROWS, 1)).vector("acc"))
     rest = (declination, where, noise)
-    return (_run(kind, block, card, rest) for block in log.pieces(BLOCK_ROWS)), log, card
+    return _parts(kind, log, card, (rest, stage(progress, READING, 1.0))), log, card
+
+
+def _parts(
+    kind: str, log: SensorLog, card: SensorCard, more: tuple[_Rest, PartDone | None]
+) -> Iterator[Compensated]:
+    """The corrected log block by block; what was written is told."""
+    rest, progress = more
+    done = 0
+    for block in log.pieces(BLOCK_ROWS):
+        yield _run(kind, block, card, rest)
+        done += block.size
+        if progress is not None:
+            progress(done / log.size)
 
 
 def _need(kind: str, file: LogFile, card: SensorCard, entry: SensorLogEntry | None) -> Need:
@@ -178,9 +198,7 @@ def _need(kind: str, file: LogFile, card: SensorCard, entry: SensorLogEntry | No
     return Need(columns=columns, optional=("temperature_c",), timed="optional")
 
 
-def _run(
-    kind: str, log: SensorLog, card: SensorCard, rest: tuple[Declination | None, str, float]
-) -> Compensated:
+def _run(kind: str, log: SensorLog, card: SensorCard, rest: _Rest) -> Compensated:
     declination, where, noise = rest
     if kind == "compass":
         return compensate_compass(

@@ -132,10 +132,14 @@ def test_a_mapped_log_is_filtered_and_compensated_as_one_in_memory(
         fmt="%.6f",
     )
 
+    shares: list[float] = []
+
     def everything(to: Path) -> tuple[str, str, object]:
         to.mkdir()
         api.calibrate("tilt", log, card=to / "card.toml")
-        api.compensate("tilt", log, card=to / "card.toml", out=to / "out.csv")
+        api.compensate(
+            "tilt", log, card=to / "card.toml", out=to / "out.csv", progress=shares.append
+        )
         column = "tilt_across_arcsec"
         made = [
             api.filter_log(log, name=name, column=column, out=to / f"{name}.csv").to_dict()
@@ -148,3 +152,4 @@ def test_a_mapped_log_is_filtered_and_compensated_as_one_in_memory(
     monkeypatch.setattr(blocks, "MAPPED_VALUES", 100)
     monkeypatch.setattr(blocks, "BLOCK_BYTES", 1000)
     assert everything(tmp_path / "mapped") == plain
+    assert shares[-1] == 1.0
