@@ -18,7 +18,7 @@ from surveyapp.core.sensors.linear import alternate_blocks
 from surveyapp.core.sensors.rate.adopted import StopDatum, without_effects
 from surveyapp.diagnosis.case import Levels
 from surveyapp.diagnosis.long_records.interference import find_interference
-from surveyapp.diagnosis.long_records.lines import SpectralLine
+from surveyapp.diagnosis.long_records.lines import LEAST_FILLED, SpectralLine
 from surveyapp.diagnosis.result import Adoption, CandidateResult, Diagnosis, NamedCoefficient
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.domain.line_spectrum import InterferenceLine
@@ -186,9 +186,19 @@ def _even_parts(time_s: Floats, rows: NDArray[np.intp]) -> list[NDArray[np.intp]
     gaps = np.diff(time_s[rows])
     steps = gaps / float(np.median(gaps))
     breaks = np.flatnonzero(np.abs(steps - np.rint(steps)) > BROKEN)
-    parts = np.split(rows, breaks + 1)
+    step = float(np.median(gaps))
+    parts = [one for part in np.split(rows, breaks + 1) for one in _filled(time_s, part, step)]
     longest = max(part.size for part in parts)
     return [part for part in parts if part.size > LEAST_PART * longest]
+
+
+def _filled(time_s: Floats, rows: NDArray[np.intp], step: float) -> list[NDArray[np.intp]]:
+    """Parts of which samples fill at least half, cut at the longest pauses between turns."""
+    length = float(time_s[rows[-1]] - time_s[rows[0]]) if rows.size else 0.0
+    if rows.size < 2 or rows.size >= LEAST_FILLED * (length / step + 1.0):
+        return [rows]
+    cut = int(np.argmax(np.diff(time_s[rows]))) + 1
+    return [*_filled(time_s, rows[:cut], step), *_filled(time_s, rows[cut:], step)]
 
 
 def _once_each(found: Sequence[LineFound]) -> tuple[LineFound, ...]:

@@ -10,6 +10,7 @@ import numpy as np
 from surveyapp.core.sensors.adopted_effects import EVENT_COLUMNS
 from surveyapp.diagnosis.long_records.interference import (
     Interference,
+    deviation_of,
     find_interference,
     plotted_density,
     scatter_of,
@@ -179,13 +180,13 @@ def _compared(first: SensorLog, second: SensorLog, columns: list[str]) -> dict[s
         found_one = find_interference(first.columns["time_s"], one)
         found_two = find_interference(second.columns["time_s"], two)
         old = np.array([line.frequency_hz for line in found_one.lines])
-        slack = 2.0 / min(np.ptp(first.columns["time_s"]), np.ptp(second.columns["time_s"]))
+        slack = 2.0 / min(_length(first), _length(second))
         new = [
             line.to_dict()
             for line in found_two.lines
             if np.abs(old - line.frequency_hz).min(initial=np.inf) > slack
         ]
-        sd_one, sd_two = float(np.std(one, ddof=1)), float(np.std(two, ddof=1))
+        sd_one, sd_two = deviation_of(one), deviation_of(two)
         axes.append(
             {
                 "column": column,
@@ -202,6 +203,11 @@ def _compared(first: SensorLog, second: SensorLog, columns: list[str]) -> dict[s
             }
         )
     return {"source": second.id, "sha256": second.sha256, "axes": axes}
+
+
+def _length(log: SensorLog) -> float:
+    """From the first to the last sample [s]."""
+    return float(log.columns["time_s"][-1] - log.columns["time_s"][0])
 
 
 def _in_db(values: np.ndarray, rate_hz: float) -> dict[str, list[float]]:
