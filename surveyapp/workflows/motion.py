@@ -21,6 +21,7 @@ from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.languages import said
+from surveyapp.workflows.adopted_effects import read_without_adopted
 
 LONGEST_PATH_M: Final = 1e6
 """Of the odometer in one record."""
@@ -51,9 +52,13 @@ def options_of(entry: SensorLogEntry | None, given: Mapping[str, object]) -> dic
 
 
 def find_motion(
-    file: LogFile, options: Mapping[str, object], *, progress: PartDone | None = None
+    file: LogFile,
+    options: Mapping[str, object],
+    *,
+    entry: SensorLogEntry | None = None,
+    progress: PartDone | None = None,
 ) -> Motion:
-    """Read a record and judge its motion.
+    """Read a record, without effects that were adopted for it, and judge its motion.
 
     Raises
     ------
@@ -62,7 +67,8 @@ def find_motion(
     problems: list[Problem] = []
     asked = motion_options(options, problems)
     try:
-        log = file.read(Need(columns=NEEDED, varying=NEEDED, optional=OPTIONAL), progress=progress)
+        need = Need(columns=NEEDED, varying=NEEDED, optional=OPTIONAL)
+        log = read_without_adopted(file, need, entry, progress=progress)
     except SurveyError as error:
         raise SurveyError([*problems, *error.problems]) from None
     if asked.path or asked.snap:

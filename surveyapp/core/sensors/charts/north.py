@@ -71,7 +71,7 @@ def _headings(tracking: Sequence[Mapping[str, Any]]) -> tuple[Picture, ...]:
         item["heading_deg"] = heading
     points = tuple((float(i["time_s"]), float(i["heading_deg"])) for i in known)
     series = (
-        Series(said("heading"), points),
+        Series(said("heading of the set"), points),
         *_bounds(known, "heading_deg", "heading_sigma_deg"),
     )
     title = said("Heading from set to set")

@@ -56,7 +56,6 @@ STEP_TITLES: Final = (
     (113, "carry the heading through the rotation"),
 )
 
-
 MODEL_SIGMA: Final = math.radians(0.5)
 """Of a declination that is stated without one: the World Magnetic Model's is .31 to .50 degrees
 (WMM2020 technical report, NOAA: sqrt(0.26^2 + (5625 nT / H)^2) with H of 13,000 nT)."""
