@@ -120,6 +120,9 @@ def _usual(kinds: tuple[ReadingKind, ...], rows: tuple[Reading, ...]) -> Reading
     clamp = ReadingKind.CLAMP
     if clamp in kinds and not any(row.kind is clamp for row in rows):
         return clamp
+    axes = [kind for kind in kinds if QUANTITY[kind] is Dimension.TILT]
+    if axes:
+        return min(axes, key=lambda axis: sum(row.kind is axis for row in rows))
     return kinds[0] if kinds else ReadingKind.NOTE
 
 

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 
 from surveyapp.core.sensors.rate.position_log import ACCELEROMETERS, GYROS
-from surveyapp.diagnosis.rate_lines import Stretch, with_lines_beside
-from surveyapp.diagnosis.rate_stops import stops_of
+from surveyapp.diagnosis.rate_lines import LEVELS, Stretch, with_lines_beside
+from surveyapp.diagnosis.rate_stops import LOG_COLUMNS, stops_of
 from surveyapp.diagnosis.result import Diagnosis
 from surveyapp.diagnosis.subjects.rate import RateTurn, rate_case
 from surveyapp.domain.sensor_entry import SensorLogEntry
@@ -20,25 +21,14 @@ from surveyapp.workflows.adopted_effects import stop_datum
 from surveyapp.workflows.diagnosing_sensor import SensorCase
 from surveyapp_models.effects.effect import Effect
 
-OPTIONAL = (
-    "table_rate_deg_s",
-    "table_angle_deg",
-    "round",
-    "temperature_c",
-    "reference_temperature_c",
-    "mag_x_uT",
-    "mag_y_uT",
-    "mag_z_uT",
-)
-
 
 def case(file: LogFile, entry: SensorLogEntry, own: tuple[Effect, ...]) -> SensorCase:
     """Read the log and make its case."""
     table = file.has("position")
     still = not table and not any(file.has(c) for c in ACCELEROMETERS)
     beside: tuple[str, ...] = ("position",) if table else (() if still else ACCELEROMETERS)
-    optional = (*OPTIONAL, *ACCELEROMETERS)
-    log = file.read(Need(columns=(*GYROS, *beside), varying=GYROS, optional=optional, biased=True))
+    need = Need(columns=(*GYROS, *beside), varying=GYROS, optional=LOG_COLUMNS, biased=True)
+    log = file.read(need)
     return case_of_log(log, entry, own)
 
 
@@ -57,6 +47,8 @@ def case_of_log(log: SensorLog, entry: SensorLogEntry, own: tuple[Effect, ...] =
         if stop.rows is not None
     ]
     made = rate_case(stops, turns, identity=entry.id, extra=own)
+    if not any(stop.known is None and stop.force is not None for stop in stops):  # held by hand
+        made = replace(made, levels=LEVELS)
     lines = partial(
         with_lines_beside,
         log=log,

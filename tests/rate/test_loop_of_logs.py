@@ -72,6 +72,20 @@ def test_a_line_in_a_record_with_pauses_is_one_line() -> None:
     assert found[0].after < found[0].before
 
 
+def test_a_line_is_found_where_the_pauses_are_longer_than_the_turns() -> None:
+    """Two turns of 30 s, 30 s apart, then 120 s without any: under half of the record turns."""
+    rng = np.random.default_rng(4)
+    time = np.arange(0.0, 1260.0, 0.05)
+    stretches = [Stretch(k * 4200 + a, k * 4200 + a + 600) for k in range(6) for a in (0, 1200)]
+    noise = rng.normal(size=time.size)
+    assert judge_lines(time, [noise], stretches, ("x",)).lines == ()
+    values = noise + 0.5 * np.cos(2.0 * math.pi * 2.48 * time + 1.0)
+    found = judge_lines(time, [values], stretches, ("x",)).lines
+    assert len(found) == 1
+    assert found[0].line.frequency == pytest.approx(2.48, abs=3e-3)
+    assert found[0].after < found[0].before
+
+
 def test_without_a_choice_the_sensor_logs_are_listed(tmp_path: Path) -> None:
     folder = simulated(tmp_path / "unit", "rate", "--programme", "multi-position")
     found = surveyapp("diagnose", folder, "--json").json

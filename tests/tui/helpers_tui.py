@@ -8,9 +8,11 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import numpy as np
+from textual.pilot import Pilot
 
 from surveyapp.core.simulate.session import SimulatedSession, simulate_session
 from surveyapp.core.simulate.specification import SessionSpec
+from surveyapp.tui.screens.session import SessionScreen
 
 SMALL, LARGE = (80, 24), (120, 40)
 HEADER = "seq,time,elapsed_s,kind,value,unit,face,side,target,temperature_c,note\n"
@@ -179,3 +181,23 @@ def make_calibrations(folder: Path) -> Path:
         (folder / "observations" / f"k{number}.csv").write_text(book, encoding="utf-8")
     (folder / "project.toml").write_text(text, encoding="utf-8")
     return folder
+
+
+async def settle(pilot: Pilot[int]) -> None:
+    """Wait until no worker is at work and the screen shows what they found."""
+    for _ in range(6):
+        await pilot.app.workers.wait_for_complete()
+        await pilot.pause()
+        if not any(not worker.is_finished for worker in pilot.app.workers):
+            return
+
+
+async def open_session(pilot: Pilot[int]) -> SessionScreen:
+    """Open the session under the cursor, unless its screen is shown already."""
+    await settle(pilot)
+    if not isinstance(pilot.app.screen, SessionScreen):
+        await pilot.press("enter")
+        await settle(pilot)
+    screen = pilot.app.screen
+    assert isinstance(screen, SessionScreen)
+    return screen

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from textual.pilot import Pilot
 from textual.widgets import Static
 
 from surveyapp import api
@@ -24,7 +23,13 @@ from surveyapp.observation.session import NewRow, SessionDesk
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.views.progress import countdown_text, forecast_text, is_near
 from surveyapp_models.angles import AngleUnit
-from tests.tui.helpers_tui import SMALL, Clock, make_project, rows_on_disk
+from tests.tui.helpers_tui import (
+    SMALL,
+    Clock,
+    make_project,
+    rows_on_disk,
+    settle,
+)
 
 KINDS = ("clamp", "scale_reversal", "transit")
 
@@ -165,12 +170,6 @@ def test_a_missed_point_turns_the_side_that_is_asked_for(tmp_path: Path) -> None
     for progress in (None, api_session.progress(seen.project, "r1")):
         what = expected(seen, Step.SWING, progress)
         assert what.side is Side(rows[6]["side"])
-
-
-async def settle(pilot: Pilot[int]) -> None:
-    for _ in range(2):
-        await pilot.app.workers.wait_for_complete()
-        await pilot.pause()
 
 
 async def test_the_screen_forecasts_a_transit_and_f5_counts_a_point_on(tmp_path: Path) -> None:

@@ -9,7 +9,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from textual.pilot import Pilot
 from textual.widgets import Static
 
 from surveyapp import api
@@ -25,7 +24,7 @@ from surveyapp.tui.entry_desk import Desk, NotWrittenError
 from surveyapp.tui.screens.session import SessionScreen
 from surveyapp.tui.views.progress import countdown_text, forecast_text
 from surveyapp.tui.widgets.entry import EntryLine
-from tests.tui.helpers_tui import SMALL, Clock, make_project, rows_on_disk
+from tests.tui.helpers_tui import SMALL, Clock, make_project, open_session, rows_on_disk
 
 POINTS = ("102-00-14", "98-01-04", "101-59-08", "98-02-30")
 HALF_SWING_S = 212.7
@@ -52,18 +51,6 @@ def doubts(desk: Desk, text: str, kind: ReadingKind | None = None) -> list[Doubt
     what = expected(seen, seen.step, None, kind)
     found = understand(seen, text, what, progress=None, stamp=seen.clock.stamp())
     return [item.doubt for item in found.questions]
-
-
-async def open_session(pilot: Pilot[int]) -> SessionScreen:
-    for _ in range(2):
-        await pilot.app.workers.wait_for_complete()
-        await pilot.pause()
-    if not isinstance(pilot.app.screen, SessionScreen):
-        await pilot.press("enter")
-        await pilot.pause()
-    screen = pilot.app.screen
-    assert isinstance(screen, SessionScreen)
-    return screen
 
 
 def told(screen: SessionScreen) -> str:
@@ -384,3 +371,13 @@ def test_a_passage_struck_before_others_is_not_replaced_by_a_later_one(tmp_path:
     with pytest.raises(SurveyError, match="does not lie behind"):
         seen.record(NewRow(ReadingKind.TRANSIT, "0", "div"))
     assert api.open_project(folder).sessions[0].book.of_kind(ReadingKind.TRANSIT)[-1].seq == last
+
+
+def test_the_axis_not_yet_read_is_proposed(tmp_path: Path) -> None:
+    desk, _, folder = desk_at(tmp_path, Step.SETUP)
+    for value in ("3", "-2", "4"):
+        desk.typing(value)
+        assert desk.enter(value).startswith("on disk")
+    assert desk.what().kind is ReadingKind.LEVEL_ACROSS
+    kinds = [row["kind"] for row in rows_on_disk(folder) if row["kind"].startswith("level")]
+    assert kinds == ["level_along", "level_across", "level_along"]

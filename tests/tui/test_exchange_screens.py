@@ -15,15 +15,13 @@ from surveyapp.tui.screens.project import ProjectScreen
 from surveyapp.tui.widgets.titlebar import TitleBar
 from tests.formats import field_writers as w
 from tests.formats.importing import field_file, project, tree
-from tests.tui.helpers_tui import LARGE, SMALL
+from tests.tui.helpers_tui import (
+    LARGE,
+    SMALL,
+    settle,
+)
 
 SETUPS, SIGHTS = w.simulated()
-
-
-async def settle(pilot: Pilot[int]) -> None:
-    for _ in range(3):
-        await pilot.app.workers.wait_for_complete()
-        await pilot.pause()
 
 
 def shown(pilot: Pilot[int]) -> str:

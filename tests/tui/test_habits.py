@@ -29,13 +29,13 @@ from surveyapp.tui.screens.project import ProjectScreen
 from surveyapp.tui.screens.session import SessionScreen
 from surveyapp.tui.widgets.entry import EntryLine
 from surveyapp.tui.widgets.problems import Problems
-from tests.tui.helpers_tui import SMALL, Clock, make_network, make_project
-
-
-async def settle(pilot: Pilot[int]) -> None:
-    for _ in range(2):
-        await pilot.app.workers.wait_for_complete()
-        await pilot.pause()
+from tests.tui.helpers_tui import (
+    SMALL,
+    Clock,
+    make_network,
+    make_project,
+    settle,
+)
 
 
 async def test_values_and_care_stand_at_their_steps(tmp_path: Path) -> None:

@@ -28,15 +28,15 @@ from surveyapp.tui.texts import help_texts
 from surveyapp.tui.views.ledger import ledger_rows
 from surveyapp.tui.widgets.entry import EntryLine
 from surveyapp_models.angles import ARCSEC, AngleUnit, parse_angle
-from tests.tui.helpers_tui import SMALL, make_project, simulated
+from tests.tui.helpers_tui import (
+    SMALL,
+    make_project,
+    open_session,
+    settle,
+    simulated,
+)
 
 PROJECTS = Path(__file__).resolve().parents[2] / "projects"
-
-
-async def settle(pilot: Pilot[int]) -> None:
-    for _ in range(2):
-        await pilot.app.workers.wait_for_complete()
-        await pilot.pause()
 
 
 def classes_of_screens() -> set[str]:
@@ -143,11 +143,7 @@ async def test_escape_keeps_a_half_typed_reason(tmp_path: Path) -> None:
     (folder / "observations" / "r1.csv").write_text(text, encoding="utf-8")
     app = SurveyApp(str(folder))
     async with app.run_test(size=SMALL) as pilot:
-        await settle(pilot)
-        await pilot.press("enter")
-        await settle(pilot)
-        screen = app.screen
-        assert isinstance(screen, SessionScreen)
+        screen = await open_session(pilot)
         await pilot.press("f6", *"slipp", "escape", "f6")
         await settle(pilot)
         assert isinstance(app.screen, StrikeScreen)
@@ -178,11 +174,7 @@ async def test_a_step_that_has_all_it_needs_says_so(tmp_path: Path) -> None:
 async def test_a_doubt_about_one_target_is_none_about_another(tmp_path: Path) -> None:
     app = SurveyApp(str(make_project(tmp_path / "p")))
     async with app.run_test(size=SMALL) as pilot:
-        await settle(pilot)
-        await pilot.press("enter")
-        await settle(pilot)
-        screen = app.screen
-        assert isinstance(screen, SessionScreen)
+        screen = await open_session(pilot)
         await pilot.press("f8")
         for text in ("179-01-56", "59-02-12"):
             screen.query_one(EntryLine).text = text

@@ -6,7 +6,6 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Select, Static, TextArea
 
 from surveyapp import api
@@ -20,13 +19,10 @@ from surveyapp.tui.screens.home import HomeScreen
 from surveyapp.tui.screens.new_project import NewProjectScreen
 from surveyapp.tui.screens.project import ProjectScreen
 from surveyapp.tui.screens.session import SessionScreen
-from tests.tui.helpers_tui import SMALL
-
-
-async def settle(pilot: Pilot[int]) -> None:
-    for _ in range(2):
-        await pilot.app.workers.wait_for_complete()
-        await pilot.pause()
+from tests.tui.helpers_tui import (
+    SMALL,
+    settle,
+)
 
 
 async def test_a_project_and_a_session_made_on_the_screen(tmp_path: Path) -> None:

@@ -17,16 +17,16 @@ from surveyapp.observation.session import SessionDesk
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.session import SessionScreen
 from surveyapp.tui.widgets.entry import EntryLine
-from tests.tui.helpers_tui import LARGE, Clock, make_project
+from tests.tui.helpers_tui import (
+    LARGE,
+    Clock,
+    make_project,
+    settle,
+)
 
 if sys.platform == "win32":
     pytest.skip("pseudo-terminals", allow_module_level=True)
 from tests.formats import simulated_station as s
-
-
-async def settle(pilot: Pilot[int]) -> None:
-    await pilot.app.workers.wait_for_complete()
-    await pilot.pause()
 
 
 def told(pilot: Pilot[int]) -> str:

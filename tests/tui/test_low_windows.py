@@ -5,25 +5,24 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from textual.pilot import Pilot
 from textual.widgets._footer import FooterKey
 
 from surveyapp.core.simulate.session import book_text
 from surveyapp.tui.app import SurveyApp
-from surveyapp.tui.screens.session import SessionScreen
 from surveyapp.tui.widgets.entry import EntryLine
 from surveyapp.tui.widgets.ledger import Ledger
 from surveyapp.tui.widgets.run import RunPane
 from surveyapp.tui.widgets.swing import SwingPlot
-from tests.tui.helpers_tui import SMALL, Clock, make_project, simulated
+from tests.tui.helpers_tui import (
+    SMALL,
+    Clock,
+    make_project,
+    open_session,
+    settle,
+    simulated,
+)
 
 LONG = "The moment lies before the last row, and the reading beyond the forecast. " * 3
-
-
-async def settle(pilot: Pilot[int]) -> None:
-    for _ in range(2):
-        await pilot.app.workers.wait_for_complete()
-        await pilot.pause()
 
 
 async def test_north_and_the_latest_readings_are_seen_beside_a_long_message(
@@ -36,11 +35,7 @@ async def test_north_and_the_latest_readings_are_seen_beside_a_long_message(
     clock.pass_by(2900.0)
     app = SurveyApp(str(folder), now=clock.now, steady=clock.steady)
     async with app.run_test(size=SMALL) as pilot:
-        await settle(pilot)
-        await pilot.press("enter")
-        await settle(pilot)
-        screen = app.screen
-        assert isinstance(screen, SessionScreen)
+        screen = await open_session(pilot)
         screen.query_one(EntryLine).tell(LONG, serious=True)
         for size in (SMALL, (60, 18)):
             await pilot.resize_terminal(*size)

@@ -16,12 +16,13 @@ from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.result import ResultScreen
 from surveyapp.tui.screens.session import SessionScreen
 from surveyapp.tui.widgets.entry import EntryLine
-from tests.tui.helpers_tui import SMALL, make_project, readings, rows_on_disk
-
-
-async def settle(pilot: Pilot[int]) -> None:
-    await pilot.app.workers.wait_for_complete()
-    await pilot.pause()
+from tests.tui.helpers_tui import (
+    SMALL,
+    make_project,
+    readings,
+    rows_on_disk,
+    settle,
+)
 
 
 async def go_to(pilot: Pilot[int], screen: SessionScreen, step: Step) -> None:

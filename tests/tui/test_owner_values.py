@@ -6,7 +6,6 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from textual.pilot import Pilot
 from textual.widgets import Input, Select, Static, TextArea
 
 from surveyapp import api
@@ -17,15 +16,12 @@ from surveyapp.observation.owner_entries import OwnerEntries
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.new_project import NewProjectScreen
 from surveyapp.tui.widgets.run import RunPane
-from tests.tui.helpers_tui import SMALL
+from tests.tui.helpers_tui import (
+    SMALL,
+    settle,
+)
 
 PERIOD, SCALE, TORSION = OwnerValue.PERIOD, OwnerValue.SCALE, OwnerValue.TORSION
-
-
-async def settle(pilot: Pilot[int]) -> None:
-    for _ in range(2):
-        await pilot.app.workers.wait_for_complete()
-        await pilot.pause()
 
 
 def test_what_a_card_lacks() -> None:

@@ -24,6 +24,7 @@ from surveyapp.tui.widgets.shaft_pictures import SwingPictures, TrianglePictures
 from surveyapp.tui.widgets.titlebar import TitleBar
 from surveyapp_models.angles import ARCSEC
 from tests.penetration.mines import straight
+from tests.tui.helpers_tui import settle
 
 SAMPLE = Path(__file__).resolve().parents[2] / "projects" / "synthetic-breakthrough"
 
@@ -34,21 +35,15 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return Path(shutil.copytree(SAMPLE, tmp_path / "mine"))
 
 
-async def settle(app: SurveyApp, pilot) -> None:  # type: ignore[no-untyped-def]
-    for _ in range(4):
-        await app.workers.wait_for_complete()
-        await pilot.pause()
-
-
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)])
 async def test_the_number_follows_every_key(size: tuple[int, int], folder: Path) -> None:
     app = SurveyApp(str(folder))
     expected = api.trial(folder)
     async with app.run_test(size=size) as pilot:
-        await settle(app, pilot)
+        await settle(pilot)
         assert isinstance(app.screen, ProjectScreen)
         await pilot.press("p")
-        await settle(app, pilot)
+        await settle(pilot)
         screen = app.screen
         assert isinstance(screen, PenetrationScreen)
         bar = screen.query_one(TitleBar)
@@ -63,7 +58,7 @@ async def test_the_number_follows_every_key(size: tuple[int, int], folder: Path)
             ("g", expected.add_side().both_ends().survey().better_angles().better_gyro()),
         ):
             await pilot.press(key)
-            await settle(app, pilot)
+            await settle(pilot)
             assert bar.state == view.state_text(after.prediction)
         assert screen.query_one("#tried", Static).visual is not None
         assert texts.P_SURVEY in view.tried_text(after, expected.prediction)
@@ -74,7 +69,7 @@ async def test_the_number_follows_every_key(size: tuple[int, int], folder: Path)
         told = screen.query_one("#budget BlocksPane", BlocksPane)
         assert told.blocks == view.pages(after.prediction)["budget"]
         await pilot.press("escape")
-        await settle(app, pilot)
+        await settle(pilot)
         assert isinstance(app.screen, ProjectScreen)
     assert (folder / "project.toml").read_bytes() == (SAMPLE / "project.toml").read_bytes()
 
@@ -83,20 +78,20 @@ async def test_the_shaft_shows_azimuths_swings_and_triangles(folder: Path) -> No
     app = SurveyApp(str(folder))
     (shaft,) = api.shaft(folder).shafts
     async with app.run_test(size=(80, 24)) as pilot:
-        await settle(app, pilot)
+        await settle(pilot)
         await pilot.press("s")
-        await settle(app, pilot)
+        await settle(pilot)
         screen = app.screen
         assert isinstance(screen, ShaftScreen)
         told = screen.query_one("#azimuth BlocksPane", BlocksPane)
         assert told.blocks == shaft_view.pages(api.shaft(folder), shaft, screen.unit)["azimuth"]
         assert shaft.combined.consistent
         await pilot.press("2")
-        await settle(app, pilot)
+        await settle(pilot)
         swings = screen.query_one(SwingPictures).render().plain
         assert swings.count("rest") == 4
         await pilot.press("3")
-        await settle(app, pilot)
+        await settle(pilot)
         triangles = screen.query_one(TrianglePictures).render().plain
         assert "surface" in triangles
         assert "W1" in triangles
@@ -109,10 +104,10 @@ async def test_a_project_without_them_says_so(
     folder = api.new_project(tmp_path / "empty")
     app = SurveyApp(str(folder))
     async with app.run_test(size=(80, 24)) as pilot:
-        await settle(app, pilot)
+        await settle(pilot)
         for key in "ps":
             await pilot.press(key)
-            await settle(app, pilot)
+            await settle(pilot)
             assert isinstance(app.screen, ProjectScreen)
 
 
@@ -134,16 +129,16 @@ def test_a_trial_of_two_hundred_sides_takes_less_than_a_tenth_of_a_second() -> N
 async def test_a_step_is_recorded_on_the_screen(folder: Path) -> None:
     app = SurveyApp(str(folder))
     async with app.run_test(size=(80, 24)) as pilot:
-        await settle(app, pilot)
+        await settle(pilot)
         await pilot.press("p")
-        await settle(app, pilot)
+        await settle(pilot)
         await pilot.press("4")
-        await settle(app, pilot)
+        await settle(pilot)
         rows = app.screen.query_one("#steps DataTable", DataTable).row_count
         await pilot.press("down", "down", "down", "down", "d")
-        await settle(app, pilot)
+        await settle(pilot)
         await pilot.press(*"crew", "enter")
-        await settle(app, pilot)
+        await settle(pilot)
         assert isinstance(app.screen, PenetrationScreen)
         assert app.screen.query_one("#steps DataTable", DataTable).row_count == rows + 1
     steps = api.predict(folder, monte_carlo=False).steps

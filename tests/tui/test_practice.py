@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from textual.pilot import Pilot
 from textual.widgets import Select, Static
 
 from surveyapp import api
@@ -37,7 +36,11 @@ from surveyapp.tui.screens.session import SessionScreen
 from surveyapp.tui.widgets.entry import EntryLine
 from surveyapp.tui.widgets.instrument import InstrumentPane
 from surveyapp_models.angles import ARCSEC, AngleUnit, format_angle, wrap_pi
-from tests.tui.helpers_tui import SMALL, Clock
+from tests.tui.helpers_tui import (
+    SMALL,
+    Clock,
+    settle,
+)
 
 METHODS: tuple[Method, ...] = ("tracking", "amplitude", "transit", "automatic")
 
@@ -202,11 +205,6 @@ def test_the_view_follows_the_step_and_the_clock(tmp_path: Path) -> None:
 def test_an_impossible_speed_is_refused(tmp_path: Path) -> None:
     with pytest.raises(SurveyError, match="speed"):
         api_practice.begin(tmp_path / "p", speed=math.inf)
-
-
-async def settle(pilot: Pilot[int]) -> None:
-    await pilot.app.workers.wait_for_complete()
-    await pilot.pause()
 
 
 async def test_practice_runs_the_same_session_screen_and_ends_with_the_truth(

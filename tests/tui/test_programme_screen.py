@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from textual.pilot import Pilot
 from textual.widgets import DataTable, Input, OptionList, Static
 
 from surveyapp import api
@@ -24,7 +23,10 @@ from surveyapp.tui.screens.programme import ProgrammeScreen
 from surveyapp.tui.screens.sensor_log import SensorLogScreen
 from surveyapp.tui.screens.sensors import SensorsScreen
 from surveyapp.tui.widgets.titlebar import TitleBar
-from tests.tui.helpers_tui import SMALL
+from tests.tui.helpers_tui import (
+    SMALL,
+    settle,
+)
 
 SENSITIVITY, ZERO = 477716.0, 1200.0
 
@@ -168,12 +170,6 @@ def test_a_growing_log_is_followed_to_the_last_position(folder: Path, tmp_path: 
     entry = api.open_project(folder).sensor_logs[0]
     assert (entry.programme, entry.file) == ("six-position", "sensors/s1.csv")
     assert (folder / card_path("s1")).is_file()
-
-
-async def settle(pilot: Pilot[int]) -> None:
-    for _ in range(4):
-        await pilot.app.workers.wait_for_complete()
-        await pilot.pause()
 
 
 async def test_a_programme_is_begun_left_and_gone_on_with_on_the_screen(folder: Path) -> None:

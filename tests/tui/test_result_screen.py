@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from textual.pilot import Pilot
 from textual.widgets import Static
 
 from surveyapp import api
@@ -20,15 +19,14 @@ from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.result import ResultScreen
 from surveyapp.tui.views.result import result_headline, result_text
 from surveyapp_models.angles import AngleUnit
-from tests.tui.helpers_tui import SMALL, make_project, simulated
+from tests.tui.helpers_tui import (
+    SMALL,
+    make_project,
+    settle,
+    simulated,
+)
 
 PROJECTS = Path(__file__).resolve().parents[2] / "projects"
-
-
-async def settle(pilot: Pilot[int]) -> None:
-    for _ in range(2):
-        await pilot.app.workers.wait_for_complete()
-        await pilot.pause()
 
 
 async def test_the_record_is_written_and_the_session_closed_and_signed(tmp_path: Path) -> None:

@@ -22,7 +22,12 @@ from surveyapp.tui.screens.sensor_log import TASK_KEYS, SensorLogScreen
 from surveyapp.tui.screens.sensors import SensorsScreen
 from surveyapp.tui.widgets.chart import ChartPane
 from surveyapp.tui.widgets.titlebar import TitleBar
-from tests.tui.helpers_tui import LARGE, SMALL, Clock
+from tests.tui.helpers_tui import (
+    LARGE,
+    SMALL,
+    Clock,
+    settle,
+)
 
 PROJECTS = Path(__file__).resolve().parents[2] / "projects"
 
@@ -32,12 +37,6 @@ def compass(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
     api.simulate("compass", tmp_path / "mine", effects=["hard_iron=12"], seed=3)
     return tmp_path / "mine"
-
-
-async def settle(pilot: Pilot[int]) -> None:
-    for _ in range(4):
-        await pilot.app.workers.wait_for_complete()
-        await pilot.pause()
 
 
 def app_on(folder: Path) -> SurveyApp:

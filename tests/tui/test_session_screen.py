@@ -24,12 +24,16 @@ from surveyapp.tui.screens.session import SessionScreen
 from surveyapp.tui.widgets.entry import EntryLine
 from surveyapp.tui.widgets.run import RunPane
 from surveyapp.tui.widgets.titlebar import TitleBar
-from tests.tui.helpers_tui import SMALL, Clock, make_project, readings, rows_on_disk, simulated
-
-
-async def settle(pilot: Pilot[int]) -> None:
-    await pilot.app.workers.wait_for_complete()
-    await pilot.pause()
+from tests.tui.helpers_tui import (
+    SMALL,
+    Clock,
+    make_project,
+    open_session,
+    readings,
+    rows_on_disk,
+    settle,
+    simulated,
+)
 
 
 async def enter(pilot: Pilot[int], text: str) -> None:
@@ -38,15 +42,6 @@ async def enter(pilot: Pilot[int], text: str) -> None:
     entry.text = text
     await pilot.press("enter")
     await settle(pilot)
-
-
-async def open_session(pilot: Pilot[int]) -> SessionScreen:
-    await settle(pilot)
-    await pilot.press("enter")
-    await settle(pilot)
-    screen = pilot.app.screen
-    assert isinstance(screen, SessionScreen)
-    return screen
 
 
 def told(screen: SessionScreen) -> str:

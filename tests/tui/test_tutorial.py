@@ -15,7 +15,11 @@ from textual.widgets import Input, Select, TextArea
 from surveyapp import api
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.widgets.entry import EntryLine
-from tests.tui.helpers_tui import SMALL, Clock
+from tests.tui.helpers_tui import (
+    SMALL,
+    Clock,
+    settle,
+)
 
 TUTORIAL = Path(__file__).resolve().parents[2] / "docs" / "tutorials" / "first-orientation.md"
 BLOCK = re.compile(r"^```(keys|screen|form)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -31,12 +35,6 @@ def shown(app: SurveyApp) -> str:
         lines[float(run[2])].append((float(run[1]), html.unescape(run[3])))
     texts = (" ".join(text for _, text in sorted(runs)) for _, runs in sorted(lines.items()))
     return "\n".join(" ".join(text.replace("\xa0", " ").split()) for text in texts)
-
-
-async def settle(pilot: Pilot[int]) -> None:
-    for _ in range(2):
-        await pilot.app.workers.wait_for_complete()
-        await pilot.pause()
 
 
 async def press(pilot: Pilot[int], clock: Clock, line: str) -> None:

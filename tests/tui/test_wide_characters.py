@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pytest
 from rich.cells import cell_len
-from textual.pilot import Pilot
 
 from surveyapp.core.observing.typed_rows import plain_signs
 from surveyapp.domain.chart import Chart, Series
@@ -19,7 +18,11 @@ from surveyapp.tui.screens.session import SessionScreen
 from surveyapp.tui.widgets.canvas import Canvas
 from surveyapp.tui.widgets.chart import chart_text
 from surveyapp.tui.widgets.ledger import Ledger
-from tests.tui.helpers_tui import SMALL, make_project
+from tests.tui.helpers_tui import (
+    SMALL,
+    make_project,
+    settle,
+)
 
 WORDS = "转台每步之后的残差，相对于多位置程序的模型，其中包含温度的影响以及重复性"
 
@@ -61,12 +64,6 @@ def test_a_wide_label_of_a_figure_shifts_nothing() -> None:
     same = next(line for line in plain.split("\n") if "B" in line)
     assert "测站" in row
     assert display_width(row[: row.index("B")]) == same.index("B")
-
-
-async def settle(pilot: Pilot[int]) -> None:
-    for _ in range(2):
-        await pilot.app.workers.wait_for_complete()
-        await pilot.pause()
 
 
 @pytest.mark.parametrize("size", [SMALL, (60, 18)])

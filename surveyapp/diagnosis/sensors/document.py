@@ -62,7 +62,11 @@ def adopted_of(
             }
         )
     grid = [
-        {"name": name, "value": value if math.isfinite(value) else None, "unit": "s"}
+        {
+            "name": name,
+            "value": value if math.isfinite(value) else None,
+            "unit": "C" if name.endswith("_c") else "s",
+        }
         for name, value in chosen.grid.items()
         if name not in candidate.names
     ]

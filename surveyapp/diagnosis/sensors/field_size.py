@@ -14,6 +14,7 @@ from surveyapp.diagnosis.sensors.loop import Candidate
 from surveyapp.diagnosis.sensors.windows import Blocks, block_means
 from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
+from surveyapp_models.effects.compass.temperature import datums
 
 
 def possible_iron(elements: Floats) -> bool:
@@ -35,10 +36,7 @@ def size_candidates(
     found = []
     theta, place = columns.get("temperature_c"), columns.get("place_x")
     if theta is not None and np.all(np.isfinite(theta)) and np.ptp(theta) > 0.0:
-        warmer = (theta[::3] - theta.mean())[:, None, None]
-        design = np.concatenate([warmer * m, warmer**2], axis=2)
-        names = (*(f"temperature_{a}" for a in "xyz"), "temperature_square")
-        found.append(_plain("temperature", (design, block), names, "uT/K"))
+        found.append(_warmer(columns, theta[::3], m, block))
     else:
         missing.append(("temperature", said("no temperature_c [degree Celsius] that varies")))
     if place is not None and np.all(np.isfinite(place)):
@@ -50,6 +48,19 @@ def size_candidates(
     else:
         missing.append(("field_gradient", said("no place (ref_px_m, ref_py_m, ref_pz_m)")))
     return found
+
+
+def _warmer(columns: Mapping[str, Floats], theta: Floats, m: Floats, block: Blocks) -> Candidate:
+    """Zeros by temperature, about every temperature at which they may be none."""
+
+    def rows(point: Mapping[str, float]) -> Floats:
+        warmer = (theta - point["datum_c"])[:, None, None]
+        return np.concatenate([warmer * m, warmer**2], axis=2)
+
+    points = [{"datum_c": float(t)} for t in datums(columns)]
+    made = [(point, block_means(rows(point), block)) for point in points]
+    names = (*(f"temperature_{a}" for a in "xyz"), "temperature_square")
+    return Candidate("temperature", lambda _: made, names, "uT/K", 1, rows=rows)
 
 
 def _plain(

@@ -20,6 +20,10 @@ AR: Final = (0.3, 0.6, 0.8, 0.9, 0.95, 0.98, 0.995)
 WALK: Final = (1e-4, 1e-3, 1e-2, 0.05, 0.2, 1.0)
 """Variance of a step of the walk over that of the white noise, per row."""
 
+AR_SLOW: Final = (0.9, 0.98)
+AR_SHARE: Final = (1.0, 10.0)
+"""AR(1) of the zeros: correlation of neighbours, variance over that of the white noise."""
+
 
 @dataclass(frozen=True, slots=True)
 class Whitener:
@@ -58,6 +62,29 @@ def whiteners(n: int) -> tuple[Whitener, ...]:
     steps = walk_of(np.arange(float(n)))
     walks = [_of("random_walk", np.eye(n) + ratio * steps) for ratio in WALK]
     return (*found, *walks)
+
+
+def along(direction: Floats) -> tuple[Whitener, ...]:
+    """The zeros of three axes that wander, as the size of the field shows it.
+
+    What wanders in the body is seen through the direction of the field there: two rows resemble
+    each other by the cosine between their directions as well as by their distance in time.
+
+    Parameters
+    ----------
+    direction : ndarray, shape (n, 3)
+        Of the field in the body, of length 1.
+    """
+    n = direction.shape[0]
+    alike = direction @ direction.T
+    lag = np.abs(np.arange(n)[:, None] - np.arange(n)).astype(np.float64)
+    found = [
+        _of("ar1", np.eye(n) + ratio * alike * decay_of(lag, phi))
+        for phi in AR_SLOW
+        for ratio in AR_SHARE
+    ]
+    steps = walk_of(np.arange(float(n)))
+    return (*found, *(_of("random_walk", np.eye(n) + ratio * alike * steps) for ratio in WALK))
 
 
 def _of(name: str, covariance: Floats) -> Whitener:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from surveyapp.diagnosis.candidates import missing_columns
 from surveyapp.diagnosis.sensors.field_size import possible_iron, size_candidates
 from surveyapp.diagnosis.sensors.loop import Candidate, Data
-from surveyapp.diagnosis.sensors.noise import whiteners
+from surveyapp.diagnosis.sensors.noise import along, whiteners
 from surveyapp.diagnosis.sensors.turn import turn
 from surveyapp.diagnosis.sensors.windows import Blocks, block_means, blocks_of, switch
 from surveyapp.domain.sensor_log import SensorLog
@@ -96,7 +96,12 @@ class SensorRecord:
     @property
     def data(self) -> Data:
         """What the loop fits."""
-        return Data(self.observed, self.base, whiteners(len(self.observed)))
+        rivals = whiteners(len(self.observed))
+        if self.mode == "size" and self.mag is not None:
+            mean = block_means(self.mag, self.block)
+            length = np.linalg.norm(mean, axis=1)
+            rivals += along(mean / np.maximum(length, 1e-9)[:, None])
+        return Data(self.observed, self.base, rivals)
 
 
 def rotation_matrices(q: Floats) -> Floats:

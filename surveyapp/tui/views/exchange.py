@@ -16,7 +16,10 @@ _MOST = 40
 
 def entry_text(entry: Entry) -> str:
     """A line of the file list."""
-    return entry.name if not entry.format else f"{entry.name}  {entry.kilobytes:.0f} kB"
+    if not entry.format:
+        return entry.name
+    size = f"{entry.kilobytes:.0f}" if entry.kilobytes >= 10.0 else f"{entry.kilobytes:.1f}"
+    return f"{entry.name}  {size} kB"
 
 
 def import_blocks(result: ImportResult) -> tuple[Block, ...]:

@@ -58,6 +58,12 @@ class StopDatum:
     table: bool
 
 
+AT_STOPS: Final = frozenset({"bias_ramp", "temperature", "scale_asymmetry", "gross_error"})
+"""Effects that need to know the stops: where they are zero, or in which rows they lie."""
+NO_STOPS: Final = StopDatum((), 0.0, None, table=False)
+"""For the others."""
+
+
 def columns_needed(effects: Sequence[AdoptedEffect]) -> tuple[str, ...]:
     """Columns that a command must read to take these effects out."""
     return tuple(dict.fromkeys(c for e in effects for c in NEEDED.get(e.id, ())))
