@@ -23,7 +23,7 @@ from surveyapp.diagnosis import Case, Diagnosis, diagnose
 from surveyapp.diagnosis.candidates import all_candidates
 from surveyapp.diagnosis.compare import orthonormal_design
 from surveyapp.diagnosis.fits import fit_members
-from surveyapp.diagnosis.gate import GATE, statistic
+from surveyapp.diagnosis.gate import statistic
 from surveyapp.diagnosis.nulls import Noise, null_of
 from surveyapp.diagnosis.projection import project
 
@@ -228,7 +228,7 @@ def best_possible(size: int, runs: int = 400) -> float:
         family = (project(single, q),)
         null = null_of(family, q, Noise(DRAWS, 0.0, problem.root_weights))
         p = null.p_values(np.array([statistic(problem, fit, family[0], q)]))
-        found += int(p[0] <= GATE)
+        found += int(p[0] <= problem.levels.first)
     return found / runs
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
@@ -215,6 +214,7 @@ def spectrum(
         column,
         magnetic=MagneticOptions(field_uT, sensitivity_deg_h_t, shielding),
         against=other,
+        entry=opened.entry,
         progress=progress,
     )
     return told_about(found, opened.subject)
@@ -239,7 +239,7 @@ def motion(
     allow_outside : bool
     options : mapping, optional
         ``false_alarm``, ``path``, ``begin`` ("E,N,AZIMUTH"), ``end`` ("E,N"), ``snap``,
-        ``snap_power_cycle``, ``still_gate_factor``.
+        ``snap_power_cycle``, ``still_gate_factor``; over those of the log's entry.
     progress : callable, optional
 
     Raises
@@ -247,10 +247,9 @@ def motion(
     SurveyError
         For input that cannot be used.
     """
-    from surveyapp.workflows.adopted_effects import not_taken_out
-    from surveyapp.workflows.motion import find_motion
+    from surveyapp.workflows.motion import find_motion, options_of
 
     opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
-    found = find_motion(opened.file, options or {}, progress=progress)
-    found = replace(found, warnings=(*found.warnings, *not_taken_out(opened.entry)))
+    asked = options_of(opened.entry, options or {})
+    found = find_motion(opened.file, asked, entry=opened.entry, progress=progress)
     return told_about(found, opened.subject)

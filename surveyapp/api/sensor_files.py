@@ -113,7 +113,7 @@ def sensor_pictures(
 
     Parameters
     ----------
-    result : Calibration, AllanResult, FilterResult, LineSpectrum, Motion or StopPlan
+    result : Calibration, AllanResult, FilterResult, LineSpectrum, Motion, NorthResult or StopPlan
     source : path, optional
         The log of a calibration, or the project with ``sensor``: readings before and after are
         drawn from it.

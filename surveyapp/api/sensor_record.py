@@ -9,6 +9,8 @@ from surveyapp.languages import said
 
 if TYPE_CHECKING:
     from surveyapp.domain.calibration import Calibration
+    from surveyapp.domain.motion import Motion
+    from surveyapp.domain.north import NorthResult
     from surveyapp.domain.sensor_entry import SensorLogEntry
     from surveyapp.report.blocks import Block
     from surveyapp.report.record import Extra
@@ -44,8 +46,12 @@ def _note(entry: SensorLogEntry) -> tuple[Block, ...]:
 
 def _body(folder: str, entry: SensorLogEntry) -> tuple[tuple[Block, ...], str]:
     """Blocks, and what the first page says of them."""
+    from surveyapp.workflows.motion import PROGRAMME
+
     if entry.options.get("method"):
         return _north(folder, entry)
+    if entry.programme == PROGRAMME:
+        return _motion(folder, entry)
     if entry.kind is None or (entry.kind == "rate" and entry.programme is None):
         return _noise(folder, entry)
     blocks, verdict = _calibration(folder, entry)
@@ -67,7 +73,26 @@ def _north(folder: str, entry: SensorLogEntry) -> tuple[tuple[Block, ...], str]:
 
     result = north(folder, sensor=entry.id)
     met = said("north is determined")
-    return north_blocks(result), met if result.met else said("NOT MET: north is not determined")
+    blocks = (*north_blocks(result), *_pictures(result))
+    return blocks, met if result.met else said("NOT MET: north is not determined")
+
+
+def _motion(folder: str, entry: SensorLogEntry) -> tuple[tuple[Block, ...], str]:
+    from surveyapp.api.rate import motion
+    from surveyapp.report.sections.sensor_results import motion_blocks
+
+    result = motion(folder, sensor=entry.id)
+    blocks = (*motion_blocks(result), *_pictures(result))
+    if result.met:
+        return blocks, said("its state of motion is told, nothing is judged")
+    return blocks, said("NOT MET: the motion contradicts itself, see its warnings")
+
+
+def _pictures(result: Motion | NorthResult) -> tuple[Block, ...]:
+    from surveyapp.api.sensor_files import sensor_pictures
+    from surveyapp.report.sections.pictures import picture_blocks
+
+    return picture_blocks(sensor_pictures(result).pictures)
 
 
 def _calibration(folder: str, entry: SensorLogEntry) -> tuple[tuple[Block, ...], str]:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from surveyapp.api.project import SOFTWARE, Folder, open_project, require
+from surveyapp.domain.advance import stage
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.noise import AllanResult, FilterResult
 from surveyapp.domain.subject import Subject
@@ -293,13 +294,16 @@ def filter_log(
     from surveyapp.workflows.filtering import filter_log as run
 
     opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
+    filtered = progress if out is None else stage(progress, 0.0, 0.5)
     result, columns = run(
-        opened.file, name=name, column=column, q=q, r=r, seed=seed, progress=progress
+        opened.file, name=name, column=column, q=q, r=r, seed=seed, progress=filtered
     )
     if out is not None:
         from surveyapp.io.sensor_logs.writing import write_columns
 
-        write_columns(Path(out), columns, inputs=(opened.file.request.path,))
+        source_file = opened.file.request.path
+        written = stage(progress, 0.5, 1.0)
+        write_columns(Path(out), columns, inputs=(source_file,), progress=written)
     return told_about(result, opened.subject)
 
 

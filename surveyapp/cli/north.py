@@ -29,6 +29,7 @@ NUMBERS = (
     ("--rate-sigma-deg-h", "S", "standard deviation of one row"),
     ("--bias-prior-sigma-deg-h", "S", "of the biases known beforehand"),
     ("--initial-heading-deg", "A", "heading with which a rotation begins"),
+    ("--initial-heading-sigma-deg", "S", "of that heading"),
     ("--index-sigma-deg", "S", "standard deviation of every index angle"),
 )
 TEXTS = (

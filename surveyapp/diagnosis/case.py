@@ -58,6 +58,22 @@ class OwnScale:
 
 
 @dataclass(frozen=True, slots=True)
+class Levels:
+    """Family p below which the search goes on (diagnosis.md step 3).
+
+    Parameters
+    ----------
+    first : float
+        Beside the base model: the rate of false alarms.
+    further : float
+        Beside what was found: the rate of wrong names that stand with a right one.
+    """
+
+    first: float = 0.05
+    further: float = 0.05
+
+
+@dataclass(frozen=True, slots=True)
 class Case:
     """Observations with their base model.
 
@@ -128,6 +144,8 @@ class Case:
         take part in everything else.
     own_scales : tuple of OwnScale
         Where the stated sigmas were found from the observations themselves.
+    levels : Levels
+        At which its gates open.
     base_of : callable or None
         The base design of other rows; None = the mean of the record's own rows.
     planner : callable or None
@@ -169,6 +187,7 @@ class Case:
     series: Floats | None = None
     reported: Floats | None = None
     own_scales: tuple[OwnScale, ...] = ()
+    levels: Levels = field(default_factory=Levels)
     planner: Callable[[], Planner | None] | None = None
 
     def __post_init__(self) -> None:

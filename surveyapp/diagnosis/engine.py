@@ -15,7 +15,6 @@ from surveyapp.diagnosis.compare import MARGIN, Level, best_with, spans
 from surveyapp.diagnosis.datum import datum_with_rivals
 from surveyapp.diagnosis.events import event_notes
 from surveyapp.diagnosis.fits import Fit, unit_variance
-from surveyapp.diagnosis.gate import GATE
 from surveyapp.diagnosis.held_out import confirm_rms, forecast, leave_one_out
 from surveyapp.diagnosis.later_visits import held_out_prediction, is_campaign
 from surveyapp.diagnosis.ledger import ledger_entry
@@ -230,7 +229,9 @@ def denied(problem: Case, base: Fit) -> bool:
 
     known = unit_variance(problem)
     dof = problem.size - base.design.shape[1]
-    return known is not None and dof >= 1 and float(chdtrc(dof, base.sum_of_squares / known)) < GATE
+    if known is None or dof < 1:
+        return False
+    return float(chdtrc(dof, base.sum_of_squares / known)) < problem.levels.first
 
 
 def _verdict(problem: Case, found: Search, ambiguous: tuple[Ambiguity, ...]) -> Verdict:

@@ -15,8 +15,6 @@ from surveyapp.diagnosis.nulls import Noise, null_of, ratio, reductions
 from surveyapp.diagnosis.projection import Projected, project
 from surveyapp_models.arrays import Floats
 
-GATE = 0.05
-"""Family p at which the search goes on (diagnosis.md step 3)."""
 FINE = 0.3
 """Rounding below this share of the noise's standard deviation changes nothing."""
 
@@ -51,16 +49,19 @@ class Gate:
     tests : tuple of Tested
     p_family : float
         Smallest of the family.
+    level : float
+        At which it opens.
     """
 
     effects: tuple[str, ...]
     tests: tuple[Tested, ...]
     p_family: float
+    level: float
 
     @property
     def fired(self) -> bool:
         """Whether the search goes on."""
-        return self.p_family <= GATE
+        return self.p_family <= self.level
 
 
 def rounding_of(problem: Case, fit: Fit) -> float:
@@ -110,12 +111,13 @@ def open_gate(problem: Case, fit: Fit, pool: Iterable[Candidate], draws: int) ->
     -------
     Gate
     """
+    level = problem.levels.further if fit.effects else problem.levels.first
     q = orthonormal_design(fit)
     joining = [c for c in pool if may_join(c, fit)]
     every = [project(c, q) for c in joining]
     family = tuple(item for item in every if item.index.size)
     if not family:
-        return Gate(fit.effects, (), 1.0)
+        return Gate(fit.effects, (), 1.0, level)
     known = unit_variance(problem)
     rounding = rounding_of(problem, fit)
     noise = Noise(
@@ -137,4 +139,4 @@ def open_gate(problem: Case, fit: Fit, pool: Iterable[Candidate], draws: int) ->
     for item in every:
         if item.candidate.id not in best:
             best[item.candidate.id] = Tested(item.candidate.id, None, None, item.left)
-    return Gate(fit.effects, tuple(best.values()), float(adjusted.min()))
+    return Gate(fit.effects, tuple(best.values()), float(adjusted.min()), level)

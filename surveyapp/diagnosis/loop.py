@@ -27,7 +27,7 @@ from surveyapp.diagnosis.compare import (
     within_margin,
 )
 from surveyapp.diagnosis.fits import Fit, fit_members, with_noise
-from surveyapp.diagnosis.gate import GATE, Gate, open_gate
+from surveyapp.diagnosis.gate import Gate, open_gate
 from surveyapp.diagnosis.held_out import confirm_rms, flagged, leave_one_out, unforetold
 from surveyapp.diagnosis.run_value import plausible
 from surveyapp.diagnosis.wandering import imitates, refuted
@@ -307,7 +307,7 @@ def significant(problem: Case, without: Fit, name: str, proofs: Proofs) -> bool:
     """
     gate = open_gate(problem, without, proofs.pool, proofs.draws)
     own = [test.p for test in gate.tests if test.id == name]
-    return not own or own[0] is None or own[0] <= GATE
+    return not own or own[0] is None or own[0] <= gate.level
 
 
 def unconfirmed(confirm: Case, after: Fit, without: Fit) -> str | None:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from surveyapp.core.sensors.linear import alternate_blocks
 from surveyapp.core.sensors.rate.adopted import StopDatum, without_effects
+from surveyapp.diagnosis.case import Levels
 from surveyapp.diagnosis.long_records.interference import find_interference
 from surveyapp.diagnosis.long_records.lines import LEAST_FILLED, SpectralLine
 from surveyapp.diagnosis.result import Adoption, CandidateResult, Diagnosis, NamedCoefficient
@@ -28,7 +29,15 @@ from surveyapp_models.effects.rate import DEG_S
 from surveyapp_models.effects.rate.interference_line import EFFECT
 
 LINE_ALARM = 0.01
-"""Probability of a false line in a log: small beside the five per cent of the stops."""
+"""Probability of a false line in a log (``python -m bench rate_line_alarm``)."""
+LEVELS = Levels(first=0.04, further=0.01)
+"""Of the stops of a log whose samples are searched for lines beside: together one false alarm in
+twenty, and beside a right name two wrong ones in a hundred. An effect that would just pass one gate
+of .05 four times in five passes that of .01 three times in five: the price."""
+WAYS = 2
+"""A line shows by itself or in a family: two looks."""
+NOTCH = 4.0
+"""Cycles over a stretch within which its mean takes noise out."""
 MOST_LINES = 12
 """Of one gyro; more are an image of something that is no line."""
 BLOCK_S = 10.0
@@ -107,8 +116,9 @@ def judge_lines(
             every[stretch.first : stretch.last] = _left(time_s, values, stretch)
         rows = np.flatnonzero(np.isfinite(every))
         searched += [(gyro, every[part], time_s[part]) for part in _even_parts(time_s, rows)]
+    slowest = _slowest_hz(time_s, stretches)
     for gyro, left, here in searched:
-        more, p, why = _one_by_one(gyro, here, left, parts=len(searched))
+        more, p, why = _one_by_one(gyro, here, left, parts=len(searched), slowest_hz=slowest)
         found, smallest, reason = found + more, min(smallest, p), why or reason
     if reason and not found:
         return LineJudgement((), None, reason)
@@ -116,8 +126,19 @@ def judge_lines(
     return LineJudgement(_once_each(kept), smallest)
 
 
+def _slowest_hz(time_s: Floats, stretches: Sequence[Stretch]) -> float:
+    """Frequency from which on the samples of levelled stretches hold their noise unchanged.
+
+    Below, the mean of each and what comes round once a turn are out of them: a notch as wide as a
+    stretch is short, on whose edge the noise would look like a line.
+    """
+    lasts = np.array([time_s[s.last - 1] - time_s[s.first] for s in stretches])
+    turns = np.array([abs(s.rate) / (2.0 * math.pi) for s in stretches])
+    return float(np.median(turns + NOTCH / np.maximum(lasts, 1e-9))) if lasts.size else 0.0
+
+
 def _one_by_one(
-    gyro: str, time_s: Floats, left: Floats, *, parts: int
+    gyro: str, time_s: Floats, left: Floats, *, parts: int, slowest_hz: float
 ) -> tuple[list[LineFound], float, str]:
     """Lines of one part of a gyro's samples, the strongest first and out before the next.
 
@@ -135,10 +156,11 @@ def _one_by_one(
     found: list[LineFound] = []
     smallest = 1.0
     for _ in range(MOST_LINES):
-        seen = find_interference(time_s, left)
+        seen = find_interference(time_s, left, slowest_hz=slowest_hz)
         if seen.unsearched:
             return found, smallest, seen.unsearched
-        told = [_told(n, min(1.0, n.false_alarm_probability * parts)) for n in seen.lines]
+        looks = WAYS * parts
+        told = [_told(n, min(1.0, n.false_alarm_probability * looks)) for n in seen.lines]
         if not found:
             smallest = min((n.false_alarm for n in told), default=1.0)
         clear = [n for n in told if n.false_alarm <= LINE_ALARM]

@@ -38,6 +38,18 @@ from surveyapp_models.constants import EARTH_RATE
 from surveyapp_models.rate.turntable import POSITIONS
 
 FIELDS = ("mag_x_uT", "mag_y_uT", "mag_z_uT")
+LOG_COLUMNS = (
+    *GYROS,
+    *ACCELEROMETERS,
+    *FIELDS,
+    "position",
+    "table_rate_deg_s",
+    "table_angle_deg",
+    "round",
+    "temperature_c",
+    CHAMBER,
+)
+"""Columns of a log from which its stops are made, as far as it has them."""
 TESLA = 1e-6
 AT_REST = 0.9
 """Share of a record above which one rest is all of it."""
@@ -78,7 +90,8 @@ def stops_of(
     rests = held_stops(log) if log.has(*ACCELEROMETERS) else []
     if len(rests) < LEAST_STOPS:
         spans = [(s.start, s.stop) for s in rests] if rests else _unmoved(log)
-        if sum(last - first for first, last in spans) > AT_REST * log.size:
+        quiet = sum(last - first for first, last in spans) > AT_REST * log.size
+        if quiet and not _moves(log):
             blocks = _rest_blocks(log, spans)
             return blocks, [], (_one_rest(blocks),)
     return *_held_stops(log, latitude, rests), told
@@ -128,15 +141,15 @@ def _one_rest(blocks: Sequence[RateStop]) -> ResultWarning:
 
 
 def _unmoved(log: SensorLog) -> list[tuple[int, int]]:
-    """The whole record where no accelerometer tells rest from motion and no gyro shows any."""
-    if log.has(*ACCELEROMETERS):
-        return []
+    """The whole record where there is no accelerometer to tell rest from motion."""
+    return [] if log.has(*ACCELEROMETERS) else [(0, log.size)]
+
+
+def _moves(log: SensorLog) -> bool:
+    """Whether a gyro shows motion: a smooth drive is as quiet to accelerometers as a rest."""
     count = max(log.size // BLOCKS, 1)
-    for name in GYROS:
-        whole = log.columns[name][: log.size - log.size % count].reshape(-1, count)
-        if float(np.ptp(whole.mean(axis=1))) > MOVED:
-            return []
-    return [(0, log.size)]
+    wholes = [log.columns[name][: log.size - log.size % count] for name in GYROS]
+    return any(float(np.ptp(w.reshape(-1, count).mean(axis=1))) > MOVED for w in wholes)
 
 
 def _held_stops(

@@ -6,13 +6,15 @@ meaning of every column stand in one table here; ``io.sensor_logs`` reads files 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from itertools import compress
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from surveyapp.domain.columns import PIECE, Room, every_kth, in_memory, let_go, pieces
 from surveyapp.domain.project import ResultWarning
 from surveyapp.languages import said
 
@@ -150,23 +152,52 @@ class SensorLog:
         rate = None if self.rate_hz is None else self.rate_hz / (part.step or 1)
         return replace(self, columns=columns, texts=texts, size=size, rate_hz=rate)
 
-    def chosen(self, kept: NDArray[np.bool_]) -> SensorLog:
-        """The rows of a mask, shape (n,); its rate and its gaps stay as they were read."""
-        columns = {name: values[kept] for name, values in self.columns.items()}
-        texts = {
-            name: tuple(word for word, keep in zip(words, kept, strict=True) if keep)
-            for name, words in self.texts.items()
-        }
-        return replace(self, columns=columns, texts=texts, size=int(np.count_nonzero(kept)))
+    def pieces(self, size: int = PIECE) -> Iterator[SensorLog]:
+        """The log in parts of so many rows; what was mapped is let go of after each."""
+        for start in range(0, self.size, size):
+            yield self.rows(slice(start, start + size))
+            for values in self.columns.values():
+                let_go(values)
+
+    def every(self, step: int) -> SensorLog:
+        """Every k-th row from the first on; copies where the columns are mapped."""
+        columns = {name: every_kth(values, step) for name, values in self.columns.items()}
+        return replace(self.rows(slice(None, None, step)), columns=columns)
+
+    def chosen(
+        self, kept: NDArray[np.bool_], *, most: int | None = None, room: Room = in_memory
+    ) -> SensorLog:
+        """The rows of a mask, shape (n,); its rate and its gaps stay as they were read.
+
+        ``most`` thins them as ``thinned`` does; ``room`` is where the columns lie.
+        """
+        size = int(np.count_nonzero(kept))
+        every = 1 if most is None else max(-(-size // most), 1)
+        columns = {}
+        for name, values in self.columns.items():
+            columns[name] = room(-(-size // every))
+            filled = 0
+            for piece, places in zip(pieces(values), kept_places(kept, every), strict=True):
+                columns[name][filled : filled + places.size] = piece[places]
+                filled += places.size
+                let_go(columns[name])
+        texts = {name: tuple(compress(words, kept))[::every] for name, words in self.texts.items()}
+        found = replace(self, columns=columns, texts=texts, size=-(-size // every))
+        return found if every == 1 else found._told_thinned(size, every)
 
     def thinned(self, most: int) -> SensorLog:
         """Every k-th row, so that at most so many are left; a warning tells it."""
         every = -(-self.size // most)
         if every <= 1:
             return self
-        text = said("{size} rows: one in {every} is used", size=self.size, every=every)
+        rate = self.rate_hz
+        return replace(self.every(every), rate_hz=rate)._told_thinned(self.size, every)
+
+    def _told_thinned(self, size: int, every: int) -> SensorLog:
+        text = said("{size} rows: one in {every} is used", size=size, every=every)
         warnings = (*self.warnings, ResultWarning("thinned", text))
-        return replace(self.rows(slice(None, None, every)), warnings=warnings)
+        rate = None if self.rate_hz is None else self.rate_hz / every
+        return replace(self, warnings=warnings, rate_hz=rate)
 
     def has(self, *names: str) -> bool:
         """Whether every one of these columns is there."""
@@ -182,3 +213,12 @@ class SensorLog:
         if not self.has(*QUATERNION):
             return None
         return np.column_stack([self.columns[c] for c in QUATERNION])
+
+
+def kept_places(kept: NDArray[np.bool_], every: int) -> Iterator[NDArray[np.intp]]:
+    """Places of every k-th true value of a mask, shape (n,), in each of its pieces."""
+    before = 0
+    for start in range(0, kept.size, PIECE):
+        here = np.flatnonzero(kept[start : start + PIECE])
+        yield here[-before % every :: every]
+        before += here.size

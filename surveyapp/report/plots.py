@@ -95,15 +95,22 @@ class Frame:
             _BOTTOM + up * (self.height_mm - _BOTTOM - _TOP),
         )
 
-    def axes(self, x_label: str, y_label: str, x_names: Sequence[str] = ()) -> list[Primitive]:
-        """Frame, grid lines, ticks and labels."""
+    def axes(
+        self,
+        x_label: str,
+        y_label: str,
+        x_names: Sequence[str] = (),
+        y_names: Sequence[str] = (),
+    ) -> list[Primitive]:
+        """Frame, grid lines, ticks and labels; names stand in place of the numbers at ticks."""
         left, bottom = self.at(self.x.low, self.y.low)
         right, top = self.at(self.x.high, self.y.high)
         parts: list[Primitive] = []
-        for tick in self.y.ticks:
+        words = list(y_names) or [f"{tick:.{self.y.decimals}f}" for tick in self.y.ticks]
+        for tick, word in zip(self.y.ticks, words, strict=True):
             _, y = self.at(self.x.low, tick)
             parts.append(Line((left, y), (right, y), "grid"))
-            parts.append(Label((left - 1.5, y - 0.9), f"{tick:.{self.y.decimals}f}", "end"))
+            parts.append(Label((left - 1.5, y - 0.9), word, "end"))
         names = list(x_names) or [f"{tick:.{self.x.decimals}f}" for tick in self.x.ticks]
         for tick, name in zip(self.x.ticks, names, strict=True):
             x, _ = self.at(tick, self.y.low)

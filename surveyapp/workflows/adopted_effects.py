@@ -9,32 +9,27 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from surveyapp.core.sensors.rate.adopted import StopDatum, columns_needed, without_effects
-from surveyapp.core.sensors.rate.fog_station_log import turned_sets
+from surveyapp.core.sensors.rate.adopted import (
+    AT_STOPS,
+    NO_STOPS,
+    StopDatum,
+    columns_needed,
+    without_effects,
+)
+from surveyapp.core.sensors.rate.fog_station_log import GYRO, turned_sets
+from surveyapp.core.sensors.rate.fog_station_log import OPTIONAL as FOG_COLUMNS
+from surveyapp.domain.advance import PartDone
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import SurveyError
-from surveyapp.io.sensor_logs.reading import Need
+from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.languages import said
 
 if TYPE_CHECKING:
     from surveyapp.diagnosis.subjects.rate import RateStop
     from surveyapp_models.effects.effect import Columns
-
-
-def not_taken_out(entry: SensorLogEntry | None) -> tuple[ResultWarning, ...]:
-    """That the result still holds the effects adopted for its log; empty where there are none."""
-    if entry is None or not entry.effects:
-        return ()
-    names = ", ".join(dict.fromkeys(effect.id for effect in entry.effects))
-    text = said(
-        "adopted for this log and not taken out here: {names}; diagnose shows "
-        "the record without, a sensor card holds parameters only",
-        names=names,
-    )
-    return (ResultWarning("adopted_not_applied", text),)
 
 
 def need_with_adopted(need: Need, entry: SensorLogEntry | None) -> Need:
@@ -43,6 +38,36 @@ def need_with_adopted(need: Need, entry: SensorLogEntry | None) -> Need:
         return need
     more = [c for c in columns_needed(entry.effects) if c not in need.columns]
     return replace(need, optional=tuple(dict.fromkeys((*need.optional, *more))))
+
+
+def read_without_adopted(
+    file: LogFile, need: Need, entry: SensorLogEntry | None, *, progress: PartDone | None = None
+) -> SensorLog:
+    """A log of any kind read for a command, without the effects that were adopted for it.
+
+    Beside what the command needs, the columns are read in which the diagnosis found the stops.
+
+    Raises
+    ------
+    SurveyError
+    """
+    if entry is None or not entry.effects:
+        return file.read(need, progress=progress)
+    if entry.kind in ("compass", "tilt"):
+        from surveyapp.core.sensors.adopted_effects import EVENT_COLUMNS, without_events
+
+        log = file.read(_beside(need, EVENT_COLUMNS), progress=progress)
+        log, told = without_events(log, entry.effects)
+        return replace(log, warnings=(*log.warnings, *told))
+    from surveyapp.diagnosis.rate_stops import LOG_COLUMNS
+
+    wanted = (GYRO, *FOG_COLUMNS) if entry.kind == "fog-station" else LOG_COLUMNS
+    log = file.read(replace(_beside(need, wanted), biased=True), progress=progress)
+    return without_adopted(log, entry)
+
+
+def _beside(need: Need, columns: Sequence[str]) -> Need:
+    return replace(need, optional=tuple(dict.fromkeys((*(need.optional or ()), *columns))))
 
 
 def without_adopted(
@@ -83,8 +108,8 @@ def without_adopted(
 def _taken_out(
     log: SensorLog, entry: SensorLogEntry, effects: Sequence[AdoptedEffect]
 ) -> tuple[SensorLog, tuple[ResultWarning, ...]]:
-    if not effects:
-        return log, ()
+    if not any(effect.id in AT_STOPS for effect in effects):
+        return without_effects(log, effects, NO_STOPS)
     datum = fog_datum(log) if entry.kind == "fog-station" else _rate_datum(log, entry)
     return without_effects(log, effects, datum)
 

@@ -22,13 +22,15 @@ from surveyapp.core.sensors.compensation import (
     compensate_tilt,
     force_sigma,
 )
-from surveyapp.domain.advance import PartDone
+from surveyapp.domain.advance import PartDone, stage
+from surveyapp.domain.columns import pieces
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_card import SensorCard
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.sensor_cards import read_sensor_card
+from surveyapp.io.sensor_logs.blocks import room_for
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.io.sensor_logs.writing import write_parts
 from surveyapp.languages import said
@@ -40,12 +42,19 @@ BLOCK_ROWS: Final = 50_000
 FORCE_ROWS: Final = 20_000
 """Rows that tell the noise of the specific force, of the whole log."""
 
+READING: Final = 0.25
+"""Share of the work that is reading; the rest is writing."""
+
 KINDS: Final = ("compass", "tilt", "rate")
 MAG: Final = ("mag_x_uT", "mag_y_uT", "mag_z_uT")
 ACC: Final = ("acc_x_m_s2", "acc_y_m_s2", "acc_z_m_s2")
 TILT: Final = ("tilt_along_arcsec", "tilt_across_arcsec")
 TABLE_COLUMNS: Final = ("table_rate_deg_s", "table_angle_deg", "round", "temperature_c")
 GYR: Final = ("gyr_x_rad_s", "gyr_y_rad_s", "gyr_z_rad_s")
+
+
+_Rest = tuple[Declination | None, str, float]
+"""Declination, name of the card, noise of the specific force."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,11 +143,11 @@ def compensate_log(
         raise SurveyError(
             Problem("a declination is added to magnetic headings only", "declination", found)
         )
-    log = file.read(_need(kind, file, card, entry), progress=progress)
+    log = file.read(_need(kind, file, card, entry), progress=stage(progress, 0.0, READING))
     if kind == "rate":
         log = without_adopted(log, entry)
     elif entry is not None and entry.effects:
-        log, told = without_events(log, entry.effects)
+        log, told = without_events(log, entry.effects, room=room_for)
         log = replace(log, warnings=(*log.warnings, *told))
     day = entry.calibrated_on if entry is not None and entry.calibrated_on else today
     problems = card.refusals(on=day, temperature_c=temperatures(log), where=where)
@@ -157,11 +166,24 @@ def compensate_log(
             "degrees: --declination D,SIGMA"
         )
         log = replace(log, warnings=(*log.warnings, ResultWarning("no_declination_sigma", text)))
-    part = log.rows(slice(None, None, max(log.size // FORCE_ROWS, 1)))
-    noise = force_sigma(part.vector("acc")) if kind == "compass" else 0.0
-    starts = range(0, log.size, BLOCK_ROWS)
-    blocks = (log.rows(slice(start, start + BLOCK_ROWS)) for start in starts)
-    return (_run(kind, block, card, (declination, where, noise)) for block in blocks), log, card
+    noise = 0.0
+    if kind == "compass":
+        noise = force_sigma(log.every(max(log.size // FORCE_ROWS, 1)).vector("acc"))
+    rest = (declination, where, noise)
+    return _parts(kind, log, card, (rest, stage(progress, READING, 1.0))), log, card
+
+
+def _parts(
+    kind: str, log: SensorLog, card: SensorCard, more: tuple[_Rest, PartDone | None]
+) -> Iterator[Compensated]:
+    """The corrected log block by block; what was written is told."""
+    rest, progress = more
+    done = 0
+    for block in log.pieces(BLOCK_ROWS):
+        yield _run(kind, block, card, rest)
+        done += block.size
+        if progress is not None:
+            progress(done / log.size)
 
 
 def _need(kind: str, file: LogFile, card: SensorCard, entry: SensorLogEntry | None) -> Need:
@@ -176,9 +198,7 @@ def _need(kind: str, file: LogFile, card: SensorCard, entry: SensorLogEntry | No
     return Need(columns=columns, optional=("temperature_c",), timed="optional")
 
 
-def _run(
-    kind: str, log: SensorLog, card: SensorCard, rest: tuple[Declination | None, str, float]
-) -> Compensated:
+def _run(kind: str, log: SensorLog, card: SensorCard, rest: _Rest) -> Compensated:
     declination, where, noise = rest
     if kind == "compass":
         return compensate_compass(
@@ -194,9 +214,16 @@ def _run(
 def temperatures(log: SensorLog) -> tuple[float, float] | None:
     """Lowest and highest temperature of a record, None where it holds none."""
     values = log.columns.get("temperature_c")
-    if values is None or not np.any(np.isfinite(values)):
+    if values is None:
         return None
-    return float(np.nanmin(values)), float(np.nanmax(values))
+    low, high = np.inf, -np.inf
+    for piece in pieces(values):
+        known = piece[np.isfinite(piece)]
+        low, high = (
+            min(low, float(known.min(initial=low))),
+            max(high, float(known.max(initial=high))),
+        )
+    return (low, high) if low <= high else None
 
 
 def other_instrument(card: SensorCard, entry: SensorLogEntry | None, where: str) -> list[Problem]:
@@ -246,7 +273,7 @@ def write_compensated(
     if card.temperature_c is not None and span is None:
         text = "the log holds no temperature: whether the card holds was not judged by it"
         warnings.append(ResultWarning("temperature_unknown", text))
-    if kind == "compass" and log.vector("acc") is None:
+    if kind == "compass" and not log.has(*ACC):
         text = "no specific force: the headings are taken as level, not tilt-compensated"
         warnings.append(ResultWarning("not_tilt_compensated", text))
     if "restricted" in card.notes:

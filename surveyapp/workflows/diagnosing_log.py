@@ -13,9 +13,10 @@ from surveyapp.core.sensors.clipping import unclipped_rows, without_clipped
 from surveyapp.diagnosis.sensors.diagnosis import SensorDiagnosis, diagnose_sensor
 from surveyapp.diagnosis.sensors.records import SensorRecord, compass_record, tilt_record
 from surveyapp.domain.advance import PartDone
+from surveyapp.domain.columns import PIECE
 from surveyapp.domain.project import Project
 from surveyapp.domain.sensor_entry import SensorLogEntry
-from surveyapp.domain.sensor_log import QUATERNION, SensorLog
+from surveyapp.domain.sensor_log import QUATERNION, SensorLog, kept_places
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.languages import said
@@ -169,11 +170,19 @@ def _record(
         raise SurveyError(Problem("the log is too short to diagnose", log.path, found, expected))
     mine = tuple(effect for effect in own if effect.subject == kind)
     fitted = MAG if kind == "compass" else TILT[:2]
-    kept = unclipped_rows(log, fitted)
-    whole = without_clipped(log, fitted)
-    used = whole.thinned(MOST_ROWS)
+    used = without_clipped(log, fitted, most=MOST_ROWS)
     made = compass_record(used, mine) if kind == "compass" else tilt_record(used, mine)
-    rows = np.arange(log.size) if kept is None else np.flatnonzero(kept)
-    rows = rows[:: -(-whole.size // used.size)]
-    gross = tuple((int(rows[row]), size) for row, size in made.gross)
+    gross = _in_the_log(made.gross, unclipped_rows(log, fitted), log.size)
     return replace(made, gross=gross), replace(log, warnings=used.warnings)
+
+
+def _in_the_log(
+    gross: Sequence[tuple[int, float]], kept: np.ndarray | None, size: int
+) -> tuple[tuple[int, float], ...]:
+    """Rows of what was fitted as rows of the log, from which clipped and thinned ones are gone."""
+    left = size if kept is None else int(np.count_nonzero(kept))
+    every = -(-left // MOST_ROWS)
+    if kept is None:
+        return tuple((row * every, value) for row, value in gross)
+    rows = np.concatenate([PIECE * k + places for k, places in enumerate(kept_places(kept, every))])
+    return tuple((int(rows[row]), value) for row, value in gross)

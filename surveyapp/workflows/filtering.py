@@ -20,9 +20,11 @@ from surveyapp.core.sensors.filters import (
     step_lag,
 )
 from surveyapp.domain.advance import PartDone, stage
+from surveyapp.domain.columns import pieces
 from surveyapp.domain.noise import AllanChannel, FilterResult
 from surveyapp.domain.project import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.io.sensor_logs.blocks import room_for
 from surveyapp.io.sensor_logs.reading import LogFile
 from surveyapp.languages import said
 from surveyapp.workflows.noise import channel_of, noise_columns, read_columns, uneven
@@ -77,17 +79,12 @@ def filter_log(
     series, unit = log.columns[names[0]], log.units[names[0]]
     model = _model(series, (q, r), seed)
     rng = np.random.default_rng(seed)
-    filtered = run_filter(model_name, series, model, rng, progress=stage(progress, 0.5, 0.9))
+    filtered = run_filter(
+        model_name, series, model, rng, room=room_for, progress=stage(progress, 0.5, 0.8)
+    )
     rate = log.rate_hz or 1.0
-    factors = octaves(series.size)
-    before = channel_of(names[0], unit, series, rate_hz=rate, factors=factors)
-    after = channel_of(
-        names[0],
-        unit,
-        filtered.estimate,
-        rate_hz=rate,
-        factors=factors,
-        highest_hz=PASS_BAND * model.steady_gain * rate / (2.0 * math.pi),
+    before, after = _channels(
+        (names[0], unit), (series, filtered.estimate), (rate, model), stage(progress, 0.8, 0.96)
     )
     lags = _lags(model_name, model, seed)
     if progress is not None:
@@ -112,12 +109,37 @@ def filter_log(
         seed=seed,
         warnings=tuple(warnings),
     )
-    times = log.columns.get("time_s", np.arange(series.size) / rate)
+    times = log.columns.get("time_s")
+    if times is None:
+        times = np.arange(series.size) / rate
     return result, {
         "time_s": times,
         names[0]: series,
         f"filtered_{names[0]}": filtered.estimate,
     }
+
+
+def _channels(
+    named: tuple[str, str],
+    both: tuple[Floats, Floats],
+    known: tuple[float, LocalLevel],
+    progress: PartDone | None,
+) -> tuple[AllanChannel, AllanChannel]:
+    """Allan deviation of a series and of what a filter made of it."""
+    rate, model = known
+    pass_band = PASS_BAND * model.steady_gain * rate / (2.0 * math.pi)
+    made = [
+        channel_of(
+            *named,
+            series,
+            rate_hz=rate,
+            factors=octaves(series.size),
+            highest_hz=highest_hz,
+            progress=stage(progress, 0.5 * k, 0.5 * k + 0.5),
+        )
+        for k, (series, highest_hz) in enumerate(zip(both, (None, pass_band), strict=True))
+    ]
+    return made[0], made[1]
 
 
 def _one_column(file: LogFile, column: str | None) -> tuple[str, ...]:
@@ -141,8 +163,8 @@ def _lags(name: FilterName, model: LocalLevel, seed: int) -> dict[str, float | N
 def _mean_square_step(series: Floats) -> float:
     """Mean square of the differences of neighbouring readings."""
     total = 0.0
-    for start in range(0, series.size - 1, BLOCK):
-        step = np.diff(series[start : start + BLOCK + 1])
+    for piece in pieces(series, BLOCK, overlap=1):
+        step = np.diff(piece)
         total += float(step @ step)
     return total / (series.size - 1)
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from surveyapp.core.sensors.rate.fog_station_log import GYRO, NEEDED, OPTIONAL, turned_sets
-from surveyapp.diagnosis.rate_lines import Stretch, with_lines_beside
+from surveyapp.diagnosis.rate_lines import LEVELS, Stretch, with_lines_beside
 from surveyapp.diagnosis.subjects.fog_station import FogTurn, fog_case
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import SensorLog
@@ -55,7 +56,7 @@ def case_of_log(log: SensorLog, entry: SensorLogEntry, own: tuple[Effect, ...] =
         with_lines_beside, log=log, columns={"x": GYRO}, stretches=stretches, datum=fog_datum(log)
     )
     return SensorCase(
-        fog_case(turns, identity=entry.id, extra=own),
+        replace(fog_case(turns, identity=entry.id, extra=own), levels=LEVELS),
         (*log.warnings, *warnings),
         {"sets": len(sets)},
         None,

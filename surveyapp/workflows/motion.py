@@ -16,10 +16,12 @@ from surveyapp.core.sensors.rate.motion_log import (
 )
 from surveyapp.domain.advance import PartDone
 from surveyapp.domain.motion import Motion
+from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.languages import said
+from surveyapp.workflows.adopted_effects import read_without_adopted
 
 LONGEST_PATH_M: Final = 1e6
 """Of the odometer in one record."""
@@ -27,11 +29,36 @@ LONGEST_PATH_M: Final = 1e6
 SMALLEST_ALARM: Final = 1e-9
 """Of a rest; quantiles nearer to 1 are not to be had in a float."""
 
+PROGRAMME: Final = "motion"
+"""``programme`` of a log whose motion the record tells."""
+
+OF_ENTRY: Final = {
+    "false_alarm": "false_alarm",
+    "path": "path",
+    "from": "begin",
+    "to": "end",
+    "snap": "snap",
+    "snap_power_cycle": "snap_power_cycle",
+    "still_gate_factor": "still_gate_factor",
+}
+"""Keys of a ``[[sensor_log]]``, and the options that they are."""
+
+
+def options_of(entry: SensorLogEntry | None, given: Mapping[str, object]) -> dict[str, object]:
+    """What the entry of a log states, and over it what is given."""
+    stated = {} if entry is None else entry.options
+    own = {option: stated[key] for key, option in OF_ENTRY.items() if key in stated}
+    return own | {name: value for name, value in given.items() if value is not None}
+
 
 def find_motion(
-    file: LogFile, options: Mapping[str, object], *, progress: PartDone | None = None
+    file: LogFile,
+    options: Mapping[str, object],
+    *,
+    entry: SensorLogEntry | None = None,
+    progress: PartDone | None = None,
 ) -> Motion:
-    """Read a record and judge its motion.
+    """Read a record, without effects that were adopted for it, and judge its motion.
 
     Raises
     ------
@@ -40,7 +67,8 @@ def find_motion(
     problems: list[Problem] = []
     asked = motion_options(options, problems)
     try:
-        log = file.read(Need(columns=NEEDED, varying=NEEDED, optional=OPTIONAL), progress=progress)
+        need = Need(columns=NEEDED, varying=NEEDED, optional=OPTIONAL)
+        log = read_without_adopted(file, need, entry, progress=progress)
     except SurveyError as error:
         raise SurveyError([*problems, *error.problems]) from None
     if asked.path or asked.snap:
@@ -76,11 +104,11 @@ def _odometer_problems(log: SensorLog) -> list[Problem]:
 
 def motion_options(options: Mapping[str, object], problems: list[Problem]) -> MotionOptions:
     """Options of the command line; what is wrong goes to ``problems``."""
-    alarm = _number(options, "false_alarm", 0.01)
+    alarm = _number(options, "false_alarm", 0.01, problems)
     if not SMALLEST_ALARM <= alarm < 0.5:
         expected = said("{smallest_alarm:g} to 0.5", smallest_alarm=SMALLEST_ALARM)
         problems.append(Problem("this is no probability", "false_alarm", f"{alarm:g}", expected))
-    factor = _number(options, "still_gate_factor", 1.0)
+    factor = _number(options, "still_gate_factor", 1.0, problems)
     if not factor > 0.0 or not math.isfinite(factor):
         where = "still_gate_factor"
         problems.append(Problem("this is no factor", where, f"{factor:g}", "above 0"))
@@ -93,17 +121,31 @@ def motion_options(options: Mapping[str, object], problems: list[Problem]) -> Mo
     return MotionOptions(
         false_alarm=alarm,
         still_gate_factor=factor,
-        path=bool(options.get("path")),
+        path=_flag(options, "path", problems),
         begin=None if begin is None else (begin[0], begin[1], math.radians(begin[2])),
         end=None if end is None else (end[0], end[1]),
-        snap=bool(options.get("snap")),
+        snap=_flag(options, "snap", problems),
         power_cycle="previous" if cycle == "previous" else "current",
     )
 
 
-def _number(options: Mapping[str, object], name: str, default: float) -> float:
+def _number(
+    options: Mapping[str, object], name: str, default: float, problems: list[Problem]
+) -> float:
     value = options.get(name)
-    return float(value) if isinstance(value, int | float) else default
+    if value is None:
+        return default
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        problems.append(Problem("this is no number", name, str(value), "a number"))
+        return default
+    return float(value)
+
+
+def _flag(options: Mapping[str, object], name: str, problems: list[Problem]) -> bool:
+    value = options.get(name)
+    if value is not None and not isinstance(value, bool):
+        problems.append(Problem("this is neither true nor false", name, str(value), "true, false"))
+    return value is True
 
 
 def _numbers(
@@ -111,9 +153,10 @@ def _numbers(
 ) -> tuple[float, ...] | None:
     if value is None:
         return None
+    parts = value if isinstance(value, list | tuple) else str(value).split(",")
     try:
-        found = tuple(float(part) for part in str(value).split(","))
-    except ValueError:
+        found = tuple(float(part) for part in parts)
+    except (TypeError, ValueError):
         found = ()
     if len(found) != count or not all(math.isfinite(v) for v in found):
         expected = "E,N,AZIMUTH in metres and degrees" if count == 3 else "E,N in metres"

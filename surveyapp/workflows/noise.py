@@ -16,6 +16,7 @@ from surveyapp.domain.noise import AllanChannel, AllanResult
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SENSOR_COLUMNS, TEXT_COLUMNS, SensorLog
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.io.sensor_logs.blocks import room_for
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
@@ -106,12 +107,19 @@ def channel_of(
 ) -> AllanChannel:
     """Curve and coefficients of one series; ``highest_hz`` as in ``coefficients_of``."""
     curve: AllanCurve = allan_curve(
-        series, rate_hz=rate_hz, factors=factors, estimator=estimator, progress=progress
+        series,
+        rate_hz=rate_hz,
+        factors=factors,
+        estimator=estimator,
+        room=room_for,
+        progress=stage(progress, 0.0, 0.7),
     )
     known = unit not in ("1", "LSB")
     found = None
     if known:
         found = coefficients_of(series, interval=1.0 / rate_hz, highest_hz=highest_hz)
+    if progress is not None:
+        progress(1.0)
     return AllanChannel(
         name=name,
         unit=unit,

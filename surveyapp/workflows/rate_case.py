@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -11,8 +12,8 @@ import numpy as np
 
 from surveyapp.core.sensors.rate.position_log import ACCELEROMETERS, GYROS
 from surveyapp.diagnosis.crooked_seats import Seats, with_seats
-from surveyapp.diagnosis.rate_lines import Stretch, with_lines_beside
-from surveyapp.diagnosis.rate_stops import stops_of
+from surveyapp.diagnosis.rate_lines import LEVELS, Stretch, with_lines_beside
+from surveyapp.diagnosis.rate_stops import LOG_COLUMNS, stops_of
 from surveyapp.diagnosis.result import Diagnosis
 from surveyapp.diagnosis.subjects.rate import RateTurn, rate_case, seats_of
 from surveyapp.domain.sensor_entry import SensorLogEntry
@@ -24,25 +25,14 @@ from surveyapp_models.effects.effect import Effect
 
 Finish = Callable[[Diagnosis], tuple[Diagnosis, dict[str, Any]]]
 
-OPTIONAL = (
-    "table_rate_deg_s",
-    "table_angle_deg",
-    "round",
-    "temperature_c",
-    "reference_temperature_c",
-    "mag_x_uT",
-    "mag_y_uT",
-    "mag_z_uT",
-)
-
 
 def case(file: LogFile, entry: SensorLogEntry, own: tuple[Effect, ...]) -> SensorCase:
     """Read the log and make its case."""
     table = file.has("position")
     still = not table and not any(file.has(c) for c in ACCELEROMETERS)
     beside: tuple[str, ...] = ("position",) if table else (() if still else ACCELEROMETERS)
-    optional = (*OPTIONAL, *ACCELEROMETERS)
-    log = file.read(Need(columns=(*GYROS, *beside), varying=GYROS, optional=optional, biased=True))
+    need = Need(columns=(*GYROS, *beside), varying=GYROS, optional=LOG_COLUMNS, biased=True)
+    log = file.read(need)
     return case_of_log(log, entry, own)
 
 
@@ -62,6 +52,8 @@ def case_of_log(log: SensorLog, entry: SensorLogEntry, own: tuple[Effect, ...] =
     ]
     seats = None if turns else seats_of(stops)
     made = rate_case(stops, turns, identity=entry.id, extra=own, seats=seats)
+    if not any(stop.known is None and stop.force is not None for stop in stops):  # held by hand
+        made = replace(made, levels=LEVELS)
     lines = partial(
         with_lines_beside,
         log=log,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from surveyapp.core.sensors.charts import logs, results
+from surveyapp.core.sensors.charts.north import north_charts
 from surveyapp.core.sensors.rate.stop_plan import StopPlan
 from surveyapp.domain.advance import PartDone
 from surveyapp.domain.calibration import Calibration
@@ -12,11 +13,14 @@ from surveyapp.domain.chart import Picture, SensorPictures
 from surveyapp.domain.line_spectrum import LineSpectrum
 from surveyapp.domain.motion import Motion
 from surveyapp.domain.noise import AllanResult, FilterResult
+from surveyapp.domain.north import NorthResult
 from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2, SensorLog
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.workflows.calibrating.tilt import DIVIDING_HEAD, TWO_AXES
 
-SensorResult = Calibration | AllanResult | FilterResult | LineSpectrum | Motion | StopPlan
+SensorResult = (
+    Calibration | AllanResult | FilterResult | LineSpectrum | Motion | NorthResult | StopPlan
+)
 
 COMPASS: Final = ("mag_x_uT", "mag_y_uT", "mag_z_uT")
 FORCE: Final = ("acc_x_m_s2", "acc_y_m_s2", "acc_z_m_s2")
@@ -36,7 +40,8 @@ def pictures_of(
 
     Parameters
     ----------
-    result : result of a calibration, an Allan deviation, a filter, a spectrum, a motion or a plan
+    result : result of a calibration, an Allan deviation, a filter, a spectrum, a motion, a north
+        or a plan
     file : LogFile or None
         The log, for calibrations; without it those that need the log have no picture of it.
     progress : callable, optional
@@ -50,6 +55,8 @@ def pictures_of(
             made, source = results.spectrum_charts(result), result.source
         case Motion():
             made, source = results.motion_charts(result), result.source
+        case NorthResult():
+            made, source = north_charts(result), result.source
         case StopPlan():
             made, source = results.plan_charts(result), result.grade.id
         case Calibration():

@@ -7,8 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from surveyapp.core.sensors.adopted_effects import EVENT_COLUMNS
 from surveyapp.diagnosis.long_records.interference import (
     Interference,
+    deviation_of,
     find_interference,
     plotted_density,
     scatter_of,
@@ -16,10 +18,12 @@ from surveyapp.diagnosis.long_records.interference import (
 from surveyapp.domain.advance import PartDone
 from surveyapp.domain.line_spectrum import LineSpectrum, MagneticBudget
 from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import NUMBER_COLUMNS, SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.languages import said
+from surveyapp.workflows.adopted_effects import read_without_adopted
 from surveyapp.workflows.noise import FEWEST
 from surveyapp_models.rate.triad import magnetic_bias
 
@@ -41,9 +45,10 @@ def find_spectrum(
     *,
     magnetic: MagneticOptions,
     against: LogFile | None = None,
+    entry: SensorLogEntry | None = None,
     progress: PartDone | None = None,
 ) -> LineSpectrum:
-    """Lines of a column.
+    """Lines of a column, without effects that were adopted for the log of the entry.
 
     Raises
     ------
@@ -53,7 +58,7 @@ def find_spectrum(
     column = _canonical(file, column)
     columns = [column] if against is None else _axes(file, against, column)
     try:
-        log = _read(file, list(dict.fromkeys([column, *columns])), progress)
+        log = _read(file, list(dict.fromkeys([column, *columns])), progress, entry)
     except SurveyError as error:
         raise SurveyError([*problems, *error.problems]) from None
     if problems:
@@ -88,12 +93,17 @@ def _axes(file: LogFile, other: LogFile, column: str) -> list[str]:
     return [column]
 
 
-def _read(file: LogFile, columns: list[str], progress: PartDone | None) -> SensorLog:
+def _read(
+    file: LogFile,
+    columns: list[str],
+    progress: PartDone | None,
+    entry: SensorLogEntry | None = None,
+) -> SensorLog:
     known = tuple(c for c in columns if c in NUMBER_COLUMNS)
     others = tuple(c for c in columns if c not in NUMBER_COLUMNS)
-    log = file.read(
-        Need(columns=known, varying=tuple(columns), optional=(), others=others), progress=progress
-    )
+    need = Need(columns=known, varying=tuple(columns), optional=(), others=others)
+    changed = [c for c in columns if c in GYROS or c in EVENT_COLUMNS]
+    log = read_without_adopted(file, need, entry if changed else None, progress=progress)
     if log.size < FEWEST:
         found, expected = (
             said("{size} rows", size=log.size),
@@ -170,13 +180,13 @@ def _compared(first: SensorLog, second: SensorLog, columns: list[str]) -> dict[s
         found_one = find_interference(first.columns["time_s"], one)
         found_two = find_interference(second.columns["time_s"], two)
         old = np.array([line.frequency_hz for line in found_one.lines])
-        slack = 2.0 / min(np.ptp(first.columns["time_s"]), np.ptp(second.columns["time_s"]))
+        slack = 2.0 / min(_length(first), _length(second))
         new = [
             line.to_dict()
             for line in found_two.lines
             if np.abs(old - line.frequency_hz).min(initial=np.inf) > slack
         ]
-        sd_one, sd_two = float(np.std(one, ddof=1)), float(np.std(two, ddof=1))
+        sd_one, sd_two = deviation_of(one), deviation_of(two)
         axes.append(
             {
                 "column": column,
@@ -193,6 +203,11 @@ def _compared(first: SensorLog, second: SensorLog, columns: list[str]) -> dict[s
             }
         )
     return {"source": second.id, "sha256": second.sha256, "axes": axes}
+
+
+def _length(log: SensorLog) -> float:
+    """From the first to the last sample [s]."""
+    return float(log.columns["time_s"][-1] - log.columns["time_s"][0])
 
 
 def _in_db(values: np.ndarray, rate_hz: float) -> dict[str, list[float]]:

@@ -9,6 +9,7 @@ import dataclasses
 import itertools
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -40,7 +41,56 @@ def _places(rng: np.random.Generator, lengths: np.ndarray) -> dict[str, tuple[fl
     return {f"P{i}": (float(x), float(y)) for i, (x, y) in enumerate(zip(e, n, strict=True))}
 
 
+@dataclass(frozen=True)
+class Truth:
+    """Where the points are and what is wrong: what any observation reads but for its noise.
+
+    ``side`` is -1 or 1 for the sides of a zig-zag (where a wall stands), 0 outside.
+    """
+
+    at: dict[str, tuple[float, float]]
+    side: dict[tuple[str, str], float]
+    wrong: Undeclared
+
+    def azimuth(self, a: str, b: str) -> float:
+        """From true coordinates [rad]."""
+        (x, y), (u, v) = self.at[a], self.at[b]
+        return math.atan2(u - x, v - y)
+
+    def length(self, a: str, b: str) -> float:
+        """From true coordinates [m]."""
+        (x, y), (u, v) = self.at[a], self.at[b]
+        return math.hypot(u - x, v - y)
+
+    def bent(self, a: str, b: str) -> float:
+        """What the air along a wall does to a direction [rad]."""
+        sign = self.side[a, b] if (a, b) in self.side else -self.side[b, a]
+        return sign * self.wrong.bending * ARC * self.length(a, b) / 100.0
+
+    def reads(self, obs: Observation, *, other: bool = False) -> float:
+        """What it would read; ``other``: by another instrument, without the errors of this one."""
+        own, wrong = 0.0 if other else 1.0, self.wrong
+        if obs.kind is K.ANGLE:
+            bias = own * wrong.bias * ARC
+            value = self.azimuth(obs.at, obs.to) - self.azimuth(obs.at, obs.back) + bias
+            return value + self.bent(obs.at, obs.to) - self.bent(obs.at, obs.back)
+        if obs.kind is K.DISTANCE:
+            scale, constant = own * wrong.scale * 1e-6, own * wrong.constant * 1e-3
+            return self.length(obs.at, obs.to) * (1.0 + scale) + constant
+        if obs.kind is K.GYRO_CONSTANT:
+            return (100.0 - wrong.shift) * ARC
+        shift = (wrong.shift - 100.0) * ARC if obs.kind is K.GYRO else 0.0
+        return self.azimuth(obs.at, obs.to) + self.bent(obs.at, obs.to) + shift
+
+
 def simulated(
+    rng: np.random.Generator, wrong: Undeclared, lengths: np.ndarray, **how: Any
+) -> Network:
+    """One traverse; see ``simulated_with_truth``."""
+    return simulated_with_truth(rng, wrong, lengths, **how)[0]
+
+
+def simulated_with_truth(
     rng: np.random.Generator,
     wrong: Undeclared,
     lengths: np.ndarray,
@@ -50,44 +100,36 @@ def simulated(
     walls: bool = False,
     gross: tuple[int, float] | None = None,
     overlaps: bool = False,
-) -> Network:
+) -> tuple[Network, Truth]:
     """One traverse; the first and the last side are fixed, the gyro's constant is known to 5"."""
     at = _places(rng, lengths)
     names = list(at)
     fixed = {*names[:2], *names[-2:]}
-
-    def azimuth(a: str, b: str) -> float:
-        return math.atan2(at[b][0] - at[a][0], at[b][1] - at[a][1])
-
-    def length(a: str, b: str) -> float:
-        return math.hypot(at[b][0] - at[a][0], at[b][1] - at[a][1])
-
     side = {
         (names[k], names[k + 1]): -1.0 if zig_zag and k % 2 else 1.0 for k in range(len(names) - 1)
     }
     side[names[0], names[1]] = 0.0  # outside, where the traverse begins
-
-    def bent(a: str, b: str) -> float:
-        sign = side[a, b] if (a, b) in side else -side[b, a]
-        return sign * wrong.bending * ARC * length(a, b) / 100.0
+    truth = Truth(at, side, wrong)
 
     def note(a: str, b: str) -> str:
         return f"wall={'right' if side[a, b] > 0 else 'left'}" if walls else ""
 
     found = []
     for a, b, c in zip(names, names[1:], names[2:], strict=False):
-        value = azimuth(b, c) - azimuth(b, a) + wrong.bias * ARC + bent(b, c) - bent(b, a)
-        value += ANGLE * rng.normal()
-        found.append(Observation(K.ANGLE, b, c, value % math.tau, ANGLE, back=a, note=note(b, c)))
+        made = Observation(K.ANGLE, b, c, 0.0, ANGLE, back=a, note=note(b, c))
+        value = truth.reads(made) + ANGLE * rng.normal()
+        found.append(dataclasses.replace(made, value=value % math.tau))
     inner = list(itertools.pairwise(names[1:-1]))
     past = list(zip(names[1:-1], names[3:-1], strict=False)) if overlaps else []
     for a, b in (*inner, *past):
         for x, y in ((a, b), (b, a)):
-            value = length(x, y) * (1.0 + wrong.scale * 1e-6) + wrong.constant * 1e-3
-            found.append(Observation(K.DISTANCE, x, y, value + LENGTH * rng.normal(), LENGTH))
+            made = Observation(K.DISTANCE, x, y, 1.0, LENGTH)
+            value = truth.reads(made) + LENGTH * rng.normal()
+            found.append(dataclasses.replace(made, value=value))
     for a, b in inner[1::gyro_every]:
-        value = azimuth(a, b) + bent(a, b) + (wrong.shift - 100.0) * ARC + GYRO * rng.normal()
-        found.append(Observation(K.GYRO, a, b, value, GYRO, constant="G", note=note(a, b)))
+        made = Observation(K.GYRO, a, b, 0.0, GYRO, constant="G", note=note(a, b))
+        value = truth.reads(made) + GYRO * rng.normal()
+        found.append(dataclasses.replace(made, value=value))
     if gross is not None:
         old = found[gross[0]]
         found[gross[0]] = dataclasses.replace(old, value=old.value + gross[1] * old.sigma)
@@ -100,7 +142,7 @@ def simulated(
     ]
     points = [dataclasses.replace(p, status_n=p.status_e) for p in points]
     known = GyroConstant("G", (100.0 + 5.0 * rng.normal()) * ARC, 5.0 * ARC)
-    return Network(tuple(points), tuple(found), constants=(known,))
+    return Network(tuple(points), tuple(found), constants=(known,)), truth
 
 
 def folder_text(network: Network) -> tuple[str, str]:

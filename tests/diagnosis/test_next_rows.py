@@ -78,7 +78,7 @@ LENGTHS = np.random.default_rng(5).uniform(80.0, 300.0, 9)
 
 
 def of(wrong: Undeclared, **how: object) -> Case:
-    return traverse(simulated(np.random.default_rng(4), wrong, LENGTHS, **how))  # type: ignore[arg-type]
+    return traverse(simulated(np.random.default_rng(4), wrong, LENGTHS, **how))
 
 
 def test_what_turns_back_and_what_bends_are_told_apart_by_turning_back() -> None:

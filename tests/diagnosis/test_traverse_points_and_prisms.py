@@ -146,3 +146,23 @@ def test_free_points_are_no_fixed_points() -> None:
     fixed = {i for i, p in enumerate(clean().points, start=1) if p.status_e is Status.FIXED}
     marked = problem.columns["station"][problem.columns["station_fixed"] > 0.0]
     assert {int(v) for v in marked} <= fixed
+
+
+def test_errors_of_an_instrument_are_not_in_what_another_one_observed() -> None:
+    network = clean()
+    angles = [i for i, obs in enumerate(network.observations) if obs.kind is K.ANGLE]
+    lengths = [i for i, obs in enumerate(network.observations) if obs.kind is K.DISTANCE]
+    other = {angles[2], lengths[0], lengths[5]}
+    noted = {i: dataclasses.replace(network.observations[i], note="instrument=B") for i in other}
+    told = traverse(changed(network, noted)).columns
+    plain = traverse(network).columns
+    for i in (*angles, *lengths):
+        name = "sights_turned" if i in angles else "distance_m"
+        assert told[name][i] == pytest.approx(0.0 if i in other else plain[name][i], rel=1e-9)
+    # where one instrument is named throughout, nothing changes
+    every = {
+        i: dataclasses.replace(obs, note="instrument=A")
+        for i, obs in enumerate(network.observations)
+    }
+    same = traverse(changed(network, every)).columns
+    assert same["distance_m"] == pytest.approx(plain["distance_m"], rel=1e-12)

@@ -169,3 +169,37 @@ def test_a_record_at_rest_is_diagnosed_and_compensated_by_a_fluxgate(tmp_path: P
     ]
     assert slopes[0] == pytest.approx(0.01, rel=0.1)
     assert abs(slopes[1]) < 1e-3
+
+
+def test_spectrum_and_motion_are_of_the_log_without_them(tmp_path: Path) -> None:
+    """A line of 1.5 deg/h at 10 Hz; gyro z of a drive answers .5 deg/s per m/s2 of braking."""
+    rest = tmp_path / "rest"
+    effect = ("--effect", "interference_line=1.5", "--seed", "3")
+    surveyapp("simulate", "rate", rest, "--programme", "static", *effect)
+    spectrum = ("spectrum", rest, "--sensor", "static", "--column", "gyr_x_rad_s", "--json")
+    before = surveyapp(*spectrum).json
+    surveyapp("diagnose", rest, "--sensor", "static", "--adopt", "--json")
+    after = surveyapp(*spectrum).json
+    assert len(before["lines"]) == 1
+    assert not after["lines"]
+    assert after["sd"]["before"] == pytest.approx(before["sd"]["after"], rel=1e-3)
+
+    drive = tmp_path / "drive"
+    surveyapp("simulate", "vehicle", drive, "--seed", "2")
+    motion = ("motion", drive, "--sensor", "vehicle", "--path", "--from", "0,0,30", "--json")
+    clean = surveyapp(*motion).json
+    log = drive / "sensors/vehicle.csv"
+    names = log.read_text().split("\n", 1)[0]
+    rows = np.loadtxt(log, delimiter=",", skiprows=1)
+    where = names.split(",").index
+    rows[:, where("gyr_z_rad_s")] += np.radians(0.5) * rows[:, where("acc_y_m_s2")]
+    np.savetxt(log, rows, delimiter=",", header=names, comments="", fmt="%.12g")
+    bent = surveyapp(*motion).json["path"]["end_m"]
+    along = '[[sensor_log.effect]]\nid = "g_sensitivity"\nunit = "deg/s"\n'
+    along += 'coefficients = { zy = { value = 0.5, sigma = 1e-4, unit = "deg/s/(m/s2)" } }\n'
+    with (drive / "project.toml").open("a") as project:
+        project.write(along)
+    told = surveyapp(*motion).json
+    assert "adopted_applied" in [w["code"] for w in told["warnings"]]
+    assert told["path"]["end_m"] == pytest.approx(clean["path"]["end_m"], abs=1e-3)
+    assert math.dist(bent, clean["path"]["end_m"]) > 0.1

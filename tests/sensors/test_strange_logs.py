@@ -219,6 +219,28 @@ def test_temperatures_in_kelvin_are_refused(tmp_path: Path) -> None:
     assert {"beyond_range", "never_changes"} <= set(codes(made))
 
 
+def test_a_card_without_a_range_says_that_no_range_is_judged(tmp_path: Path) -> None:
+    rng = np.random.default_rng(4)
+    along, across = rng.uniform(-600.0, 600.0, (2, 60))
+    log = {
+        "tilt_along_arcsec": along + rng.normal(0, 1, 60),
+        "tilt_across_arcsec": across + rng.normal(0, 1, 60),
+        "ref_along_arcsec": along,
+        "ref_across_arcsec": across,
+    }
+    source = written(tmp_path / "t.csv", log)
+    card, old, out = tmp_path / "t.toml", tmp_path / "old.toml", tmp_path / "o.csv"
+    api.calibrate("tilt", source, card=card)
+    lines = card.read_text(encoding="utf-8").splitlines(keepends=True)
+    kept = [line for line in lines if "largest_reading_arcsec" not in line]
+    assert len(kept) == len(lines) - 1
+    old.write_text("".join(kept), encoding="utf-8")
+    assert "range_unknown" not in codes(api.compensate("tilt", source, card=card, out=out))
+    known = out.read_text(encoding="utf-8")
+    assert "range_unknown" in codes(api.compensate("tilt", source, card=old, out=out))
+    assert out.read_text(encoding="utf-8") == known
+
+
 def test_headings_beyond_the_tilts_of_a_restricted_card_are_empty(tmp_path: Path) -> None:
     heading, attitude = swung(0.2)
     log = sensed(attitude, 11, force_sigma=0.001, iron=SMALL)

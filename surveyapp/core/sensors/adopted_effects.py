@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from surveyapp.domain.columns import PIECE, Room, in_memory, let_go
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import Array, SensorLog
@@ -19,10 +20,12 @@ from surveyapp.languages import said
 from surveyapp_models.effects import of_subject
 
 AXES = ("along", "across")
+EVENT_COLUMNS = (*(f"mag_{a}_uT" for a in "xyz"), *(f"tilt_{a}_arcsec" for a in AXES))
+"""Columns in which an event was seen."""
 
 
 def without_events(
-    log: SensorLog, effects: Sequence[AdoptedEffect]
+    log: SensorLog, effects: Sequence[AdoptedEffect], *, room: Room = in_memory
 ) -> tuple[SensorLog, tuple[ResultWarning, ...]]:
     """The log without the adopted effects that were events of it, and what was done.
 
@@ -32,6 +35,8 @@ def without_events(
         Of a compass or a two-axis tilt sensor.
     effects : sequence of AdoptedEffect
         Of its ``[[sensor_log]]``.
+    room : callable
+        Where the columns lie that were changed.
     """
     told: list[ResultWarning] = []
     gross: list[int] = []
@@ -45,7 +50,7 @@ def without_events(
         if effect.id == "gross_error":
             gross += _rows(effect)
             continue
-        columns = _corrected(log, effect)
+        columns = _corrected(log, effect, room)
         if columns is None:
             text = said("{id} belongs to the sensor and is left to its calibration", id=effect.id)
             told.append(ResultWarning("adopted_not_applied", text))
@@ -55,14 +60,29 @@ def without_events(
             ResultWarning("adopted_applied", said("{id} as adopted is taken out", id=effect.id))
         )
     if gross:
-        log = _without_rows(log, gross)
+        log = _without_rows(log, gross, room)
         text = said("{size} rows adopted as gross errors are left out", size=len(gross))
         told.append(ResultWarning("adopted_applied", text))
     return log, tuple(told)
 
 
-def _corrected(log: SensorLog, effect: AdoptedEffect) -> dict[str, Array] | None:
+def _corrected(log: SensorLog, effect: AdoptedEffect, room: Room) -> dict[str, Array] | None:
     """Columns without the effect; None where it is no event."""
+    found: dict[str, Array] = {}
+    for start in range(0, log.size, PIECE):
+        columns = _piece_corrected(log.rows(slice(start, start + PIECE)), effect)
+        if columns is None:
+            return None
+        for name, values in columns.items():
+            if name not in found:
+                found[name] = room(log.size)
+            found[name][start : start + PIECE] = values
+            let_go(found[name])
+        let_go(log.columns["time_s"])
+    return found
+
+
+def _piece_corrected(log: SensorLog, effect: AdoptedEffect) -> dict[str, Array] | None:
     values = {name: value for name, value, _, _ in effect.coefficients}
     grid = {name: float(value) for name, value in effect.grid if not isinstance(value, str)}
     if effect.id == "interference_step" and log.has("mag_x_uT", "mag_y_uT", "mag_z_uT"):
@@ -90,7 +110,7 @@ def _rows(effect: AdoptedEffect) -> list[int]:
     return [int(word) - 1 for word in words if word.isdigit()]
 
 
-def _without_rows(log: SensorLog, rows: Sequence[int]) -> SensorLog:
+def _without_rows(log: SensorLog, rows: Sequence[int], room: Room) -> SensorLog:
     kept = np.ones(log.size, dtype=bool)
     kept[[row for row in rows if 0 <= row < log.size]] = False
-    return log.chosen(kept)
+    return log.chosen(kept, room=room)

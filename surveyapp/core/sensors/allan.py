@@ -14,12 +14,16 @@ from typing import Final, Literal
 import numpy as np
 
 from surveyapp.domain.advance import PartDone
+from surveyapp.domain.columns import PIECE, Room, in_memory, let_go, pieces
 from surveyapp_models.arrays import Floats
 
 Estimator = Literal["oadev", "adev"]
 
 BLOCK: Final = 1 << 15
 """Samples of a block: three of them stay in the cache of a processor."""
+
+HELD: Final = 16
+"""Blocks after which the memory of a mapped series is given back."""
 
 FEWEST: Final = 9
 """Samples below which there is no curve."""
@@ -51,23 +55,26 @@ def octaves(n: int) -> tuple[int, ...]:
     return tuple(1 << k for k in range(max(int(math.log2(n / 4.0)) + 1, 1))) if n >= 4 else ()
 
 
-def phase_of(series: Floats) -> Floats:
+def phase_of(series: Floats, *, room: Room = in_memory) -> Floats:
     """Running sum of the series without its mean, begun with 0, shape (n + 1,).
 
-    In blocks, so that nothing else of its length is made.
+    In blocks, so that nothing else of its length is made; ``room`` is where it lies.
     """
     n = series.size
-    mean = float(series.mean())
-    phase = np.empty(n + 1)
+    mean = float(sum(float(piece.sum()) for piece in pieces(series)) / n)
+    store = room(n + 1)
+    phase = np.asarray(store)
     phase[0] = 0.0
-    total = 0.0
-    for start in range(0, n, BLOCK):
-        piece = phase[start + 1 : min(start + BLOCK, n) + 1]
-        np.subtract(series[start : start + BLOCK], mean, out=piece)
+    total, start = 0.0, 0
+    for part in pieces(series, BLOCK):
+        piece = phase[start + 1 : start + part.size + 1]
+        np.subtract(part, mean, out=piece)
         np.cumsum(piece, out=piece)
         piece += total
         total = float(piece[-1])
-    return phase
+        start += part.size
+        let_go(store)
+    return store
 
 
 def allan_variances(
@@ -75,6 +82,7 @@ def allan_variances(
     factors: Sequence[int],
     *,
     estimator: Estimator = "oadev",
+    room: Room = in_memory,
     progress: PartDone | None = None,
 ) -> Floats:
     """Allan variance at each averaging factor, shape (k,) [unit^2 of the series].
@@ -86,15 +94,15 @@ def allan_variances(
         Averaging times in samples, each at most n / 2.
     estimator : str
         ``oadev`` (overlapping) or ``adev``.
+    room : callable
+        Where the running sum lies, which is as long as the series.
     progress : callable, optional
     """
-    phase = phase_of(series)
+    phase = phase_of(series, room=room)
     found = np.empty(len(factors))
     for index, m in enumerate(factors):
         if estimator == "adev":
-            thin = phase[::m]
-            second = thin[2:] - 2.0 * thin[1:-1] + thin[:-2]
-            found[index] = float(second @ second) / (2.0 * m**2 * second.size)
+            found[index] = _adjacent(phase, m)
         else:
             found[index] = _overlapping(phase, m)
         if progress is not None:
@@ -102,13 +110,26 @@ def allan_variances(
     return found
 
 
+def _adjacent(phase: Floats, m: int) -> float:
+    """The same of neighbouring means that share no sample."""
+    total, terms = 0.0, 0
+    for piece in pieces(phase, max(PIECE // m, 1) * m, overlap=2 * m):
+        thin = piece[::m]
+        second = thin[2:] - 2.0 * thin[1:-1] + thin[:-2]
+        total, terms = total + float(second @ second), terms + second.size
+    return total / (2.0 * m**2 * terms)
+
+
 def _overlapping(phase: Floats, m: int) -> float:
     """Mean of (x[i + 2m] - 2 x[i + m] + x[i])^2 / 2 m^2."""
     terms = phase.size - 2 * m
     first, second = np.empty(min(BLOCK, terms)), np.empty(min(BLOCK, terms))
     total = 0.0
+    plain, phase = phase, np.asarray(phase)
     for start in range(0, terms, BLOCK):
         size = min(BLOCK, terms - start)
+        if start % (HELD * BLOCK) == 0:
+            let_go(plain)
         a, b = first[:size], second[:size]
         middle = phase[start + m : start + m + size]
         np.subtract(phase[start + 2 * m : start + 2 * m + size], middle, out=a)
@@ -124,6 +145,7 @@ def allan_curve(
     rate_hz: float,
     factors: Sequence[int] | None = None,
     estimator: Estimator = "oadev",
+    room: Room = in_memory,
     progress: PartDone | None = None,
 ) -> AllanCurve:
     """Allan deviation with 95 % intervals.
@@ -136,6 +158,8 @@ def allan_curve(
     factors : sequence of int, optional
         By default ``octaves(n)``.
     estimator : str
+    room : callable
+        Where the running sum lies.
     progress : callable, optional
 
     Returns
@@ -143,7 +167,7 @@ def allan_curve(
     AllanCurve
     """
     chosen = tuple(octaves(series.size) if factors is None else factors)
-    variance = allan_variances(series, chosen, estimator=estimator, progress=progress)
+    variance = allan_variances(series, chosen, estimator=estimator, room=room, progress=progress)
     deviation = np.sqrt(variance)
     freedom = np.array(
         [

@@ -13,6 +13,7 @@ import numpy as np
 from surveyapp.core.sensors.compass_axes import check_axes
 from surveyapp.core.sensors.compensation import BODY, beyond_tilt, corrected_field
 from surveyapp.core.sensors.swing import refuse_swapped
+from surveyapp.domain.columns import pieces
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_card import SensorCard
 from surveyapp.domain.sensor_log import SensorLog
@@ -32,7 +33,7 @@ def field_doubt(log: SensorLog, card: SensorCard, *, where: str) -> str | None:
     expected = card.constants.get("used_field")
     if expected is None:
         return None
-    part = log.rows(slice(None, None, max(log.size // 2000, 1)))
+    part = log.every(max(log.size // LOOKED_AT, 1))
     points = np.column_stack([part.columns[f"mag_{axis}_uT"] for axis in BODY])
     size = np.linalg.norm(corrected_field(points, card, where), axis=1)
     low, middle, high = np.quantile(size, (0.16, 0.5, 0.84))
@@ -69,7 +70,7 @@ def compass_doubts(log: SensorLog, card: SensorCard, *, where: str) -> list[Resu
     SurveyError
         If its axes are exchanged, or one of them is dead.
     """
-    part = log.rows(slice(None, None, max(log.size // LOOKED_AT, 1)))
+    part = log.every(max(log.size // LOOKED_AT, 1))
     _refuse_dead(part, [f"mag_{axis}_uT" for axis in BODY])
     force = part.vector("acc")
     if force is not None and card.get("deviation_A") is not None:
@@ -78,7 +79,7 @@ def compass_doubts(log: SensorLog, card: SensorCard, *, where: str) -> list[Resu
     doubt = field_doubt(log, card, where=where)
     if doubt is not None:
         found.append(ResultWarning("field_differs", doubt))
-    beyond = int(np.count_nonzero(beyond_tilt(log, card)))
+    beyond = sum(int(np.count_nonzero(beyond_tilt(part, card))) for part in log.pieces())
     if beyond:
         text = counted(
             "{count} row is tilted by more than the {tilt:.1f} degrees of the calibration: its "
@@ -93,16 +94,26 @@ def compass_doubts(log: SensorLog, card: SensorCard, *, where: str) -> list[Resu
 
 
 def tilt_doubts(log: SensorLog, card: SensorCard) -> list[ResultWarning]:
-    """Readings beyond those of the calibration, and an axis that never changes."""
-    found = []
+    """Readings beyond those of the calibration, and an axis that never changes.
+
+    A card written before cards held a range is used, and that it is not judged is told.
+    """
+    found: list[ResultWarning] = []
     if card.get("sensitivity") is not None:
         names, centre, span = ["output"], card.get("zero") or 0.0, abs(card.get("sensitivity") or 0)
     else:
         names, centre = ["tilt_along_arcsec", "tilt_across_arcsec"], 0.0
-        span = RANGE * card.constants.get("largest_reading_arcsec", np.inf)
+        largest = card.constants.get("largest_reading_arcsec")
+        span = np.inf if largest is None else RANGE * largest
+        if largest is None:
+            text = said(
+                "the card holds no range of its calibration: whether these tilts lie within it "
+                "is not judged; a new calibration from its log writes it"
+            )
+            found.append(ResultWarning("range_unknown", text))
     for name in names:
         values = log.columns[name]
-        beyond = int(np.count_nonzero(np.abs(values - centre) > span))
+        beyond = sum(int(np.count_nonzero(np.abs(p - centre) > span)) for p in pieces(values))
         if beyond:
             text = counted(
                 "{name} is beyond the range of the calibration in {count} row",
@@ -112,7 +123,7 @@ def tilt_doubts(log: SensorLog, card: SensorCard) -> list[ResultWarning]:
             )
             text += said(": another unit, or a tilt at which nothing was tried")
             found.append(ResultWarning("beyond_range", text))
-        if log.size >= FEWEST_ROWS and not bool(np.any(values != values[0])):
+        if log.size >= FEWEST_ROWS and not any(np.any(p != values[0]) for p in pieces(values)):
             text = said("{name} never changes: is the sensor connected?", name=name)
             found.append(ResultWarning("never_changes", text))
     return found

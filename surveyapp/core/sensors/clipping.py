@@ -6,12 +6,13 @@ such rows on one axis moves a hard iron by microteslas at a sigma of hundredths.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
+from surveyapp.domain.columns import pieces
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import Array, SensorLog
 from surveyapp.errors import Problem, SurveyError
@@ -20,14 +21,6 @@ from surveyapp.languages import counted
 CLIPPED_ROWS: Final = 5
 CLIPPED_RATIO: Final = 3.0
 """At the end of its range a sensor stays: that often, and that much more than at the next value."""
-
-PIECE: Final = 1 << 20
-"""Rows of a piece."""
-
-
-def pieces(values: Array) -> Iterator[Array]:
-    """A column piece by piece, so that nothing of its length is made beside it."""
-    return (values[i : i + PIECE] for i in range(0, values.size, PIECE))
 
 
 def ends_of_range(values: Array) -> dict[float, int]:
@@ -65,12 +58,22 @@ def unclipped_rows(log: SensorLog, names: Sequence[str]) -> np.ndarray | None:
             continue
         kept = np.ones(log.size, dtype=bool) if kept is None else kept
         for end in ends_of_range(log.columns[name]):
-            kept &= log.columns[name] != end
+            start = 0
+            for piece in pieces(log.columns[name]):
+                kept[start : start + piece.size] &= piece != end
+                start += piece.size
     return kept
 
 
-def without_clipped(log: SensorLog, names: Sequence[str]) -> SensorLog:
+def without_clipped(log: SensorLog, names: Sequence[str], *, most: int | None = None) -> SensorLog:
     """The log without the rows in which one of these columns stands at an end of its range.
+
+    Parameters
+    ----------
+    log : SensorLog
+    names : sequence of str
+    most : int, optional
+        Thinned to so many rows, as ``SensorLog.thinned`` does.
 
     Raises
     ------
@@ -79,7 +82,7 @@ def without_clipped(log: SensorLog, names: Sequence[str]) -> SensorLog:
     """
     kept = unclipped_rows(log, names)
     if kept is None:
-        return log
+        return log if most is None else log.thinned(most)
     count = log.size - int(np.count_nonzero(kept))
     if count == log.size:
         found = ", ".join(name for name in names if name in log.clipped)
@@ -92,4 +95,4 @@ def without_clipped(log: SensorLog, names: Sequence[str]) -> SensorLog:
         count=count,
     )
     warnings = (*log.warnings, ResultWarning("clipped_left_out", text))
-    return replace(log.chosen(kept), warnings=warnings)
+    return replace(log, warnings=warnings).chosen(kept, most=most)

@@ -13,13 +13,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.domain.advance import PartDone
+from surveyapp.domain.columns import Room, in_memory, let_go, pieces
 from surveyapp_models.arrays import Floats
 
 FilterName = Literal["kalman", "sage-husa", "particle"]
@@ -104,6 +105,7 @@ def run_filter(
     model: LocalLevel,
     rng: np.random.Generator,
     *,
+    room: Room = in_memory,
     progress: PartDone | None = None,
 ) -> Filtered:
     """Filter a series from its first reading on.
@@ -116,25 +118,69 @@ def run_filter(
     model : LocalLevel
     rng : numpy.random.Generator
         Of the particle filter.
+    room : callable
+        Where estimates and their variances lie.
     progress : callable, optional
     """
     if name == "kalman":
-        return kalman(series, model)
+        return kalman(series, model, room=room, progress=progress)
     if name == "sage-husa":
-        return sage_husa(series, model, progress=progress)
-    return particles(series, model, rng, progress=progress)
+        return sage_husa(series, model, room=room, progress=progress)
+    return particles(series, model, rng, room=room, progress=progress)
 
 
-def kalman(series: Floats, model: LocalLevel) -> Filtered:
+@dataclass(frozen=True, slots=True)
+class _Output:
+    """What a filter fills: estimates, variances, and where an innovation was beyond ``LOST``."""
+
+    estimate: Floats
+    variance: Floats
+    beyond: Mask
+
+    def blocks(self, series: Floats, first: int) -> Iterator[tuple[Floats, _Output]]:
+        """Readings from ``first`` on, and their places, a block at a time; mapped ones let go."""
+        estimate, variance = np.asarray(self.estimate), np.asarray(self.variance)
+        start = first
+        for piece in pieces(series[first:], BLOCK):
+            places = slice(start, start + piece.size)
+            yield piece, _Output(estimate[places], variance[places], self.beyond[places])
+            start += piece.size
+            let_go(self.estimate)
+            let_go(self.variance)
+
+    def readings(
+        self, series: Floats, progress: PartDone | None
+    ) -> Iterator[tuple[_Output, int, float]]:
+        """Every reading after the first as a plain number, with its block and place there."""
+        done = 1
+        for piece, here in self.blocks(series, 1):
+            for place, value in enumerate(piece.tolist()):
+                yield here, place, value
+            done += piece.size
+            if progress is not None:
+                progress(done / series.size)
+
+
+def _output(size: int, room: Room) -> _Output:
+    return _Output(room(size), room(size), np.zeros(size, dtype=bool))
+
+
+def kalman(
+    series: Floats,
+    model: LocalLevel,
+    *,
+    room: Room = in_memory,
+    progress: PartDone | None = None,
+) -> Filtered:
     """Kalman filter; the gains are those of the exact recursion until they stand still.
 
     In the steady state the estimate is an exponential mean, computed for the whole rest at once.
     """
     n = series.size
-    estimate, variance = np.empty(n), np.empty(n)
+    output = _output(n, room)
+    estimate, variance, beyond = output.estimate, output.variance, output.beyond
     x, p, q, r = float(series[0]), model.r, model.q, model.r
     estimate[0], variance[0] = x, p
-    beyond = np.zeros(n, dtype=bool)
     steady = model.steady_variance
     k = 1
     while k < n and abs(p - steady) > 1e-14 * steady:
@@ -147,61 +193,72 @@ def kalman(series: Floats, model: LocalLevel) -> Filtered:
         estimate[k], variance[k] = x, p
         k += 1
     if k < n:
-        variance[k:] = p
-        _steady(series[k:], estimate[k:], beyond[k:], (x, p + q, r))
-    return _checked(estimate, variance, beyond)
+        _steady(series, output, k, (x, p, q, r), progress=progress)
+    return _checked(output)
 
 
 def _steady(
-    series: Floats, estimate: Floats, beyond: Mask, state: tuple[float, float, float]
+    series: Floats,
+    output: _Output,
+    first: int,
+    state: tuple[float, float, float, float],
+    *,
+    progress: PartDone | None,
 ) -> None:
-    """The steady state from estimate, predicted variance and r on, block by block."""
+    """The steady state from estimate, variance, q and r on, block by block."""
     from scipy.signal import lfilter
 
-    x, predicted, r = state
+    x, p, q, r = state
+    predicted = p + q
     gain = predicted / (predicted + r)
     limit = LOST * math.sqrt(predicted + r)
-    for start in range(0, series.size, BLOCK):
-        piece = series[start : start + BLOCK]
+    done = first
+    for piece, here in output.blocks(series, first):
         made, _ = lfilter([gain], [1.0, gain - 1.0], piece, zi=np.array([(1.0 - gain) * x]))
-        estimate[start : start + BLOCK] = made
-        before = np.concatenate([[x], made[:-1]])
-        beyond[start : start + BLOCK] = np.abs(piece - before) > limit
+        here.estimate[:] = made
+        here.variance[:] = p
+        here.beyond[:] = np.abs(piece - np.concatenate([[x], made[:-1]])) > limit
         x = float(made[-1])
-
-
-def _values(series: Floats, progress: PartDone | None) -> Iterator[float]:
-    """The readings after the first as plain numbers, a block of them at a time."""
-    for start in range(1, series.size, BLOCK):
-        yield from series[start : start + BLOCK].tolist()
+        done += piece.size
         if progress is not None:
-            progress(min((start + BLOCK) / series.size, 1.0))
+            progress(done / series.size)
 
 
-def sage_husa(series: Floats, model: LocalLevel, *, progress: PartDone | None = None) -> Filtered:
+def sage_husa(
+    series: Floats,
+    model: LocalLevel,
+    *,
+    room: Room = in_memory,
+    progress: PartDone | None = None,
+) -> Filtered:
     """Adaptive Kalman filter: r follows the innovations, guarded so that it stays positive.
 
     R_k = (1 - d) R + d max(nu^2 - P, share R_0), d = (1 - b) / (1 - b^(k+1)).
     """
-    n = series.size
-    estimate, variance, beyond = np.empty(n), np.empty(n), np.zeros(n, dtype=bool)
+    output = _output(series.size, room)
     x, p, q, r = float(series[0]), model.r, model.q, model.r
-    estimate[0], variance[0] = x, p
+    output.estimate[0], output.variance[0] = x, p
     least, power = LEAST_SHARE * model.r, FORGETTING
-    for k, value in enumerate(_values(series, progress), start=1):
-        p += q
-        nu = value - x
-        power *= FORGETTING
-        d = (1.0 - FORGETTING) / (1.0 - power)
-        r = (1.0 - d) * r + d * max(nu * nu - p, least)
-        total = p + r
-        if nu * nu > LOST**2 * total:
-            beyond[k] = True
-        gain = p / total
-        x += gain * nu
-        p = (1.0 - gain) ** 2 * p + gain * gain * r
-        estimate[k], variance[k] = x, p
-    return _checked(estimate, variance, beyond)
+    done = 1
+    for piece, here in output.blocks(series, 1):
+        estimate, variance, beyond = here.estimate, here.variance, here.beyond
+        for k, value in enumerate(piece.tolist()):
+            p += q
+            nu = value - x
+            power *= FORGETTING
+            d = (1.0 - FORGETTING) / (1.0 - power)
+            r = (1.0 - d) * r + d * max(nu * nu - p, least)
+            total = p + r
+            if nu * nu > LOST**2 * total:
+                beyond[k] = True
+            gain = p / total
+            x += gain * nu
+            p = (1.0 - gain) ** 2 * p + gain * gain * r
+            estimate[k], variance[k] = x, p
+        done += piece.size
+        if progress is not None:
+            progress(done / series.size)
+    return _checked(output)
 
 
 def particles(
@@ -210,14 +267,14 @@ def particles(
     rng: np.random.Generator,
     *,
     count: int = PARTICLES,
+    room: Room = in_memory,
     progress: PartDone | None = None,
 ) -> Filtered:
     """Bootstrap particle filter with systematic resampling.
 
     Where every weight vanishes the particles are drawn anew about the reading, which is counted.
     """
-    n = series.size
-    estimate, variance, beyond = np.empty(n), np.empty(n), np.zeros(n, dtype=bool)
+    output = _output(series.size, room)
     step, scale = math.sqrt(model.q), -0.5 / model.r
     cloud = float(series[0]) + math.sqrt(model.r) * rng.standard_normal(count)
     log_weight = np.zeros(count)
@@ -225,13 +282,14 @@ def particles(
     noise = np.empty(count)
     ladder = np.arange(count) / count
     resamplings = degenerate = 0
-    estimate[0], variance[0] = float(cloud.mean()), model.r
-    for k, value in enumerate(_values(series, progress), start=1):
+    spread = model.r
+    output.estimate[0], output.variance[0] = float(cloud.mean()), spread
+    for here, k, value in output.readings(series, progress):
         rng.standard_normal(out=noise)
         noise *= step
         cloud += noise
-        spread = variance[k - 1] + model.q + model.r
-        beyond[k] = abs(value - float(weight @ cloud)) > LOST * math.sqrt(spread)
+        limit = LOST * math.sqrt(spread + model.q + model.r)
+        here.beyond[k] = abs(value - float(weight @ cloud)) > limit
         np.subtract(cloud, value, out=noise)
         np.multiply(noise, noise, out=noise)
         noise *= scale
@@ -248,7 +306,8 @@ def particles(
         mean = float(weight @ cloud)
         np.subtract(cloud, mean, out=noise)
         np.multiply(noise, noise, out=noise)
-        estimate[k], variance[k] = mean, float(weight @ noise)
+        spread = float(weight @ noise)
+        here.estimate[k], here.variance[k] = mean, spread
         if 1.0 / float(weight @ weight) < RESAMPLE_BELOW * count:
             resamplings += 1
             total = np.cumsum(weight)
@@ -256,19 +315,21 @@ def particles(
             cloud = cloud[np.searchsorted(total, ladder + rng.random() / count)]
             log_weight[:] = 0.0
             weight[:] = 1.0 / count
-    found = _checked(estimate, variance, beyond)
-    return Filtered(
-        found.estimate, found.variance, found.lost_at, found.lost, resamplings, degenerate
-    )
+    return replace(_checked(output), resamplings=resamplings, degenerate=degenerate)
 
 
-def _checked(estimate: Floats, variance: Floats, beyond: Mask) -> Filtered:
+def _checked(output: _Output) -> Filtered:
     """Find sustained innovations that the filter cannot explain."""
-    places = np.flatnonzero(beyond)
-    last = places[LOST_FOR - 1 :]
-    runs = last - places[: last.size] == LOST_FOR - 1
-    first = int(places[np.argmax(runs)]) if runs.any() else None
-    return Filtered(estimate, variance, first, int(places.size))
+    beyond = output.beyond
+    first = None
+    for start in range(0, beyond.size, BLOCK):
+        places = np.flatnonzero(beyond[start : start + BLOCK + LOST_FOR - 1])
+        last = places[LOST_FOR - 1 :]
+        runs = last - places[: last.size] == LOST_FOR - 1
+        if runs.any():
+            first = start + int(places[np.argmax(runs)])
+            break
+    return Filtered(output.estimate, output.variance, first, int(np.count_nonzero(beyond)))
 
 
 def step_lag(

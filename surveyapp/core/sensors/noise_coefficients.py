@@ -21,6 +21,7 @@ from surveyapp.core.sensors.noise_spectrum import (
     spectrum_of,
     unit_powers,
 )
+from surveyapp.domain.columns import pieces
 from surveyapp_models.arrays import Floats
 
 SYMBOLS: Final = ("Q", "N", "B", "K", "R")
@@ -99,8 +100,7 @@ def _coefficients(
         return nulls("no_power")
     slope = _slope(series, interval)
     span = series.size * interval
-    level_series = _without_slope(series, slope * interval)
-    flat = spectrum_of(level_series, interval=interval).below(highest_hz)
+    flat = spectrum_of(series, interval=interval, slope=slope * interval).below(highest_hz)
     level = fit_noise(flat)
     if level is None:
         return nulls("no_power")
@@ -119,12 +119,11 @@ def nulls(reason: str) -> tuple[Coefficient, ...]:
 def _slope(series: Floats, interval: float) -> float:
     """Least-squares slope [unit/s]."""
     n = series.size
-    t = np.arange(n) - 0.5 * (n - 1)
-    return float(t @ series) / (n * (n**2 - 1.0) / 12.0) / interval
-
-
-def _without_slope(series: Floats, per_sample: float) -> Floats:
-    return np.asarray(series - per_sample * np.arange(series.size))
+    moment, start = 0.0, 0
+    for piece in pieces(series):
+        moment += float((np.arange(start, start + piece.size) - 0.5 * (n - 1)) @ piece)
+        start += piece.size
+    return moment / (n * (n**2 - 1.0) / 12.0) / interval
 
 
 def slope_variance(squares: Floats, span: float) -> float:

@@ -18,6 +18,7 @@ from typing import Final
 
 import numpy as np
 
+from surveyapp.domain.columns import PIECE, pieces
 from surveyapp_models.arrays import Floats
 
 TERMS: Final = ("Q", "N", "B", "K")
@@ -161,33 +162,46 @@ def near_zero() -> Floats:
     return ratio
 
 
-def freedom_of(count: int, pieces: int) -> float:
-    """Degrees of freedom that so many neighbouring frequencies of so many pieces add.
+def freedom_of(count: int, stretches: int) -> float:
+    """Degrees of freedom that so many neighbouring frequencies of so many stretches add.
 
     Neighbours share tapers: each counts for the share that is its own, so that the sum over bins
     is right although bins are fitted as if they were independent.
     """
-    return 2.0 * pieces * count / float(_CORRELATION[0] + 2.0 * _CORRELATION[1:].sum())
+    return 2.0 * stretches * count / float(_CORRELATION[0] + 2.0 * _CORRELATION[1:].sum())
 
 
-def _transforms(series: Floats, length: int) -> tuple[Floats, int]:
+def _transforms(series: Floats, length: int, slope: float) -> tuple[Floats, int]:
     """Mean power of pieces of a length at its frequencies, shape (length // 2 + 1,)."""
     tapers = sine_tapers(length)
-    pieces = series.size // length
+    count = series.size // length
     power = np.zeros(length // 2 + 1)
-    for number in range(pieces):
-        piece = np.asarray(series[number * length : (number + 1) * length])
-        piece = piece - piece.mean()
+    for number, piece in enumerate(pieces(series[: count * length], length)):
+        level = piece
+        if slope != 0.0:
+            level = piece - slope * np.arange(number * length, (number + 1) * length)
+        level = level - level.mean()
         for taper in tapers:
-            power += np.abs(np.fft.rfft(piece * taper)) ** 2
-    return power / (TAPERS * max(pieces, 1)), pieces
+            power += np.abs(np.fft.rfft(level * taper)) ** 2
+    return power / (TAPERS * max(count, 1)), count
+
+
+def _averaged(series: Floats, factor: int, slope: float) -> Floats:
+    """Means of so many samples each, without the slope."""
+    whole = series.size // factor * factor
+    size = max(PIECE // factor, 1) * factor
+    parts = [piece.reshape(-1, factor).mean(axis=1) for piece in pieces(series[:whole], size)]
+    means = np.concatenate(parts)
+    if slope != 0.0:
+        means -= slope * (factor * np.arange(means.size) + 0.5 * (factor - 1))
+    return means
 
 
 def _binned(
     power: Floats, band: tuple[float, float], grid: tuple[float, int, int]
 ) -> list[tuple[Floats, float, float, float]]:
     """Bins of equal width in log frequency between two frequencies [Hz]."""
-    interval, length, pieces = grid
+    interval, length, stretches = grid
     frequency = np.arange(power.size) / (length * interval)
     usable = (frequency > band[0]) & (frequency <= band[1])
     usable[:FIRST] = False
@@ -202,13 +216,13 @@ def _binned(
         near = members < NEAR
         powers[near, 2:] *= near_zero()[members[near]]
         design = powers.mean(axis=0)
-        freedom = min(freedom_of(members.size, pieces), LARGEST_FREEDOM)
+        freedom = min(freedom_of(members.size, stretches), LARGEST_FREEDOM)
         centre = float(frequency[members].mean())
         found.append((design, float(power[members].mean()), freedom, centre))
     return found
 
 
-def spectrum_of(series: Floats, *, interval: float) -> Spectrum:
+def spectrum_of(series: Floats, *, interval: float, slope: float = 0.0) -> Spectrum:
     """Binned spectrum of a series.
 
     Parameters
@@ -216,6 +230,8 @@ def spectrum_of(series: Floats, *, interval: float) -> Spectrum:
     series : ndarray, shape (n,)
     interval : float
         [s]
+    slope : float
+        Taken out of the series first [unit per sample].
 
     Returns
     -------
@@ -226,17 +242,16 @@ def spectrum_of(series: Floats, *, interval: float) -> Spectrum:
     top, current, step = 0.5 / interval, series, interval
     while True:
         length = min(LONGEST, current.size)
-        power, pieces = _transforms(current, length)
+        power, count = _transforms(current, length, slope)
         last = length == current.size
         lowest = 0.0 if last else 64.0 / (length * step)
-        bins += _binned(power, (lowest, top), (step, length, pieces))
+        bins += _binned(power, (lowest, top), (step, length, count))
         if last:
             break
         top = lowest
         factor = 1 << max(int(math.log2(0.05 / (lowest * step))), 1)
-        whole = current.size // factor * factor
-        current = np.asarray(current[:whole]).reshape(-1, factor).mean(axis=1)
-        step *= factor
+        current = _averaged(current, factor, slope)
+        step, slope = step * factor, 0.0
     return Spectrum(
         np.array([b[0] for b in bins]),
         np.array([b[1] for b in bins]),

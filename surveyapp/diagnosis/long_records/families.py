@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from surveyapp.diagnosis.long_records.linefit import Sines, fit_sines
 from surveyapp.diagnosis.long_records.lines import detrended, even_grid
@@ -68,13 +69,14 @@ def strongest_family(seen: Spectrum) -> tuple[float, int, float] | None:
     best: tuple[float, int, float] | None = None
     for members in MEMBERS:
         top = surprise.size - 3
-        base = np.arange(LOWEST * members, top + 1)  # the highest harmonic, in whole cycles
+        base = np.arange(seen.lowest * members, top + 1)  # the highest harmonic, in whole cycles
         if base.size == 0:
             continue
         parts = np.array(
             [surprise[np.rint(base * h / members).astype(np.intp)] for h in range(1, members + 1)]
         )
         rest = parts.sum(axis=0) - parts.max(axis=0)
+        rest[_images(seen, base, members)] = 0.0
         k = int(np.argmax(rest))
         single = float(np.clip(without_strongest(rest[k : k + 1], members)[0], 0.0, 1.0))
         p = -math.expm1(len(MEMBERS) * base.size * math.log1p(-min(single, 1.0 - 1e-15)))
@@ -83,8 +85,16 @@ def strongest_family(seen: Spectrum) -> tuple[float, int, float] | None:
     return best
 
 
+def _images(seen: Spectrum, base: NDArray[np.intp], members: int) -> NDArray[np.bool_]:
+    """Where gaps of the record repeat the noise of one member in another, shape of ``base``."""
+    found = np.zeros(base.size, dtype=np.bool_)
+    for apart in range(1, members):
+        found |= seen.images[np.rint(base * apart / members).astype(np.intp)]
+    return found
+
+
 def find_families(
-    position: Floats, values: Floats, *, most: int = 4
+    position: Floats, values: Floats, *, most: int = 4, slowest: float = 0.0
 ) -> tuple[tuple[Family, ...], Sines | None, float]:
     """Harmonic families of a record, one after the other with those before taken out.
 
@@ -93,6 +103,8 @@ def find_families(
     position, values : ndarray, shape (n,)
         Sorted.
     most : int
+    slowest : float
+        Cycles per unit of the position from which on fundamentals are looked for.
 
     Returns
     -------
@@ -111,7 +123,8 @@ def find_families(
     cycles = np.zeros(0)
     rest = values
     for _ in range(most):
-        seen = spectrum(*grid.spread(detrended(u, rest)))
+        lowest = max(LOWEST, math.ceil(slowest * length))
+        seen = spectrum(*grid.spread(detrended(u, rest)), lowest=lowest)
         found = strongest_family(seen)
         if found is None or found[2] > ALARM:
             break

@@ -12,6 +12,7 @@ from surveyapp.diagnosis.long_records.averaged import BLOCK, averaged_spectrum
 from surveyapp.diagnosis.long_records.families import Family, find_families
 from surveyapp.diagnosis.long_records.linefit import fit_sines
 from surveyapp.diagnosis.long_records.lines import JITTER, LEAST_FILLED, even_grid, find_lines
+from surveyapp.domain.columns import pieces
 from surveyapp.domain.line_spectrum import HarmonicFamily, InterferenceLine, Scatter
 from surveyapp_models.arrays import Floats
 
@@ -49,8 +50,7 @@ class Remainder:
         t = np.arange(BLOCK) * self.step
         waves = [f(2.0 * np.pi * w * t) for w in self.frequencies for f in (np.cos, np.sin)]
         design = np.column_stack([np.ones(BLOCK), *waves])
-        for first in range(0, self.values.size, BLOCK):
-            part = self.values[first : first + BLOCK]
+        for part in pieces(self.values, BLOCK):
             here = design[: part.size]
             if waves and part.size > 4 * here.shape[1]:
                 solution, *_ = np.linalg.lstsq(here, part, rcond=None)
@@ -78,22 +78,24 @@ class Interference:
     unsearched: str = ""
 
 
-def find_interference(time_s: Floats, values: Floats) -> Interference:
+def find_interference(time_s: Floats, values: Floats, *, slowest_hz: float = 0.0) -> Interference:
     """Lines and families of a record of any length.
 
     Parameters
     ----------
     time_s, values : ndarray, shape (n,)
         Sorted by time.
+    slowest_hz : float
+        Frequency from which on lines are looked for: of a record whose parts were levelled.
     """
     if values.size > LONGEST:
-        return _long(time_s, values)
+        return _long(time_s, values, slowest_hz)
     centred = values - values.mean()
     grid = even_grid(time_s) if time_s.size > 64 else "fewer than 65 samples"
     if isinstance(grid, str):
         return Interference((), (), centred, grid)
-    search = find_lines(time_s, centred, columns={}, effects=())
-    families, sines, length = find_families(time_s, centred)
+    search = find_lines(time_s, centred, columns={}, effects=(), slowest=slowest_hz)
+    families, sines, length = find_families(time_s, centred, slowest=slowest_hz)
     singles = [
         InterferenceLine(
             line.frequency,
@@ -139,17 +141,19 @@ def _family_of(frequency: float, families: tuple[Family, ...], length: float) ->
     return None
 
 
-def _long(time_s: Floats, values: Floats) -> Interference:
+def _long(time_s: Floats, values: Floats, slowest_hz: float) -> Interference:
     """A very long record: averaged blocks; families among the lines that stand out."""
     step = float(time_s[-1] - time_s[0]) / (time_s.size - 1)
     uneven = _uneven(time_s)
     if uneven:
         return Interference((), (), Remainder(values, step), uneven)
     middle = float(np.mean(values[:PIECE]))
-    seen = averaged_spectrum(piece - middle for piece in _pieces(values))
+    seen = averaged_spectrum(piece - middle for piece in pieces(values, PIECE))
     resolution = 1.0 / (seen.block * step)
     lines = []
     for cycles, amplitude, p in seen.lines():
+        if cycles / step < slowest_hz:
+            continue
         k = min(max(round(cycles * seen.block), 1), seen.background.size - 1)
         noise = float(seen.background[k])
         sigma = math.sqrt(6.0 * noise / values.size) / (math.pi * max(amplitude, 1e-300))
@@ -160,18 +164,14 @@ def _long(time_s: Floats, values: Floats) -> Interference:
     return Interference(tuple(lines), families, rest)
 
 
-def _pieces(values: Floats) -> Iterator[Floats]:
-    return (values[k : k + PIECE] for k in range(0, values.size, PIECE))
-
-
 def _uneven(time_s: Floats) -> str:
     """Why a long record has no even grid, gaps allowed; empty if it has. As ``even_grid``."""
     usual = float(np.median(np.diff(time_s[:PIECE])))
     if not usual > 0.0:
         return "several samples have the same time"
     whole = 0.0
-    for first in range(0, time_s.size - 1, PIECE):
-        steps = np.rint(np.diff(time_s[first : first + PIECE + 1]) / usual)
+    for part in pieces(time_s, PIECE, overlap=1):
+        steps = np.rint(np.diff(part) / usual)
         if steps.min() < 1.0:
             return "the samples are not evenly spaced"
         whole += float(steps.sum())
@@ -179,8 +179,7 @@ def _uneven(time_s: Floats) -> str:
         return "more than half of the samples are missing"
     step = float(time_s[-1] - time_s[0]) / whole
     index, moments = 0.0, _Moments()
-    for first in range(0, time_s.size - 1, PIECE):
-        part = time_s[first : first + PIECE + 1]
+    for part in pieces(time_s, PIECE, overlap=1):
         numbers = index + np.cumsum(np.rint(np.diff(part) / usual))
         moments.add(part[1:] - time_s[0] - step * numbers)
         index = float(numbers[-1])
@@ -232,16 +231,25 @@ def _families_among(lines: list[InterferenceLine], slack: float) -> tuple[Harmon
 def scatter_of(values: Floats, rest: Floats | Remainder, *, rate_hz: float, unit: str) -> Scatter:
     """Standard deviations of samples and of 10 s means, with and without the lines."""
     count = max(round(BLOCK_S * rate_hz), 1)
-    before, before_10s = _scatter(_pieces(values), count)
-    after, after_10s = _scatter(rest if isinstance(rest, Remainder) else _pieces(rest), count)
+    before, before_10s = _scatter(pieces(values, PIECE), count)
+    left = rest if isinstance(rest, Remainder) else pieces(rest, PIECE)
+    after, after_10s = _scatter(left, count)
     return Scatter(before, after, before_10s, after_10s, unit)
 
 
-def _scatter(pieces: Iterable[Floats], count: int) -> tuple[float, float | None]:
+def deviation_of(values: Floats) -> float:
+    """Standard deviation of the samples of a record of any length."""
+    samples = _Moments()
+    for piece in pieces(values, PIECE):
+        samples.add(piece)
+    return samples.sd(1)
+
+
+def _scatter(parts: Iterable[Floats], count: int) -> tuple[float, float | None]:
     """Standard deviation of samples and of means of ``count`` of them; None from too few."""
     samples, means = _Moments(), _Moments()
     held = np.zeros(0)
-    for piece in pieces:
+    for piece in parts:
         samples.add(piece)
         held = np.concatenate([held, piece])
         whole = held.size - held.size % count
@@ -265,8 +273,7 @@ def plotted_density(values: Floats, *, rate_hz: float) -> tuple[Floats, Floats]:
     count = values.size // block
     taper = 0.5 - 0.5 * np.cos(2.0 * np.pi * (np.arange(block) + 0.5) / block)
     total = np.zeros(block // 2 + 1)
-    for k in range(count):
-        part = values[k * block : (k + 1) * block]
+    for part in pieces(values[: count * block], block):
         total += np.abs(np.fft.rfft(taper * (part - part.mean()))) ** 2
     density = total / count / float(np.sum(taper**2)) * 2.0 / rate_hz
     frequency = np.arange(density.size) * rate_hz / block

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.diagnosis.long_records.linefit import Sines, fit_sines
-from surveyapp.diagnosis.long_records.spectrum import Spectrum, exceedance, spectrum
+from surveyapp.diagnosis.long_records.spectrum import LOWEST, Spectrum, exceedance, spectrum
 from surveyapp_models.arrays import Floats
 from surveyapp_models.effects.effect import Effect
 
@@ -140,6 +140,7 @@ def find_lines(
     *,
     columns: Mapping[str, Floats],
     effects: Sequence[Effect],
+    slowest: float = 0.0,
 ) -> LineSearch:
     """Every line of a record.
 
@@ -153,6 +154,8 @@ def find_lines(
         Covariates that may carry a line too, each of shape (n,).
     effects : sequence of Effect
         Those that may name a line; their frequencies are in Hz, so the position must be seconds.
+    slowest : float
+        Cycles per unit of the position from which on lines are looked for.
 
     Returns
     -------
@@ -164,7 +167,8 @@ def find_lines(
     u = (position - 0.5 * (position[0] + position[-1])) / (grid.step * grid.size)
     found = _Found(Sines(np.zeros(0), np.zeros(0), np.zeros(0)), ())
     crowded = False
-    seen = spectrum(*grid.spread(detrended(u, values)))
+    lowest = max(LOWEST, math.ceil(slowest * grid.step * grid.size))
+    seen = spectrum(*grid.spread(detrended(u, values)), lowest=lowest)
     for _ in range(ROUNDS):
         peaks = _peaks(seen, found.sines.cycles)
         room = MOST_LINES - found.sines.cycles.size
@@ -174,7 +178,7 @@ def find_lines(
         begin = np.array([f for f, _ in peaks[:room]])
         sines = fit_sines(u, values, np.concatenate([found.sines.cycles, begin]))
         found = _Found(sines, (*found.alarms, *[p for _, p in peaks[:room]]))
-        seen = spectrum(*grid.spread(detrended(u, values - sines.at(u))))
+        seen = spectrum(*grid.spread(detrended(u, values - sines.at(u))), lowest=lowest)
     carriers = _carriers(grid, u, found.sines.cycles, columns)
     named = [named_by(effects, columns, f / (grid.step * grid.size)) for f in found.sines.cycles]
     lines = _lines(grid, seen, found, tuple(zip(named, carriers, strict=True)))

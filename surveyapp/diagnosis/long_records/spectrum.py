@@ -21,6 +21,10 @@ FIRST_BAND = 32
 """Frequencies below this number of cycles share one band of the coarse background."""
 LOWEST = 13
 """Cycles over the record from which on a line is looked for; fewer are a shape of the record."""
+LEAST_BACKGROUND = 2 * LOWEST
+"""Frequencies that a background needs."""
+IMAGE = 0.15
+"""Correlation of the noise at two frequencies from which on they are no two witnesses."""
 STRIDE = 6
 """The running median is taken at every sixth frequency: a tenth of its window."""
 
@@ -39,17 +43,23 @@ class Spectrum:
         The same, lines left out [SI^2].
     window : int
         Frequencies behind each value of the background.
+    lowest : int
+        Cycles over the record from which on a line is looked for.
+    images : ndarray of bool, shape (m,)
+        Differences of frequency at which the gaps of the record repeat each other's noise.
     """
 
     transform: NDArray[np.complex128]
     power: Floats
     background: Floats
     window: int
+    lowest: int
+    images: NDArray[np.bool_]
 
     @property
     def searched(self) -> slice:
         """Frequencies at which a line is looked for: not the slowest ones, not the last two."""
-        return slice(LOWEST, max(self.power.size - 2, LOWEST))
+        return slice(self.lowest, max(self.power.size - 2, self.lowest))
 
     def false_alarm(self) -> Floats:
         """Probability that noise stands out as much at any frequency, shape (m,); 1 elsewhere."""
@@ -103,7 +113,7 @@ def hann(count: int) -> Floats:
     return np.asarray(0.5 - 0.5 * np.cos(2.0 * np.pi * (np.arange(count) + 0.5) / count))
 
 
-def spectrum(values: Floats, filled: NDArray[np.bool_]) -> Spectrum:
+def spectrum(values: Floats, filled: NDArray[np.bool_], *, lowest: int = LOWEST) -> Spectrum:
     """Periodogram and background of a detrended record on a uniform grid.
 
     Parameters
@@ -111,6 +121,9 @@ def spectrum(values: Floats, filled: NDArray[np.bool_]) -> Spectrum:
     values : ndarray, shape (n,)
         0 where a sample is missing [SI].
     filled : ndarray of bool, shape (n,)
+    lowest : int
+        Cycles over the record from which on a line is looked for; the record may have been levelled
+        below, so that the power there is not that of its noise and has no part in the background.
 
     Returns
     -------
@@ -119,8 +132,15 @@ def spectrum(values: Floats, filled: NDArray[np.bool_]) -> Spectrum:
     taper = hann(values.size)
     transform = np.fft.rfft(taper * values)
     power = np.abs(transform) ** 2 / float(np.sum(taper[filled] ** 2))
-    background, window = _background(power)
-    return Spectrum(transform, power, background, window)
+    first = min(lowest - LOWEST, max(power.size - LEAST_BACKGROUND, 0))
+    background = np.empty_like(power)
+    background[first:], window = _background(power[first:])
+    background[:first] = background[first]
+    images = np.zeros(power.size, dtype=np.bool_)
+    if not filled.all():
+        gaps = np.abs(np.fft.rfft(np.where(filled, taper**2, 0.0)))
+        images = gaps > IMAGE * gaps[0]
+    return Spectrum(transform, power, background, window, lowest, images)
 
 
 def _background(power: Floats) -> tuple[Floats, int]:

@@ -1,12 +1,13 @@
 """What the effects of a traverse may depend on: columns of its observations.
 
-Lengths, sights turned, walls, temperatures and prisms that notes tell, gyro sides, and what a shift
-of the station, the target or the back sight does to each observation.
+Lengths, sights turned, walls, temperatures, prisms and instruments that notes tell, gyro sides, and
+what a shift of the station, the target or the back sight does to each observation.
 """
 
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -23,6 +24,7 @@ _LENGTHS = frozenset({K.DISTANCE, K.SLOPE_DISTANCE})
 _SIGHTS = frozenset({K.DIRECTION, K.AZIMUTH, K.GYRO})
 _WALL = re.compile(r"\bwall\s*[=: ]\s*(left|right)\b", re.IGNORECASE)
 _TEMPERATURE = re.compile(r"\btemp(?:erature)?\s*[=:]\s*([+-]?\d+(?:\.\d+)?)", re.IGNORECASE)
+_INSTRUMENT = re.compile(r"\binstrument\s*[=:]\s*([\w.-]+)", re.IGNORECASE)
 _PRISM = re.compile(r"\bprism\s*[=:]\s*([\w.-]+)", re.IGNORECASE)
 ROLES = ("station", "target", "backsight")
 
@@ -72,6 +74,7 @@ def observation_columns(network: Network, model: Model, values: Floats) -> Told:
     number = {point.name: float(i) for i, point in enumerate(network.points, start=1)}
     columns = {name: np.zeros(n) for name in ("distance_m", "sights_turned", "wall_length_m")}
     turned: dict[tuple[str, str], int] = {}
+    own = own_instrument(rows)
     places, walls = _positions(network, values), _walls(rows)
 
     def bent(at: str, to: str) -> float:
@@ -80,14 +83,14 @@ def observation_columns(network: Network, model: Model, values: Floats) -> Told:
 
     for i, obs in enumerate(rows):
         if obs.kind in _LENGTHS:
-            columns["distance_m"][i] = computed[i]
+            columns["distance_m"][i] = computed[i] if own[i] else 0.0
         elif obs.kind is K.ANGLE:
-            columns["sights_turned"][i] = 1.0
+            columns["sights_turned"][i] = float(own[i])
             columns["wall_length_m"][i] = bent(obs.at, obs.to) - bent(obs.at, obs.back)
         elif obs.kind in _SIGHTS:
             columns["wall_length_m"][i] = bent(obs.at, obs.to)
         if obs.kind is K.DIRECTION:
-            columns["sights_turned"][i] = float(turned.get((obs.at, obs.set), 0))
+            columns["sights_turned"][i] = float(own[i] * turned.get((obs.at, obs.set), 0))
             turned[obs.at, obs.set] = turned.get((obs.at, obs.set), 0) + 1
     known = np.array([obs.kind is K.GYRO_CONSTANT for obs in rows])
     columns["gyro_side"], columns["gyro_group"] = gyro_sides(model)
@@ -98,6 +101,20 @@ def observation_columns(network: Network, model: Model, values: Floats) -> Told:
     more, labels = _noted(rows)
     names = {place: name for name, place in number.items()}
     return Told(columns | more, {"station": names, "point": names, **labels})
+
+
+def own_instrument(rows: Sequence[Observation]) -> list[bool]:
+    """Whether an observation is of the instrument that made the most of them.
+
+    A note names another one: ``instrument=B``. What belongs to an instrument is not in it.
+    """
+    kinds = (*_LENGTHS, K.ANGLE, K.DIRECTION)
+    told = [_INSTRUMENT.search(obs.note) for obs in rows]
+    names = [match.group(1) if match else "" for match in told]
+    counted = Counter(
+        name for name, obs in zip(names, rows, strict=True) if obs.kind in kinds
+    ).most_common(1)
+    return [not counted or name == counted[0][0] for name in names]
 
 
 def _points(

@@ -10,6 +10,7 @@ from __future__ import annotations
 import csv
 import hashlib
 import re
+import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -19,13 +20,15 @@ from typing import Final
 import numpy as np
 
 from surveyapp.domain.advance import PartDone
+from surveyapp.domain.columns import let_go, pieces
 from surveyapp.domain.sensor_log import Array
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import shown, shown_path
 from surveyapp.io.sensor_logs.layout import Layout
 from surveyapp.languages import said
 
-BLOCK_BYTES: Final = 8 * 1024 * 1024
+BLOCK_BYTES: Final = 2 * 1024 * 1024
+LONGEST_LINE: Final = 32 * 1024 * 1024
 MAPPED_VALUES: Final = 8_000_000
 """Above this number of values the columns are mapped to disk (64 MB)."""
 
@@ -95,7 +98,7 @@ def text_blocks(path: Path, *, where: str, digest: bool = True) -> Iterator[tupl
                 cut = data.rfind(b"\n") + 1
                 if cut == 0:
                     rest += data
-                    if len(rest) > 4 * BLOCK_BYTES:
+                    if len(rest) > LONGEST_LINE:
                         raise SurveyError(Problem("the file has no lines", where))
                     continue
                 yield rest + data[:cut], total
@@ -146,7 +149,7 @@ def read_rows(
     """
     numbers, texts = list(wanted[0]), list(wanted[1])
     room = max(lines - layout.first_row + 1, 0)
-    store = _store(len(numbers), room)
+    store = make_room(len(numbers), room)
     words: list[list[str]] = [[] for _ in texts]
     filled, line = 0, 1
     size = max(path.stat().st_size, 1)
@@ -166,6 +169,7 @@ def read_rows(
         values, found = _parse(rows, layout, (numbers, texts), (first + skip, wrong))
         store[:, filled : filled + values.shape[1]] = values
         filled += values.shape[1]
+        let_go(store)
         for column, more in zip(words, found, strict=True):
             column.extend(more)
         if progress is not None:
@@ -173,11 +177,27 @@ def read_rows(
     return Rows(store[:, :filled], words, layout.first_row)
 
 
-def _store(columns: int, rows: int) -> Array:
+def make_room(columns: int, rows: int) -> Array:
+    """Room for so many columns, shape (columns, rows): in memory, or mapped to disk if large."""
     if columns * rows <= MAPPED_VALUES:
         return np.empty((columns, rows))
     with tempfile.TemporaryFile() as handle:  # the mapping keeps what it needs of it
         return np.memmap(handle, dtype=np.float64, mode="w+", shape=(columns, rows))
+
+
+def room_for(size: int) -> Array:
+    """Room for one series, shape (size,); a ``columns.Room``."""
+    found: Array = make_room(1, size)[0]
+    return found
+
+
+def even_times(size: int, rate: float) -> Array:
+    """Times of a log without any [s], from its rate [Hz]."""
+    times, start = room_for(size), 0
+    for piece in pieces(times):
+        np.divide(np.arange(start, start + piece.size), rate, out=piece)
+        start += piece.size
+    return times
 
 
 def _decoded(block: bytes, line: int, where: str) -> str:
@@ -251,7 +271,7 @@ def _parse_lines(
         for row, index in enumerate(numbers):
             values[row, filled] = _number(cells[index], (line, layout.names[index]), wrong)
         for column, index in zip(words, texts, strict=True):
-            column.append(cells[index].strip())
+            column.append(sys.intern(cells[index].strip()))
         filled += 1
     return values[:, :filled], words
 

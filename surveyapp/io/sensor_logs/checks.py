@@ -13,7 +13,8 @@ from typing import Final
 
 import numpy as np
 
-from surveyapp.core.sensors.clipping import PIECE, ends_of_range, pieces
+from surveyapp.core.sensors.clipping import ends_of_range
+from surveyapp.domain.columns import PIECE, pieces, sampled
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import NUMBER_COLUMNS, SENSOR_COLUMNS, TRIPLES, Array, Gap
 from surveyapp.errors import Problem
@@ -28,6 +29,9 @@ FEW_MISSING: Final = 0.1
 
 LARGEST: Final = 1e20
 """No sensor and no clock gives more in any unit; squares above would leave the range of a float."""
+
+LOOKED_AT: Final = 20_000
+"""Rows that tell the unit of a column, evenly taken."""
 
 MOST_FIELD_UT: Final = 150.0
 """Twice the strongest field of the earth at the ground (67 uT), rounded up."""
@@ -100,11 +104,11 @@ def bad_times(time: Array, *, where: str, first_row: int) -> list[Problem]:
     """Times that run backwards or stand twice."""
     problems = []
     back, twice = [0, 0], [0, 0]
-    for start in range(0, time.size - 1, PIECE):
-        step = np.diff(time[start : start + PIECE + 1])
+    for number, piece in enumerate(pieces(time, overlap=1)):
+        step = np.diff(piece)
         for found, bad in ((back, step < 0.0), (twice, step == 0.0)):
             if found[0] == 0 and bad.any():
-                found[1] = start + int(np.argmax(bad)) + 1
+                found[1] = number * PIECE + int(np.argmax(bad)) + 1
             found[0] += int(np.count_nonzero(bad))
     told = (
         counted(
@@ -136,27 +140,41 @@ def gaps_of(time: Array) -> tuple[float, tuple[Gap, ...]]:
     """Interval of the samples [s], and the intervals that are much longer than the median one."""
     if time.size < 3:
         return (float(time[1] - time[0]) if time.size == 2 else 0.0), ()
-    step = np.diff(time)
-    median = float(np.median(step))
-    places = np.flatnonzero(step > GAP_FACTOR * median)
-    interval = _interval(step, median)
-    return interval, tuple(Gap(float(time[i]), float(time[i + 1])) for i in places)
+    median = _usual_step(time)
+    gaps = []
+    for piece in pieces(time, overlap=1):
+        places = np.flatnonzero(np.diff(piece) > GAP_FACTOR * median)
+        gaps += [Gap(float(piece[i]), float(piece[i + 1])) for i in places]
+    return _interval(time, median), tuple(gaps)
 
 
-def _interval(step: Array, median: float) -> float:
+def _usual_step(time: Array) -> float:
+    """Median step of the times; of a long record, median of those of its pieces."""
+    return float(np.median([np.median(np.diff(piece)) for piece in pieces(time, overlap=1)]))
+
+
+def _interval(time: Array, median: float) -> float:
     """Interval of the samples [s] from the steps between them, gaps left out.
 
     Times rounded by the logger (3 and 4 ms at 286 Hz) have another median than mean, and the mean
     is right. Where a few rows are missing of an even record, the step over them counts for two.
     """
-    near = step[step <= GAP_FACTOR * median]
-    if near.size == 0 or median <= 0.0:
+    if median <= 0.0:
         return median
-    multiple = np.rint(near / median)
-    even = bool(np.all(np.abs(near / median - multiple) < OFF_GRID) and np.all(multiple > 0.0))
-    if even and np.count_nonzero(multiple > 1.0) < FEW_MISSING * near.size:
-        return float(np.sum(near) / np.sum(multiple))
-    return float(np.mean(near))
+    count = missing = 0
+    length = steps = 0.0
+    even = True
+    for piece in pieces(time, overlap=1):
+        near = np.diff(piece)
+        near = near[near <= GAP_FACTOR * median]
+        multiple = np.rint(near / median)
+        even = even and bool(np.all(np.abs(near / median - multiple) < OFF_GRID))
+        even = even and bool(np.all(multiple > 0.0))
+        count, missing = count + near.size, missing + int(np.count_nonzero(multiple > 1.0))
+        length, steps = length + float(np.sum(near)), steps + float(np.sum(multiple))
+    if count == 0:
+        return median
+    return length / steps if even and missing < FEW_MISSING * count else length / count
 
 
 def clipped_columns(columns: Mapping[str, Array]) -> dict[str, int]:
@@ -179,12 +197,12 @@ def implausible(
         names = TRIPLES[name]
         if not all(column in columns for column in names):
             continue
-        size = np.sqrt(sum(columns[c][:: _stride(columns[c])] ** 2 for c in names))
+        size = np.sqrt(sum(sampled(columns[c], LOOKED_AT) ** 2 for c in names))
         median = float(np.median(size)) if size.size else 0.0
         if not np.isfinite(median) or bounds.low <= median <= bounds.high:
             continue
         unstated = not all(column in stated for column in names)
-        whole = all(_whole(columns[c]) for c in names)
+        whole = all(_whole(sampled(columns[c], LOOKED_AT)) for c in names)
         what = said("{name}_x/y/z cannot be in {unit}", name=name, unit=bounds.unit)
         if unstated and whole:
             what = said("{name}_x/y/z are counts without a unit", name=name)
@@ -215,9 +233,10 @@ def strange_temperatures(columns: Mapping[str, Array], *, where: str) -> list[Pr
     low, high = TEMPERATURES_C
     for name in ("temperature_c", "reference_temperature_c"):
         values = columns.get(name)
-        if values is None or not np.any(np.isfinite(values)):
+        part = None if values is None else sampled(values, LOOKED_AT)
+        if part is None or not np.any(np.isfinite(part)):
             continue
-        middle = float(np.nanmedian(values[:: _stride(values)]))
+        middle = float(np.nanmedian(part))
         if low <= middle <= high:
             continue
         problems.append(
@@ -246,16 +265,17 @@ def unstated_counts(
     for name, values in columns.items():
         if name not in SENSOR_COLUMNS or name == "output" or name in stated or values.size < 10:
             continue
-        swept = name in TRIPLES["mag"] and _span(values[:: _stride(values)]) > SWEPT_FIELD_UT
+        part = sampled(values, LOOKED_AT)
+        swept = name in TRIPLES["mag"] and _span(part) > SWEPT_FIELD_UT
         if name in named and name not in TRIPLES["gyr"] and not swept:
             continue
-        if _whole(values) and float(np.ptp(values)) > 0.0:
+        if _whole(part) and float(np.ptp(part)) > 0.0:
             unit = "deg/s" if name in TRIPLES["gyr"] else NUMBER_COLUMNS[name]
             hint = said("counts take `scale` COLUMN=VALUE (and `units` COLUMN={unit})", unit=unit)
             found = said(
                 "whole numbers from {value:g} to {value2:g}",
-                value=values.min(),
-                value2=values.max(),
+                value=part.min(),
+                value2=part.max(),
             )
             problems.append(
                 Problem(
@@ -272,14 +292,22 @@ def off_circle(columns: Mapping[str, Array], *, where: str) -> list[Problem]:
         values = columns.get(name)
         if values is None:
             continue
-        finite = values[np.isfinite(values)]
-        bad = finite[(finite < LEAST_READING_DEG) | (finite > 360.0)]
-        if bad.size:
+        bad = _first_off(values)
+        if bad is not None:
             what = said("{name} is no reading of a circle", name=name)
             hint = "was it typed in gon? `units` COLUMN=gon"
-            found, expected = said("{value:g} deg", value=bad[0]), said("0 to 360 deg")
+            found, expected = said("{value:g} deg", value=bad), said("0 to 360 deg")
             problems.append(Problem(what, where, found, expected, hint))
     return problems
+
+
+def _first_off(values: Array) -> float | None:
+    """The first reading that no circle has, None where there is none."""
+    for piece in pieces(values):
+        bad = piece[(piece < LEAST_READING_DEG) | (piece > 360.0)]
+        if bad.size:
+            return float(bad[0])
+    return None
 
 
 def mixed_units(columns: Mapping[str, Array], *, where: str) -> list[Problem]:
@@ -293,8 +321,9 @@ def mixed_units(columns: Mapping[str, Array], *, where: str) -> list[Problem]:
         names = TRIPLES[name]
         if not all(column in columns for column in names):
             continue
-        sizes = [float(np.median(np.abs(columns[c][:: _stride(columns[c])]))) for c in names]
-        spans = [_span(columns[c][:: _stride(columns[c])]) for c in names]
+        parts = [sampled(columns[c], LOOKED_AT) for c in names]
+        sizes = [float(np.median(np.abs(part))) for part in parts]
+        spans = [_span(part) for part in parts]
         large = max(range(3), key=lambda i: spans[i])
         others = [spans[i] for i in range(3) if i != large]
         apart = spans[large] > 100.0 * max(others) and sizes[large] > 100.0
@@ -323,13 +352,8 @@ def _span(values: Array) -> float:
     return float(high - low)
 
 
-def _stride(values: Array) -> int:
-    return max(values.size // 20_000, 1)
-
-
 def _whole(values: Array) -> bool:
-    sample = values[:: _stride(values)]
-    return bool(np.all(sample == np.round(sample)))
+    return bool(np.all(values == np.round(values)))
 
 
 def gap_warning(gaps: tuple[Gap, ...]) -> list[ResultWarning]:

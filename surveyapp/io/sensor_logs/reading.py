@@ -14,6 +14,7 @@ from typing import Final, Literal
 import numpy as np
 
 from surveyapp.domain.advance import PartDone
+from surveyapp.domain.columns import pieces
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import (
     NUMBER_COLUMNS,
@@ -26,7 +27,7 @@ from surveyapp.domain.sensor_log import (
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.files import decode, shown, shown_path
 from surveyapp.io.sensor_logs import checks
-from surveyapp.io.sensor_logs.blocks import Rows, Wrong, count_lines, read_rows
+from surveyapp.io.sensor_logs.blocks import Rows, Wrong, count_lines, even_times, read_rows
 from surveyapp.io.sensor_logs.layout import LOOKED_AT, Layout, find_layout
 from surveyapp.io.sensor_logs.units import COUNTS, DIMENSIONLESS, UNITS, factor_to, unit_in_name
 from surveyapp.languages import said
@@ -173,9 +174,8 @@ class LogFile:
         for name in dict.fromkeys(wanted):
             if name in self.places:
                 continue
-            hint = ""
-            if name not in need.others:
-                hint = said("`columns` {name}=COLUMN names it", name=name)
+            named = said("`columns` {name}=COLUMN names it", name=name)
+            hint = "" if name in need.others else named
             if name == "time_s":
                 hint += said("; `rate_hz` replaces it")
             listing = ", ".join(shown(n) for n in self.layout.names)
@@ -202,7 +202,8 @@ class LogFile:
         for row, name in enumerate(numbers):
             factor = self.places[name].factor
             if factor != 1.0:
-                rows.numbers[row] *= factor
+                for piece in pieces(rows.numbers[row]):
+                    piece *= factor
 
     def _column_problems(self, need: Need, columns: Mapping[str, Array]) -> list[Problem]:
         where, first = self.request.where, self.layout.first_row
@@ -240,7 +241,7 @@ class LogFile:
             interval, gaps = checks.gaps_of(columns["time_s"])
             rate = rate or (1.0 / interval if interval > 0.0 else None)
         elif need.timed != "no" and rate is not None:
-            columns["time_s"] = np.arange(size) / rate
+            columns["time_s"] = even_times(size, rate)
         clipped = checks.clipped_columns(columns)
         warnings: list[ResultWarning] = checks.gap_warning(gaps) + checks.clip_warning(clipped)
         return SensorLog(
@@ -334,10 +335,8 @@ def _places(request: LogRequest, layout: Layout, problems: list[Problem]) -> dic
 
 def _suffix(canonical: str) -> str:
     """The end of a canonical name that tells its unit: ``_uT``, ``_m_s2``, ``_arcsec``."""
-    for end in ("_uT", "_m_s2", "_rad_s", "_arcsec"):
-        if canonical.endswith(end):
-            return end
-    return canonical
+    ends = ("_uT", "_m_s2", "_rad_s", "_arcsec")
+    return next((end for end in ends if canonical.endswith(end)), canonical)
 
 
 def _no_column(column: str, names: Sequence[str], where: str) -> Problem:

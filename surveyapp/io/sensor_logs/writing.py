@@ -8,6 +8,8 @@ from typing import Final
 
 import numpy as np
 
+from surveyapp.domain.advance import PartDone
+from surveyapp.domain.columns import let_go
 from surveyapp.io.outputs import check_output
 from surveyapp.io.tomltext import atomic_write
 from surveyapp_models.arrays import Floats
@@ -52,9 +54,18 @@ def _pieces(parts: Iterable[Columns]) -> Iterator[bytes]:
         for start in range(0, size, BLOCK_ROWS):
             block = {name: values[start : start + BLOCK_ROWS] for name, values in part.items()}
             yield _rows(block).encode()
+            for values in part.values():
+                if isinstance(values, np.ndarray):
+                    let_go(values)
 
 
-def write_columns(path: Path, columns: Columns, *, inputs: Iterable[Path] = ()) -> None:
+def write_columns(
+    path: Path,
+    columns: Columns,
+    *,
+    inputs: Iterable[Path] = (),
+    progress: PartDone | None = None,
+) -> None:
     """Write a CSV file as a whole, never over one of the inputs.
 
     Raises
@@ -62,7 +73,16 @@ def write_columns(path: Path, columns: Columns, *, inputs: Iterable[Path] = ()) 
     SurveyError
         If an input or the record of a project stands there, or the system refuses.
     """
-    write_parts(path, (columns,), inputs=inputs)
+    write_parts(path, _parts(columns, progress), inputs=inputs)
+
+
+def _parts(columns: Columns, progress: PartDone | None) -> Iterator[Columns]:
+    """Columns in parts of a block; the share that was written is told."""
+    size = max((len(values) for values in columns.values()), default=0)
+    for start in range(0, max(size, 1), BLOCK_ROWS):
+        yield {name: values[start : start + BLOCK_ROWS] for name, values in columns.items()}
+        if progress is not None:
+            progress(min((start + BLOCK_ROWS) / max(size, 1), 1.0))
 
 
 def write_parts(path: Path, parts: Iterable[Columns], *, inputs: Iterable[Path] = ()) -> None:

@@ -41,6 +41,7 @@ _NORTH: Final = {
     "bias_prior_sigma_deg_h": _NUMBER,
     "index_sigma_deg": _NUMBER,
     "initial_heading_deg": _NUMBER,
+    "initial_heading_sigma_deg": _NUMBER,
     "initial_reference": _TEXT,
     "reading_from_elevation": _TEXT,
     "card": _TEXT,

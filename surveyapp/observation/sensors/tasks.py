@@ -192,7 +192,8 @@ def _north(
         options=own,
         progress=progress,
     )
-    return Examined("north", north_blocks(result), (), result.met)
+    pictures = api.sensor_pictures(result).pictures
+    return Examined("north", north_blocks(result), pictures, result.met)
 
 
 def _plan(

@@ -58,18 +58,23 @@ def legend(chart: Chart) -> str:
         "cross": said("crosses"),
         "square": said("squares"),
     }
-    marks = _marks(shown)
+    marks = _marks(shown, rings=chart.square)
     parts = []
     for item in shown:
-        if item.style == "guide":
+        if _is_dashed(item, rings=chart.square):
             parts.append(joined(": ", (said("dashed"), item.name)))
         else:
             parts.append(joined(": ", (words[marks[item.name]], item.name)))
     return joined(", ", dict.fromkeys(parts))
 
 
-def _marks(shown: Sequence[Series]) -> dict[str, Shape]:
-    named = dict.fromkeys(s.name for s in shown if s.style != "guide")
+def _is_dashed(item: Series, *, rings: bool) -> bool:
+    """Whether a curve is a dashed line on paper; on a map the bounds are rings about a place."""
+    return item.style == "guide" or (rings and item.style == "bound")
+
+
+def _marks(shown: Sequence[Series], *, rings: bool) -> dict[str, Shape]:
+    named = dict.fromkeys(s.name for s in shown if not _is_dashed(s, rings=rings))
     return {name: MARKS[i % len(MARKS)] for i, name in enumerate(named)}
 
 
@@ -89,15 +94,14 @@ def chart_figure(chart: Chart) -> Figure | None:
     if chart.square:
         frame, x_names = _squared(frame), []
     label = said("lg of the {label}", label=chart.y_label) if chart.log_y else chart.y_label
-    if chart.y_names:
-        label = joined(", ", [joined(" ", (str(i), name)) for i, name in enumerate(chart.y_names)])
-    parts = frame.axes(chart.x_label, label, x_names)
-    marks = _marks(shown)
+    parts = frame.axes(chart.x_label, label, x_names, chart.y_names)
+    marks = _marks(shown, rings=chart.square)
     for item in shown:
         points = [(_at(x, log=chart.log_x), _at(y, log=chart.log_y)) for x, y in item.points]
-        if item.style in STROKES and len(points) > 1:
-            parts.append(frame.curve(points, STROKES[item.style]))
-        if item.style not in STROKES or (item.style == "line" and len(shown) > 1):
+        stroke = "limit" if _is_dashed(item, rings=chart.square) else STROKES.get(item.style)
+        if stroke is not None and len(points) > 1:
+            parts.append(frame.curve(points, stroke))
+        if stroke is None or (item.style == "line" and len(shown) > 1):
             most = MOST_MARKS if item.style == "dots" else FEW_MARKS
             step = max(1, math.ceil(len(points) / most))
             parts += frame.marks(points[::step], marks[item.name])

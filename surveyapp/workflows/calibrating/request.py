@@ -14,6 +14,7 @@ from surveyapp.domain.advance import PartDone
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.sensor_logs.blocks import room_for
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 
 MOST_ROWS: Final = 100_000
@@ -64,9 +65,9 @@ class CalibrationRequest:
         """
         log = self.read(need)
         if self.entry is not None and self.entry.effects:
-            log, told = without_events(log, self.entry.effects)
+            log, told = without_events(log, self.entry.effects, room=room_for)
             log = replace(log, warnings=(*log.warnings, *told))
-        return without_clipped(log, fitted).thinned(MOST_ROWS)
+        return without_clipped(log, fitted, most=MOST_ROWS)
 
     def option(self, name: str) -> object:
         """An option of the command line, else of the project's entry; None if neither has it."""

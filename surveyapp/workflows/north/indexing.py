@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from surveyapp.core.sensors.rate.indexing_log import IndexingOptions, find_heading
-from surveyapp.core.sensors.rate.indexing_stops import GYROS, NEEDED, OPTIONAL
+from surveyapp.core.sensors.rate.indexing_stops import CYCLE, GYROS, NEEDED, OPTIONAL
 from surveyapp.core.sensors.rate.indexing_values import Setting
 from surveyapp.core.sensors.rate.parameters import DEG_H
 from surveyapp.domain.north import NorthResult
@@ -27,7 +27,7 @@ def find(request: NorthRequest) -> NorthResult:
     if axis not in ("x", "y", "z"):
         problems.append(Problem("this is no axis", "index_axis", axis, "x, y or z"))
     prior, sigma = _prior(request, problems)
-    spread = request.number("index_sigma_deg", problems) or 0.0
+    spread = request.sigma("index_sigma_deg", problems) or 0.0
     turned, fixed = request.file, None
     second = request.option("second")
     indexed = str(request.option("indexed") or "first")
@@ -40,7 +40,7 @@ def find(request: NorthRequest) -> NorthResult:
         elif indexed == "second":
             problems.append(Problem("there is no second log", "second", "", "a FILE"))
         across = tuple(name for name in GYROS if name != f"gyr_{axis}_rad_s")
-        log = turned.read(Need(columns=NEEDED, varying=across, optional=OPTIONAL))
+        log = turned.read(Need(columns=NEEDED, varying=across, optional=(*OPTIONAL, CYCLE)))
         other_log = None if fixed is None else _fixed(fixed)
     except SurveyError as error:
         raise SurveyError([*problems, *error.problems]) from None
@@ -51,7 +51,7 @@ def find(request: NorthRequest) -> NorthResult:
         axis="xyz".index(axis),
         bias_prior=prior,
         bias_prior_sigma=np.full(3, sigma),
-        index_sigma=math.radians(spread),
+        index_sigma=spread,
     )
     options = IndexingOptions(setting, bool(request.option("track")), other_log)
     return find_heading(log, options)

@@ -69,6 +69,14 @@ class NorthRequest:
             return None
         return float(value)
 
+    def sigma(self, name: str, problems: list[Problem]) -> float | None:
+        """A standard deviation in degrees as radians; None where it is not stated."""
+        value = self.number(name, problems)
+        if value is not None and value < 0.0:
+            problems.append(Problem("a sigma is negative", _flag(name), f"{value:g}", "0 or more"))
+            return None
+        return None if value is None else math.radians(value)
+
     def needed(self, name: str, problems: list[Problem], hint: str) -> float:
         """The same where it must be there; 0 beside a problem."""
         count = len(problems)
@@ -106,6 +114,16 @@ class NorthRequest:
             return None
         return math.radians(degrees)
 
+    def declination(self) -> object:
+        """D or D,SIGMA in degrees of the options, else of the log's entry; None without."""
+        given = self.options.get("declination")
+        if given is not None or self.entry is None:
+            return given
+        stated = [self.entry.options.get(f"declination{part}_deg") for part in ("", "_sigma")]
+        if stated[0] is None:
+            return None
+        return ",".join(str(part) for part in stated if part is not None)
+
 
 def _flag(name: str) -> str:
     return "--" + name.replace("_", "-")
@@ -113,7 +131,7 @@ def _flag(name: str) -> str:
 
 def declination_problems(request: NorthRequest) -> list[Problem]:
     """A declination beside a heading that is not magnetic, whatever the method."""
-    value = request.option("declination")
+    value = request.declination()
     if value is None or request.option("initial_reference") == "MAGNETIC":
         return []
     if request.method == "rotation" and request.option("initial_reference") is None:

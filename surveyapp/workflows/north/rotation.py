@@ -36,6 +36,7 @@ def find(request: NorthRequest) -> NorthResult:
     problems: list[Problem] = []
     hint = "a gyro that is only carried keeps the heading with which it began"
     heading = request.needed("initial_heading_deg", problems, hint)
+    own_sigma = request.sigma("initial_heading_sigma_deg", problems)
     reference = request.option("initial_reference")
     if reference not in REFERENCES:
         problems.append(
@@ -64,6 +65,7 @@ def find(request: NorthRequest) -> NorthResult:
     options = RotationOptions(
         heading=math.radians(heading),
         reference=cast("Reference", reference),
+        heading_sigma=own_sigma,
         declination=declination,
         declination_sigma=sigma,
         latitude=latitude,
@@ -118,7 +120,7 @@ def _declination(
     request: NorthRequest, problems: list[Problem]
 ) -> tuple[float | None, float | None]:
     """Declination and its sigma [rad]; one beside another reference is told elsewhere."""
-    text = request.option("declination")
+    text = request.declination()
     if text is None:
         return None, None
     try:
@@ -131,4 +133,6 @@ def _declination(
         )
         return None, None
     sigma = math.radians(parts[1]) if len(parts) == 2 else None
+    if sigma is not None and sigma < 0.0:
+        problems.append(Problem("a sigma is negative", "declination", str(text), "0 or more"))
     return math.radians(parts[0]), sigma

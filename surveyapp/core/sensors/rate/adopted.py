@@ -16,6 +16,7 @@ from typing import Final
 
 import numpy as np
 
+from surveyapp.core.statistics.distributions import NORMAL_95, student_quantile
 from surveyapp.domain.calibration import SensorParameter
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.domain.project import ResultWarning
@@ -57,6 +58,12 @@ class StopDatum:
     middle_s: float
     temperature_c: float | None
     table: bool
+
+
+AT_STOPS: Final = frozenset({"bias_ramp", "temperature", "scale_asymmetry", "gross_error"})
+"""Effects that need to know the stops: where they are zero, or in which rows they lie."""
+NO_STOPS: Final = StopDatum((), 0.0, None, table=False)
+"""For the others."""
 
 
 def columns_needed(effects: Sequence[AdoptedEffect]) -> tuple[str, ...]:
@@ -249,14 +256,16 @@ def adopted_flip_sigma(effects: Sequence[AdoptedEffect]) -> float:
     """Standard deviation of a flip [rad] that an adopted one shows; 0 where there is none.
 
     A crooked seat is seen as the difference of two flips, across the axis of its position; where
-    every position sits crookedly the standard deviation itself was named.
+    every position sits crookedly the standard deviation itself was named. That one rests on k
+    combinations of seats, value/sigma = sqrt(2 k), and is widened by Student's t over the normal
+    quantile, so that 95 % intervals of 1.96 sigma hold.
     """
     stated = [
-        value * ARCSEC
+        value * ARCSEC * student_quantile(0.975, 0.5 * (value / sigma) ** 2) / NORMAL_95
         for effect in effects
         if effect.id == "flip_error"
-        for name, value, _, _ in effect.coefficients
-        if name == SEAT_SD
+        for name, value, sigma, _ in effect.coefficients
+        if name == SEAT_SD and sigma > 0.0
     ]
     if stated:
         return max(stated)

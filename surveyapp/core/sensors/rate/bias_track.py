@@ -27,6 +27,26 @@ CONTRADICTS = 4.0
 
 
 @dataclass(frozen=True, slots=True)
+class StopSet:
+    """Index positions of one attitude.
+
+    Parameters
+    ----------
+    number : int
+    time_s : float
+        Of its beginning.
+    stops : list of Stop
+    cycle : int
+        Power cycle: with each the biases begin anew.
+    """
+
+    number: int
+    time_s: float
+    stops: list[Stop]
+    cycle: int = 0
+
+
+@dataclass(frozen=True, slots=True)
 class Tracked:
     """The track at one set.
 
@@ -34,8 +54,8 @@ class Tracked:
     ----------
     number : int
     time_s : float
-    bias, sigma : float
-        Of the index axis [rad/s].
+    bias, sigma : float or None
+        Of the index axis [rad/s]; None where the track has not begun.
     gated : bool
         Whether the set was left out.
     reason : str
@@ -44,16 +64,22 @@ class Tracked:
         What the set says by itself [rad/s]; None where it is not resolved.
     indexed : Indexed
         Attitude of the set with the track as prior.
+    foretold : float or None
+        What the track foretold [rad/s]; None before it begins.
+    gate : float or None
+        By how much the set may differ from that [rad/s]; None where it says nothing by itself.
     """
 
     number: int
     time_s: float
-    bias: float
-    sigma: float
+    bias: float | None
+    sigma: float | None
     gated: bool
     reason: str
     alone: float | None
     indexed: Indexed
+    foretold: float | None = None
+    gate: float | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of one entry of ``tracking[]``."""
@@ -62,43 +88,52 @@ class Tracked:
         return {
             "set": self.number,
             "time_s": self.time_s,
-            "bias": self.bias / DEG_H,
-            "sigma": self.sigma / DEG_H,
+            "bias": _deg_h(self.bias),
+            "sigma": _deg_h(self.sigma),
             "gated": self.gated,
             "reason": self.reason or None,
-            "alone": None if self.alone is None else self.alone / DEG_H,
+            "alone": _deg_h(self.alone),
+            "foretold": _deg_h(self.foretold),
+            "gate": _deg_h(self.gate),
             "heading_deg": math.degrees(root.heading) if resolved else None,
+            "axis": "z" if root.vertical else "y",
             "heading_sigma_deg": math.degrees(root.heading_sigma()) if resolved else None,
         }
 
 
-def track_bias(groups: Sequence[tuple[int, float, list[Stop]]], setting: Setting) -> list[Tracked]:
+def track_bias(groups: Sequence[StopSet], setting: Setting) -> list[Tracked]:
     """Follow the bias over sets of stops.
 
     Parameters
     ----------
-    groups : sequence of (number, time [s], stops)
+    groups : sequence of StopSet
         In order of time.
     setting : Setting
-        Its prior is where the track begins.
+        Its prior is where the track begins; after a power cycle nothing is known.
     """
     axis = setting.axis
     bias, variance = 0.0, math.inf
     if setting.bias_prior is not None and setting.bias_prior_sigma[axis] > 0.0:
         bias, variance = float(setting.bias_prior[axis]), float(setting.bias_prior_sigma[axis]) ** 2
-    before = groups[0][1]
+    before, cycle = groups[0].time_s, groups[0].cycle
     tracked = []
     free = replace(setting, bias_prior=None)
-    for number, time, stops in groups:
-        variance += WALK**2 * max(time - before, 0.0) / 3600.0
-        before = time
-        alone = solve_indexing(stops, free)
+    for group in groups:
+        variance += WALK**2 * max(group.time_s - before, 0.0) / 3600.0
+        if group.cycle != cycle:
+            bias, variance, setting = 0.0, math.inf, free
+        before, cycle = group.time_s, group.cycle
+        alone = solve_indexing(group.stops, free)
         own, own_variance, reason = _own(alone, axis)
-        if not reason and math.isfinite(variance):
-            innovation = abs(own - bias)
+        resolved = own if alone.verdict == "resolved" else None
+        begun = math.isfinite(variance)
+        foretold = bias if begun else None
+        spread = CONTRADICTS * math.sqrt(own_variance + variance)
+        gate = spread if begun and resolved is not None else None
+        if not reason and begun:
             if own_variance > WEAK**2 * variance:
                 reason = "this attitude hardly tells the bias"
-            elif innovation > CONTRADICTS * math.sqrt(own_variance + variance):
+            elif abs(own - bias) > spread:
                 reason = "contradicts the track"
         if not reason and not math.isfinite(variance):
             bias, variance = own, own_variance
@@ -106,16 +141,27 @@ def track_bias(groups: Sequence[tuple[int, float, list[Stop]]], setting: Setting
             gain = variance / (variance + own_variance)
             bias, variance = bias + gain * (own - bias), (1.0 - gain) * variance
         held = _held(setting, axis, bias, variance)
-        indexed = alone if held is None else solve_indexing(stops, held)
-        resolved = own if alone.verdict == "resolved" else None
+        indexed = alone if held is None else solve_indexing(group.stops, held)
+        known = math.isfinite(variance)
         tracked.append(
-            Tracked(number, time, bias, _root_of(variance), bool(reason), reason, resolved, indexed)
+            Tracked(
+                group.number,
+                group.time_s,
+                bias if known else None,
+                math.sqrt(variance) if known else None,
+                bool(reason),
+                reason,
+                alone=resolved,
+                indexed=indexed,
+                foretold=foretold,
+                gate=gate,
+            )
         )
     return tracked
 
 
-def _root_of(variance: float) -> float:
-    return math.sqrt(variance) if math.isfinite(variance) else 1e6 * DEG_H
+def _deg_h(value: float | None) -> float | None:
+    return None if value is None else value / DEG_H
 
 
 def _own(alone: Indexed, axis: int) -> tuple[float, float, str]:

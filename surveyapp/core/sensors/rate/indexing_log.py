@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from surveyapp.core.sensors.rate.bias_track import Tracked, track_bias
+from surveyapp.core.sensors.rate.bias_track import StopSet, Tracked, track_bias
 from surveyapp.core.sensors.rate.indexing import CONTRADICTING, solve_indexing
 from surveyapp.core.sensors.rate.indexing_checks import index_problems, rate_problems
 from surveyapp.core.sensors.rate.indexing_stops import (
+    CYCLE,
     GYROS,
     OPTIONAL,
     calm,
@@ -86,28 +87,36 @@ def find_heading(log: SensorLog, options: IndexingOptions) -> NorthResult:
     """
     stops, rows, warnings = stops_of(log)
     stops, dof = with_sigmas(stops, options.setting.axis)
-    for _, _, inside in _groups(log, stops, rows):
-        problems = index_problems(inside, options.setting, log.path)
+    groups = _groups(log, stops, rows)
+    for group in groups:
+        problems = index_problems(group.stops, options.setting, log.path)
         if problems:
             raise SurveyError(problems)
     if math.isfinite(dof):
         text = "one row a stop: the sigmas are the scatter of the stops about the solution"
         warnings.append(ResultWarning("rows_are_means", text))
     tracking: list[Tracked] = []
-    groups = _groups(log, stops, rows)
     found, used = solve_indexing(stops, options.setting), len(stops)
+    cycles = len({group.cycle for group in groups})
+    if cycles > 1:
+        text = said(
+            "the unit was switched off and on between the {count} sets: the bias is followed "
+            "within a power cycle, and the heading is that of the last set",
+            count=len(groups),
+        )
+        warnings.append(ResultWarning("power_cycles", text))
     apart = not options.track and _stood_differently(groups, found, options.setting)
-    if apart:
+    if apart and cycles == 1:
         text = said(
             "the unit stood differently in the {count} sets: the bias is followed from one to the "
             "next as with `track`, and the heading is that of the last",
             count=len(groups),
         )
         warnings.append(ResultWarning("sets_differ", text))
-    if options.track or apart:
+    if options.track or apart or cycles > 1:
         tracking = track_bias(groups, options.setting)
         last = tracking[-1]
-        found, used = last.indexed, len(groups[-1][2])
+        found, used = last.indexed, len(groups[-1].stops)
     if not found.roots:
         raise SurveyError(Problem("no attitude fits the log", log.path))
     problems = rate_problems(
@@ -119,28 +128,25 @@ def find_heading(log: SensorLog, options: IndexingOptions) -> NorthResult:
     return _result(log, options, found, tracking, seen=seen)
 
 
-def _stood_differently(
-    groups: Sequence[tuple[int, float, list[Stop]]], together: Indexed, setting: Setting
-) -> bool:
+def _stood_differently(groups: Sequence[StopSet], together: Indexed, setting: Setting) -> bool:
     """Whether each set fits an attitude of its own far better than all fit one."""
     worst = max(together.residual_scale, together.misfit)
     if len(groups) < 2 or worst <= APART:
         return False
-    alone = [solve_indexing(inside, setting) for _, _, inside in groups]
+    alone = [solve_indexing(group.stops, setting) for group in groups]
     return APART * max(max(one.residual_scale, one.misfit) for one in alone) < worst
 
 
-def _groups(
-    log: SensorLog, stops: Sequence[Stop], rows: Sequence[int]
-) -> list[tuple[int, float, list[Stop]]]:
-    """Stops by set: number, time of its beginning [s], stops."""
+def _groups(log: SensorLog, stops: Sequence[Stop], rows: Sequence[int]) -> list[StopSet]:
+    """Stops by set and power cycle."""
     name = next((n for n in OPTIONAL[1:] if n in log.columns), None)
-    groups: dict[int, tuple[float, list[Stop]]] = {}
+    groups: dict[tuple[int, int], StopSet] = {}
     for stop, row in zip(stops, rows, strict=True):
         number = 1 if name is None else round(float(log.columns[name][row]))
+        cycle = 0 if CYCLE not in log.columns else round(float(log.columns[CYCLE][row]))
         time = float(log.columns["time_s"][row])
-        groups.setdefault(number, (time, []))[1].append(stop)
-    return [(number, time, inside) for number, (time, inside) in groups.items()]
+        groups.setdefault((number, cycle), StopSet(number, time, [], cycle)).stops.append(stop)
+    return list(groups.values())
 
 
 def _result(

@@ -14,13 +14,14 @@ from surveyapp.core.sensors.rate.indexing_values import Stop
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.languages import counted
+from surveyapp.languages import counted, said
 from surveyapp_models.arrays import Floats
 
 GYROS = ("gyr_x_rad_s", "gyr_y_rad_s", "gyr_z_rad_s")
 ACCELEROMETERS = ("acc_x_m_s2", "acc_y_m_s2", "acc_z_m_s2")
 NEEDED = (*GYROS, *ACCELEROMETERS, "index_angle_deg")
 OPTIONAL = ("temperature_c", "set", "round", "pass")
+CYCLE = "power_cycle"
 MOVING_SIGMAS = 8.0
 """Samples farther from the median of their stop were taken while something moved."""
 MOVING_SHARE = 0.2
@@ -41,6 +42,9 @@ def stops_of(log: SensorLog) -> tuple[list[Stop], list[int], list[ResultWarning]
     SurveyError
         Without any stop, or of a saturated gyro.
     """
+    unnumbered = _unnumbered(log)
+    if unnumbered:
+        raise SurveyError(unnumbered)
     edges = _edges(log)
     lengths = np.diff(edges).tolist()
     problems = [*saturated(log, GYROS), *turning_problems(log, lengths)]
@@ -78,10 +82,22 @@ def stops_of(log: SensorLog) -> tuple[list[Stop], list[int], list[ResultWarning]
     return stops, [first for first, _ in rows], _told_of_motion(dropped, bumped)
 
 
+def _unnumbered(log: SensorLog) -> list[Problem]:
+    """Rows of which it is not known to which set or power cycle they belong."""
+    found = []
+    for name in (*OPTIONAL[1:], CYCLE):
+        missing = 0 if name not in log.columns else int(np.isnan(log.columns[name]).sum())
+        if missing:
+            what = said("{name} has rows without a number", name=name)
+            rows = said("{rows} rows", rows=missing)
+            found.append(Problem(what, log.path, rows, "a number in each row"))
+    return found
+
+
 def _edges(log: SensorLog) -> list[int]:
     """Rows at which an index position or a set begins, and one behind the last."""
     change = np.concatenate([[True], np.abs(np.diff(log.columns["index_angle_deg"])) > 1e-6])
-    for name in OPTIONAL[1:]:
+    for name in (*OPTIONAL[1:], CYCLE):
         if name in log.columns:
             change[1:] |= np.diff(log.columns[name]) != 0.0
     return [*np.flatnonzero(change).tolist(), log.size]

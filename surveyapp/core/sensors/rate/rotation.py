@@ -56,6 +56,10 @@ STEP_TITLES: Final = (
     (113, "carry the heading through the rotation"),
 )
 
+MODEL_SIGMA: Final = math.radians(0.5)
+"""Of a declination that is stated without one: the World Magnetic Model's is .31 to .50 degrees
+(WMM2020 technical report, NOAA: sqrt(0.26^2 + (5625 nT / H)^2) with H of 13,000 nT)."""
+
 
 @dataclass(frozen=True, slots=True)
 class RotationOptions:
@@ -66,8 +70,10 @@ class RotationOptions:
     heading : float
         At the beginning [rad].
     reference : str
+    heading_sigma : float or None
+        Of that heading [rad]; None = not stated, it counts as exact and that is told.
     declination, declination_sigma : float or None
-        [rad]
+        [rad]; without a sigma that of a model where it is largest.
     latitude : float or None
         [rad]
     matrix, bias : ndarray
@@ -81,6 +87,7 @@ class RotationOptions:
 
     heading: float
     reference: Reference
+    heading_sigma: float | None = None
     declination: float | None = None
     declination_sigma: float | None = None
     latitude: float | None = None
@@ -125,9 +132,17 @@ def find_heading(log: SensorLog, options: RotationOptions) -> NorthResult:
         heading=options.heading + (options.declination or 0.0),
         latitude=options.latitude,
     )
-    sigma = math.hypot(carried.sigma, options.declination_sigma or 0.0)
+    sigma = math.hypot(carried.sigma, options.heading_sigma or 0.0, _declination_sigma(options))
     turned = before != after
     return _result(log, options, carried, sigma, found=(warm, levelling, rest, gained, turned))
+
+
+def _declination_sigma(options: RotationOptions) -> float:
+    """Of the declination that was added [rad]."""
+    if options.declination is None:
+        return 0.0
+    stated = options.declination_sigma
+    return MODEL_SIGMA if stated is None else stated
 
 
 def _run_of(log: SensorLog, rates: Floats, forces: Floats, rows: np.ndarray) -> Run:
@@ -307,6 +322,19 @@ def _warnings(options: RotationOptions, warm: WarmUp, *, turned: bool) -> list[R
     if warm.seconds < 0.99 * WARM_UP_S:
         text = said("{value:.1f} min of warm-up; the source asks for 30", value=warm.seconds / 60.0)
         warnings.append(ResultWarning("short_warm_up", text))
+    if options.heading_sigma is None:
+        text = (
+            "the initial heading has no sigma and counts as exact: its error is in no sigma "
+            "(--initial-heading-sigma-deg)"
+        )
+        warnings.append(ResultWarning("initial_heading_exact", text))
+    if options.declination is not None and options.declination_sigma is None:
+        text = said(
+            "the declination has no sigma: that of a model where it is largest, {sigma:g} degrees, "
+            "is in the sigma of the heading (--declination D,SIGMA)",
+            sigma=math.degrees(MODEL_SIGMA),
+        )
+        warnings.append(ResultWarning("declination_sigma_of_model", text))
     if options.latitude is None:
         text = (
             "without a latitude the earth's rate is taken out as it was at rest; how it moved in "

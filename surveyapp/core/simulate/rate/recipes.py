@@ -284,6 +284,7 @@ PROGRAMMES: Final[Mapping[str, Mapping[str, tuple[Recipe, tuple[EffectKind, ...]
 _ENTRY_KEYS: Final[Mapping[str, str]] = {
     "indexing": 'method = "indexing"\n',
     "fog-station": 'reading_from_elevation = "increases"\n',
+    "vehicle": 'programme = "motion"\npath = true\n',
 }
 
 
