@@ -10,13 +10,21 @@ still show it without their most crooked position: every seat has then an unknow
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Final
 
 import numpy as np
 
-from surveyapp.diagnosis.result import Adoption, CandidateResult, Diagnosis, NamedCoefficient
+from surveyapp.core.statistics.distributions import f_tail
+from surveyapp.diagnosis.result import (
+    Adoption,
+    CandidateResult,
+    Diagnosis,
+    ModelResult,
+    NamedCoefficient,
+)
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.languages import said, term
 from surveyapp_models.angles import ARCSEC
@@ -35,26 +43,17 @@ class Seats:
 
     Parameters
     ----------
-    columns : ndarray, shape (3 n, k)
-        Orthonormal, and orthogonal to the base model; three rows a stop.
+    columns : ndarray, shape (n, k)
+        Orthonormal, and orthogonal to the base model; a row for each observation.
     sd : float
         Standard deviation of a seat about either axis across the table's [rad].
     p : float
         Of the F test with all of them.
-    parameters, bic, rms, sigma0, loo_rms : float
-        Of the base model without seats [rad/s]; ``bic`` of printed units.
-    dof : int
     """
 
     columns: Floats
     sd: float
     p: float
-    parameters: int
-    bic: float
-    rms: float
-    sigma0: float
-    loo_rms: float
-    dof: int
 
     @property
     def effective(self) -> int:
@@ -62,125 +61,71 @@ class Seats:
         return int(self.columns.shape[1])
 
 
-def crooked_seats(observed: Floats, rates: Floats, places: Floats, *, unit: float) -> Seats | None:
+def crooked_seats(observed: Floats, base: Floats, by_place: Sequence[Floats]) -> Seats | None:
     """The seats of a record on a table; None where they need no unknowns of their own.
 
     Parameters
     ----------
-    observed : ndarray, shape (n, 3)
-        Outputs of the stops [rad/s].
-    rates : ndarray, shape (n, 3)
-        Known rate of the body there [rad/s].
-    places : ndarray, shape (n,)
-        Number of each position, of each round anew.
-    unit : float
-        One printed unit [rad/s].
+    observed : ndarray, shape (n,)
+        Outputs of the gyros at the stops [rad/s].
+    base : ndarray, shape (n, b)
+        Design of the base model.
+    by_place : sequence of ndarray, shape (n, 2)
+        What small turns of each position do [rad/s per rad].
     """
-    y = observed.ravel()
-    known = np.column_stack([np.ones(len(rates)), rates])
-    base = _span(np.asarray(np.kron(known, np.eye(3)), dtype=np.float64))
-    by_place = {float(p): _seat(rates, places == p) for p in np.unique(places)}
-    across = np.hstack(list(by_place.values()))
-    across = across - base @ (base.T @ across)
+    base = _span(base)
+    across = _beside(np.hstack(list(by_place)), base)
     shown = _span(across)
-    left = y.size - base.shape[1] - shown.shape[1]
+    left = observed.size - base.shape[1] - shown.shape[1]
     if shown.shape[1] < 2 or left < LEAST_LEFT:
         return None
-    rest = y - base @ (base.T @ y)
-    seats = shown.T @ rest
-    noise = float(rest @ rest - seats @ seats)
-    p = _f(float(seats @ seats), noise, (shown.shape[1], left))
-    if p > ALARM or _beside_the_worst(base, rest, by_place, noise=noise, left=left) > ALARM:
+    rest = _beside(observed, base)
+    explained = _explained(rest, shown)
+    noise = (float(rest @ rest) - explained) / left
+    p = _p(explained, shown.shape[1], noise, left)
+    worst = max((_span(_beside(own, base)) for own in by_place), key=partial(_explained, rest))
+    others = _span(_beside(across, worst))
+    if p > ALARM or _p(_explained(rest, others), others.shape[1], noise, left) > ALARM:
         return None
-    variance = (float(seats @ seats) - shown.shape[1] * noise / left) / float(np.sum(across**2))
-    dof = y.size - base.shape[1]
-    total, count = float(rest @ rest), base.shape[1]
-    held = _left_out(y, base)
-    return Seats(
-        shown,
-        math.sqrt(max(variance, 0.0)),
-        p,
-        count,
-        y.size * math.log(total / y.size / unit**2) + count * math.log(y.size),
-        math.sqrt(total / y.size),
-        math.sqrt(total / dof),
-        held,
-        dof,
-    )
-
-
-def _beside_the_worst(
-    base: Floats, rest: Floats, by_place: Mapping[float, Floats], *, noise: float, left: int
-) -> float:
-    """P of all seats beside the one position that explains most; ``noise`` is a sum of squares."""
-    best = None
-    for columns in by_place.values():
-        own = _span(columns - base @ (base.T @ columns))
-        gained = float(np.sum((own.T @ rest) ** 2))
-        if best is None or gained > best[0]:
-            best = (gained, own)
-    if best is None:
-        return 1.0
-    every = np.hstack(list(by_place.values()))
-    every = every - base @ (base.T @ every)
-    more = _span(every - best[1] @ (best[1].T @ every))
-    if more.shape[1] == 0:
-        return 1.0
-    return _f(float(np.sum((more.T @ rest) ** 2)), noise, (more.shape[1], left))
-
-
-def _seat(rates: Floats, here: Floats) -> Floats:
-    """What small turns across the table's axis do in one position, shape (3 n, 2)."""
-    own = int(np.argmax(np.abs(rates[here]).sum(axis=0)))
-    found = np.zeros((*rates.shape, 2))
-    for k in range(2):
-        found[:, :, k] = np.cross(np.eye(3)[(own + 1 + k) % 3], rates) * here[:, None]
-    return found.reshape(-1, 2)
+    variance = (explained - shown.shape[1] * noise) / float(np.sum(across**2))
+    return Seats(shown, math.sqrt(max(variance, 0.0)), p)
 
 
 def _span(columns: Floats) -> Floats:
     """Orthonormal columns that span the same."""
-    scale = float(np.abs(columns).max(initial=0.0))
-    if scale == 0.0:
-        return columns[:, :0]
     size = np.linalg.norm(columns, axis=0)
-    u, s, _ = np.linalg.svd(columns / np.where(size > 1e-9 * size.max(), size, np.inf), False)
+    kept = size > 1e-9 * size.max(initial=0.0)
+    if not kept.any():
+        return columns[:, :0]
+    u, s, _ = np.linalg.svd(columns[:, kept] / size[kept], full_matrices=False)
     return np.asarray(u[:, s > 1e-6 * s[0]])
 
 
-def _f(explained: float, noise: float, dof: tuple[int, int]) -> float:
-    from scipy.special import fdtrc
+def _beside(values: Floats, span: Floats) -> Floats:
+    """What orthonormal columns do not explain."""
+    return np.asarray(values - span @ (span.T @ values))
 
-    if noise <= 0.0:
+
+def _explained(rest: Floats, span: Floats) -> float:
+    """Sum of squares that orthonormal columns explain."""
+    return float(np.sum((span.T @ rest) ** 2))
+
+
+def _p(explained: float, columns: int, noise: float, left: int) -> float:
+    """Of the F test of a sum of squares against a variance of noise."""
+    if columns == 0 or noise <= 0.0:
         return 0.0 if explained > 0.0 else 1.0
-    return float(fdtrc(dof[0], dof[1], explained / dof[0] / (noise / dof[1])))
+    return f_tail(explained / columns / noise, dof_numerator=columns, dof_denominator=left)
 
 
-def _left_out(y: Floats, base: Floats) -> float:
-    """Rms of the stops, each left out in turn."""
-    errors = []
-    for first in range(0, y.size, 3):
-        kept = np.ones(y.size, dtype=bool)
-        kept[first : first + 3] = False
-        x = np.linalg.lstsq(base[kept], y[kept], rcond=1e-10)[0]
-        errors.append(y[~kept] - base[~kept] @ x)
-    return float(np.sqrt(np.mean(np.square(errors))))
+def with_seats(found: Diagnosis, seats: Seats, before: ModelResult) -> Diagnosis:
+    """A diagnosis whose base model holds the seats, told as what it is: an effect that it names.
 
-
-def with_seats(found: Diagnosis, seats: Seats) -> Diagnosis:
-    """A diagnosis whose base model holds the seats, told as what it is: an effect that it names."""
+    ``before`` is the base model without them.
+    """
     error = seats.sd / math.sqrt(2.0 * seats.effective)
     named = NamedCoefficient(SEAT_SD, seats.sd / ARCSEC, error / ARCSEC, "arcsec")
     after = found.after
-    before = replace(
-        found.before,
-        parameters=float(seats.parameters),
-        bic=seats.bic,
-        rms=seats.rms,
-        sigma0=seats.sigma0,
-        dof=float(seats.dof),
-        loo_rms=seats.loo_rms,
-    )
     record = AdoptedEffect(
         id=EFFECT.id,
         coefficients=((named.name, named.value, named.sigma or 0.0, named.unit),),
@@ -190,8 +135,9 @@ def with_seats(found: Diagnosis, seats: Seats) -> Diagnosis:
         after=after.rms / found.scale,
         unit=found.unit,
     )
-    gained = before.bic - found.before.bic
-    adoption = Adoption(EFFECT.id, EFFECT.title, (named,), (), seats.p, gained, record)
+    title = said("Crooked seats in every position")
+    symptom = said("every position stood off in the gyros across its axis")
+    adoption = Adoption(EFFECT.id, title, (named,), (), seats.p, None, record, symptom=symptom)
     others = tuple(c for c in found.candidates if c.effect != EFFECT.id)
     verdict = CandidateResult(EFFECT.id, "adopted", seats.p, seats.p, None, "named")
     remedy = said("Seat the unit more exactly, or state the standard deviation of a flip.")

@@ -11,7 +11,7 @@ from surveyapp.diagnosis.ambiguity import ambiguities
 from surveyapp.diagnosis.battery import run_battery
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.checks import check_input
-from surveyapp.diagnosis.compare import MARGIN, Level, best_with, spans
+from surveyapp.diagnosis.compare import MARGIN, Level, base_level, best_with, spans
 from surveyapp.diagnosis.datum import datum_with_rivals
 from surveyapp.diagnosis.events import event_notes
 from surveyapp.diagnosis.fits import Fit, unit_variance
@@ -155,6 +155,11 @@ def _diagnosed(
         if outlook is None
         else tuple(worth_in_words(outlook, scale=problem.scale, unit=problem.unit)),
     )
+
+
+def base_model(problem: Case) -> ModelResult:
+    """Figures of a case's base model alone."""
+    return _model(problem, base_level(problem).fits[0], None, ())
 
 
 def _outlook(problem: Case, base: Fit, digest: str) -> Outlook | None:

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from surveyapp.core.sensors.rate.position_log import ACCELEROMETERS, GYROS
-from surveyapp.diagnosis.crooked_seats import Seats, with_seats
+from surveyapp.diagnosis.crooked_seats import with_seats
+from surveyapp.diagnosis.engine import base_model
 from surveyapp.diagnosis.rate_lines import LEVELS, Stretch, with_lines_beside
 from surveyapp.diagnosis.rate_stops import LOG_COLUMNS, stops_of
 from surveyapp.diagnosis.result import Diagnosis
@@ -50,8 +51,11 @@ def case_of_log(log: SensorLog, entry: SensorLogEntry, own: tuple[Effect, ...] =
         for stop in stops
         if stop.rows is not None
     ]
-    seats = None if turns else seats_of(stops)
-    made = rate_case(stops, turns, identity=entry.id, extra=own, seats=seats)
+    made = rate_case(stops, turns, identity=entry.id, extra=own)
+    seats, seated = None if turns else seats_of(stops), None
+    if seats is not None:
+        seated = partial(with_seats, seats=seats, before=base_model(made))
+        made = rate_case(stops, turns, identity=entry.id, extra=own, seats=seats)
     if not any(stop.known is None and stop.force is not None for stop in stops):  # held by hand
         made = replace(made, levels=LEVELS)
     lines = partial(
@@ -66,17 +70,17 @@ def case_of_log(log: SensorLog, entry: SensorLogEntry, own: tuple[Effect, ...] =
         (*log.warnings, *told),
         {"stops": len(stops), "turns": len(turns)},
         partial(_directions, turns=turns) if turns else None,
-        partial(_finished, lines=lines, seats=seats),
+        partial(_finished, lines=lines, seated=seated),
         log.sha256 or "",
     )
 
 
 def _finished(
-    found: Diagnosis, *, lines: Finish, seats: Seats | None
+    found: Diagnosis, *, lines: Finish, seated: Callable[[Diagnosis], Diagnosis] | None
 ) -> tuple[Diagnosis, dict[str, Any]]:
     """The diagnosis with the lines of its samples, and with the seats that its base model holds."""
     found, keys = lines(found)
-    return (found if seats is None else with_seats(found, seats)), keys
+    return (found if seated is None else seated(found)), keys
 
 
 def _directions(diagnosis: Diagnosis, *, turns: list[RateTurn]) -> dict[str, Any]:

@@ -199,36 +199,36 @@ def test_headings_of_several_turns_are_taken_modulo_a_turn(tmp_path: Path) -> No
     assert "heading_in_radians" in codes(refused)
 
 
-def test_temperatures_in_kelvin_are_refused(tmp_path: Path) -> None:
-    rng = np.random.default_rng(2)
+def tilts(seed: int) -> dict[str, np.ndarray]:
+    """Sixty readings of a good two-axis sensor, one arcsecond of noise."""
+    rng = np.random.default_rng(seed)
     along, across = rng.uniform(-600.0, 600.0, (2, 60))
-    log = {
+    return {
         "tilt_along_arcsec": along + rng.normal(0, 1, 60),
         "tilt_across_arcsec": across + rng.normal(0, 1, 60),
         "ref_along_arcsec": along,
         "ref_across_arcsec": across,
-        "temperature_c": np.linspace(283.0, 303.0, 60),
     }
+
+
+def test_temperatures_in_kelvin_are_refused(tmp_path: Path) -> None:
+    log = tilts(2) | {"temperature_c": np.linspace(283.0, 303.0, 60)}
     with pytest.raises(SurveyError, match="cannot be in degrees Celsius"):
         api.calibrate("tilt", written(tmp_path / "k.csv", log))
     log["temperature_c"] = log["temperature_c"] - 273.15
     card, out = tmp_path / "t.toml", tmp_path / "o.csv"
     api.calibrate("tilt", written(tmp_path / "c.csv", log), card=card)
-    minutes = {**log, "tilt_along_arcsec": 60.0 * along, "tilt_across_arcsec": np.full(60, 5.0)}
+    minutes = {
+        **log,
+        "tilt_along_arcsec": 60.0 * log["ref_along_arcsec"],
+        "tilt_across_arcsec": np.full(60, 5.0),
+    }
     made = api.compensate("tilt", written(tmp_path / "m.csv", minutes), card=card, out=out)
     assert {"beyond_range", "never_changes"} <= set(codes(made))
 
 
 def test_a_card_without_a_range_says_that_no_range_is_judged(tmp_path: Path) -> None:
-    rng = np.random.default_rng(4)
-    along, across = rng.uniform(-600.0, 600.0, (2, 60))
-    log = {
-        "tilt_along_arcsec": along + rng.normal(0, 1, 60),
-        "tilt_across_arcsec": across + rng.normal(0, 1, 60),
-        "ref_along_arcsec": along,
-        "ref_across_arcsec": across,
-    }
-    source = written(tmp_path / "t.csv", log)
+    source = written(tmp_path / "t.csv", tilts(4))
     card, old, out = tmp_path / "t.toml", tmp_path / "old.toml", tmp_path / "o.csv"
     api.calibrate("tilt", source, card=card)
     lines = card.read_text(encoding="utf-8").splitlines(keepends=True)

@@ -239,25 +239,19 @@ def sage_husa(
     x, p, q, r = float(series[0]), model.r, model.q, model.r
     output.estimate[0], output.variance[0] = x, p
     least, power = LEAST_SHARE * model.r, FORGETTING
-    done = 1
-    for piece, here in output.blocks(series, 1):
-        estimate, variance, beyond = here.estimate, here.variance, here.beyond
-        for k, value in enumerate(piece.tolist()):
-            p += q
-            nu = value - x
-            power *= FORGETTING
-            d = (1.0 - FORGETTING) / (1.0 - power)
-            r = (1.0 - d) * r + d * max(nu * nu - p, least)
-            total = p + r
-            if nu * nu > LOST**2 * total:
-                beyond[k] = True
-            gain = p / total
-            x += gain * nu
-            p = (1.0 - gain) ** 2 * p + gain * gain * r
-            estimate[k], variance[k] = x, p
-        done += piece.size
-        if progress is not None:
-            progress(done / series.size)
+    for here, k, value in output.readings(series, progress):
+        p += q
+        nu = value - x
+        power *= FORGETTING
+        d = (1.0 - FORGETTING) / (1.0 - power)
+        r = (1.0 - d) * r + d * max(nu * nu - p, least)
+        total = p + r
+        if nu * nu > LOST**2 * total:
+            here.beyond[k] = True
+        gain = p / total
+        x += gain * nu
+        p = (1.0 - gain) ** 2 * p + gain * gain * r
+        here.estimate[k], here.variance[k] = x, p
     return _checked(output)
 
 

@@ -37,6 +37,7 @@ from surveyapp_models.effects.rate import (
     STOP,
     TEMPERATURE,
     by_axis,
+    flip_error,
 )
 from surveyapp_models.effects.rate.gross_error import rows as rows_of
 
@@ -249,9 +250,10 @@ def seats_of(stops: Sequence[RateStop]) -> Seats | None:
         return None
     if len(stops) < LEAST_STOPS:
         return None
-    rates = np.array([s.known for s in stops], dtype=np.float64)
-    places = np.array([s.place for s in stops], dtype=np.float64)
-    return crooked_seats(np.array([s.output for s in stops]), rates, places, unit=DEG_S)
+    columns = _stop_columns(stops)
+    by_place = [flip_error.basis(columns, place=place) for place in flip_error.places(columns)]
+    observed = np.concatenate([s.output for s in stops])
+    return crooked_seats(observed, turned_base(columns), by_place)
 
 
 def _stop_columns(stops: Sequence[RateStop]) -> dict[str, Floats]:
