@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -239,12 +239,14 @@ def allan(
     SurveyError
         For input that cannot be used.
     """
+    from surveyapp.workflows.adopted_effects import left_in
     from surveyapp.workflows.noise import allan_of_log
 
     opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
     found = allan_of_log(
         opened.file, column=column, estimator=estimator, taus=taus, progress=progress
     )
+    found = replace(found, warnings=(*found.warnings, *left_in(opened.entry)))
     return told_about(found, opened.subject)
 
 
@@ -291,6 +293,7 @@ def filter_log(
     SurveyError
         For input that cannot be used.
     """
+    from surveyapp.workflows.adopted_effects import left_in
     from surveyapp.workflows.filtering import filter_log as run
 
     opened = open_sensor_log(source, sensor=sensor, log=log, allow_outside=allow_outside)
@@ -304,6 +307,7 @@ def filter_log(
         source_file = opened.file.request.path
         written = stage(progress, 0.5, 1.0)
         write_columns(Path(out), columns, inputs=(source_file,), progress=written)
+    result = replace(result, warnings=(*result.warnings, *left_in(opened.entry)))
     return told_about(result, opened.subject)
 
 

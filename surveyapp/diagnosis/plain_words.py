@@ -144,7 +144,8 @@ def _seen(result: Diagnosis) -> str:
 
 
 def _adopted(result: Diagnosis, item: Adoption, known: dict[str, Effect], labels: Labels) -> str:
-    symptom = known[item.effect].symptom if item.effect in known else item.title
+    usual = known[item.effect].symptom if item.effect in known else item.title
+    symptom = item.symptom or usual
     parts = [
         said(
             "{name} {value:.3g} {unit} (sigma {sigma:.1g})",

@@ -108,6 +108,8 @@ class Adoption:
         How much worse the best set without it is, at the depth at which it was named.
     record : AdoptedEffect
         What is written into the project (adopted_at and software are filled in there).
+    symptom : str
+        What it looks like here; empty where it is as the effect says.
     """
 
     effect: str
@@ -117,6 +119,7 @@ class Adoption:
     p_family: float | None
     margin_bic: float | None
     record: AdoptedEffect
+    symptom: str = ""
 
 
 @dataclass(frozen=True, slots=True)

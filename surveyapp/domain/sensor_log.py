@@ -122,6 +122,8 @@ class SensorLog:
         For messages.
     first_line : int
         Line of the file with its first row, for messages; 0 where it is no file.
+    whole_span_c : tuple of float or None
+        Lowest and highest temperature of the record that was thinned to this one.
     warnings : tuple of ResultWarning
     """
 
@@ -137,6 +139,7 @@ class SensorLog:
     sha256: str = ""
     path: str = ""
     first_line: int = 0
+    whole_span_c: tuple[float, float] | None = None
     warnings: tuple[ResultWarning, ...] = ()
 
     def __post_init__(self) -> None:
@@ -183,7 +186,7 @@ class SensorLog:
                 let_go(columns[name])
         texts = {name: tuple(compress(words, kept))[::every] for name, words in self.texts.items()}
         found = replace(self, columns=columns, texts=texts, size=-(-size // every))
-        return found if every == 1 else found._told_thinned(size, every)
+        return found if every == 1 else found._told_thinned(self, size, every)
 
     def thinned(self, most: int) -> SensorLog:
         """Every k-th row, so that at most so many are left; a warning tells it."""
@@ -191,13 +194,25 @@ class SensorLog:
         if every <= 1:
             return self
         rate = self.rate_hz
-        return replace(self.every(every), rate_hz=rate)._told_thinned(self.size, every)
+        return replace(self.every(every), rate_hz=rate)._told_thinned(self, self.size, every)
 
-    def _told_thinned(self, size: int, every: int) -> SensorLog:
+    def _told_thinned(self, whole: SensorLog, size: int, every: int) -> SensorLog:
         text = said("{size} rows: one in {every} is used", size=size, every=every)
         warnings = (*self.warnings, ResultWarning("thinned", text))
         rate = None if self.rate_hz is None else self.rate_hz / every
-        return replace(self, warnings=warnings, rate_hz=rate)
+        span = whole.temperature_span_c()
+        return replace(self, warnings=warnings, rate_hz=rate, whole_span_c=span)
+
+    def temperature_span_c(self) -> tuple[float, float] | None:
+        """Lowest and highest temperature of the whole record; None where it holds none."""
+        if self.whole_span_c is not None or "temperature_c" not in self.columns:
+            return self.whole_span_c
+        low, high = np.inf, -np.inf
+        for piece in pieces(self.columns["temperature_c"]):
+            known = piece[np.isfinite(piece)]
+            low = min(low, float(known.min(initial=low)))
+            high = max(high, float(known.max(initial=high)))
+        return (low, high) if low <= high else None
 
     def has(self, *names: str) -> bool:
         """Whether every one of these columns is there."""

@@ -14,8 +14,9 @@ import numpy as np
 from surveyapp.core.geodesy.mine import grid_of
 from surveyapp.core.geodesy.position import position_of
 from surveyapp.core.sensors.adopted_effects import without_events
+from surveyapp.core.sensors.card_fits import range_doubts, resting_doubts
 from surveyapp.core.sensors.compensation import compensate_compass, compensate_tilt
-from surveyapp.core.sensors.declination import model_declination
+from surveyapp.core.sensors.declination import model_declination, unstated_sigma
 from surveyapp.core.swing.levelling import ASIDE
 from surveyapp.domain.project import OrientationSession, Project, ResultWarning, Station
 from surveyapp.domain.readings import FieldBook, Reading, ReadingKind
@@ -127,13 +128,18 @@ def _read(source: _Source, files: ProjectFiles, columns: tuple[str, ...]) -> Sen
     acc = TRIPLES["acc"] if source.card.kind == "compass" and file.has(*TRIPLES["acc"]) else ()
     log = file.read(Need(columns=(*columns, *acc), optional=("temperature_c",)))
     log, told = without_events(log, source.entry.effects)
+    _tell(told, source, files)
+    return log
+
+
+def _tell(told: Sequence[ResultWarning], source: _Source, files: ProjectFiles) -> None:
+    """Warnings of a log as warnings of the project."""
     files.findings.warnings += [
         ResultWarning(
             item.code, said("sensor_log {id}: {text}", id=source.entry.id, text=item.text)
         )
         for item in told
     ]
-    return log
 
 
 def _refusals(
@@ -179,6 +185,7 @@ def _levelling(session: OrientationSession, source: _Source, files: ProjectFiles
     refusals = _refusals(session, source, log, run | zero)
     if refusals:
         return replace(result, refusals=refusals)
+    _tell(range_doubts(log.chosen(run | zero), source.card), source, files)
     true = compensate_tilt(log, source.card, where=source.name).columns
     fixed = {k: v for k, v in source.card.constants.items() if k != "reading_sigma_arcsec"}
     calibration = compensate_tilt(
@@ -286,16 +293,22 @@ def _aimed(
     )
     if refusals:
         return result
+    _tell(resting_doubts(log, source.card, where=source.name), source, files)
     columns = compensate_compass(
         log, source.card, declination=None, where=source.name, one_reading=False
     ).columns
     headings = np.radians(np.asarray(columns["heading_deg"], dtype=np.float64))
+    within = np.isfinite(headings)
+    if not within.any():
+        text = said("no row is tilted as little as the calibration of the card")
+        return replace(result, refusals=(text,))
+    headings = headings[within]
     mean = float(np.angle(np.exp(1j * headings).mean()))
     spread = np.angle(np.exp(1j * (headings - mean)))
-    calibration = math.radians(float(np.max(np.asarray(columns["heading_sigma_deg"]))))
+    calibration = math.radians(float(np.nanmax(np.asarray(columns["heading_sigma_deg"]))))
     added = 0.0
     if declination is not None:
-        added = math.radians(_model_sigma(log) if stated is None else stated)
+        added = unstated_sigma(log) if stated is None else math.radians(stated)
     sigma = math.hypot(calibration, _mean_sigma(spread, 0.0), added)
     return replace(
         result,
@@ -359,18 +372,3 @@ def _with_model(
         sigma=math.hypot(aimed.sigma or 0.0, math.radians(sigma)),
         modelled=True,
     )
-
-
-def _model_sigma(log: SensorLog) -> float:
-    """Sigma of a model declination [deg], .31 to .50.
-
-    sqrt(0.26^2 + (5625 nT / H)^2), WMM2020 technical report (NOAA), H the horizontal field; .50
-    where the log does not tell its horizontal part.
-    """
-    field, up = log.vector("mag"), log.vector("acc")
-    if field is None or up is None:
-        return 0.50
-    unit = up / np.linalg.norm(up, axis=1)[:, None]
-    level = field - np.sum(field * unit, axis=1)[:, None] * unit
-    size = 1000.0 * float(np.median(np.linalg.norm(level, axis=1)))
-    return min(0.50, max(0.31, math.hypot(0.26, 5625.0 / size))) if size > 0.0 else 0.50

@@ -32,6 +32,18 @@ if TYPE_CHECKING:
     from surveyapp_models.effects.effect import Columns
 
 
+def left_in(entry: SensorLogEntry | None) -> tuple[ResultWarning, ...]:
+    """That a result is of the log as it was read, the effects adopted for it included."""
+    if entry is None or not entry.effects:
+        return ()
+    names = ", ".join(dict.fromkeys(effect.id for effect in entry.effects))
+    text = said(
+        "adopted for this log and left in: {names}; noise is that of the log as it was read",
+        names=names,
+    )
+    return (ResultWarning("adopted_not_applied", text),)
+
+
 def need_with_adopted(need: Need, entry: SensorLogEntry | None) -> Need:
     """A need with the columns that the adopted effects of the log take."""
     if entry is None or not entry.effects or need.optional is None:

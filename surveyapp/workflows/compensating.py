@@ -8,8 +8,6 @@ from datetime import date
 from pathlib import Path
 from typing import Any, Final
 
-import numpy as np
-
 from surveyapp.core.sensors.adopted_effects import without_events
 from surveyapp.core.sensors.card_fits import compass_doubts, tilt_doubts
 from surveyapp.core.sensors.compensation import (
@@ -22,8 +20,8 @@ from surveyapp.core.sensors.compensation import (
     compensate_tilt,
     force_sigma,
 )
+from surveyapp.core.sensors.declination import told_unstated, unstated_sigma
 from surveyapp.domain.advance import PartDone, stage
-from surveyapp.domain.columns import pieces
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_card import SensorCard
 from surveyapp.domain.sensor_entry import SensorLogEntry
@@ -147,10 +145,10 @@ def compensate_log(
     if kind == "rate":
         log = without_adopted(log, entry)
     elif entry is not None and entry.effects:
-        log, told = without_events(log, entry.effects, room=room_for)
-        log = replace(log, warnings=(*log.warnings, *told))
+        log, done = without_events(log, entry.effects, room=room_for)
+        log = replace(log, warnings=(*log.warnings, *done))
     day = entry.calibrated_on if entry is not None and entry.calibrated_on else today
-    problems = card.refusals(on=day, temperature_c=temperatures(log), where=where)
+    problems = card.refusals(on=day, temperature_c=log.temperature_span_c(), where=where)
     problems += other_instrument(card, entry, where)
     if problems:
         raise SurveyError(problems)
@@ -160,15 +158,12 @@ def compensate_log(
     elif kind == "tilt":
         doubts = tilt_doubts(log, card)
     log = replace(log, warnings=(*log.warnings, *doubts))
+    few = log.every(max(log.size // FORCE_ROWS, 1))
     if declination is not None and declination.sigma is None:
-        text = said(
-            "the declination has no sigma and counts as exact; that of a model has .31 to .50 "
-            "degrees: --declination D,SIGMA"
-        )
-        log = replace(log, warnings=(*log.warnings, ResultWarning("no_declination_sigma", text)))
-    noise = 0.0
-    if kind == "compass":
-        noise = force_sigma(log.every(max(log.size // FORCE_ROWS, 1)).vector("acc"))
+        declination = replace(declination, sigma=unstated_sigma(few))
+        told = told_unstated(declination.sigma or 0.0)
+        log = replace(log, warnings=(*log.warnings, told))
+    noise = force_sigma(few.vector("acc")) if kind == "compass" else 0.0
     rest = (declination, where, noise)
     return _parts(kind, log, card, (rest, stage(progress, READING, 1.0))), log, card
 
@@ -209,21 +204,6 @@ def _run(kind: str, log: SensorLog, card: SensorCard, rest: _Rest) -> Compensate
     if card.get("sensitivity") is not None:
         return compensate_head(log, card, where=where)
     return compensate_tilt(log, card, where=where)
-
-
-def temperatures(log: SensorLog) -> tuple[float, float] | None:
-    """Lowest and highest temperature of a record, None where it holds none."""
-    values = log.columns.get("temperature_c")
-    if values is None:
-        return None
-    low, high = np.inf, -np.inf
-    for piece in pieces(values):
-        known = piece[np.isfinite(piece)]
-        low, high = (
-            min(low, float(known.min(initial=low))),
-            max(high, float(known.max(initial=high))),
-        )
-    return (low, high) if low <= high else None
 
 
 def other_instrument(card: SensorCard, entry: SensorLogEntry | None, where: str) -> list[Problem]:
@@ -269,7 +249,7 @@ def write_compensated(
 
     write_parts(out, columns())
     warnings = list(log.warnings)
-    span = temperatures(log)
+    span = log.temperature_span_c()
     if card.temperature_c is not None and span is None:
         text = "the log holds no temperature: whether the card holds was not judged by it"
         warnings.append(ResultWarning("temperature_unknown", text))

@@ -136,6 +136,8 @@ def test_an_asymmetric_scale_is_in_the_bias_until_it_is_adopted(tmp_path: Path) 
         one = after[f"scale_factor_asymmetry_{a}"]
         assert abs(one["value"] - 200.0) < 4.0 * one["sigma"]
     assert "adopted_applied" in [w["code"] for w in done["warnings"]]
+    noise = ("allan", folder, "--sensor", "six-position", "--column", "gyr_x_rad_s", "--json")
+    assert "adopted_not_applied" in [w["code"] for w in surveyapp(*noise).json["warnings"]]
     log = folder / "sensors/six-position.csv"
     log.write_text(log.read_text() + "\n")
     again = surveyapp(*options).json

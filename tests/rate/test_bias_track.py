@@ -155,5 +155,5 @@ def test_a_declination_without_sigma_has_that_of_a_model(tmp_path: Path) -> None
         codes.append({w.code for w in found.warnings})
     assert sigmas[0] == pytest.approx(math.hypot(sigmas[1], 0.5), rel=1e-6)
     assert sigmas[2] == pytest.approx(math.hypot(sigmas[1], 0.3, 0.4), rel=1e-6)
-    assert {"declination_sigma_of_model", "initial_heading_exact"} <= codes[0]
-    assert not {"declination_sigma_of_model", "initial_heading_exact"} & (codes[1] | codes[2])
+    assert {"no_declination_sigma", "initial_heading_exact"} <= codes[0]
+    assert not {"no_declination_sigma", "initial_heading_exact"} & (codes[1] | codes[2])

@@ -18,7 +18,9 @@ from surveyapp.core.sensors.rate.multi_position_log import (
 from surveyapp.core.simulate.rate.log import SimulatedLog
 from surveyapp.core.simulate.rate.recipes import hand_run
 from surveyapp.core.simulate.rate.vehicle import hand_held_log
+from surveyapp.diagnosis.case import Levels
 from surveyapp.diagnosis.engine import diagnose
+from surveyapp.diagnosis.loop import search
 from surveyapp.diagnosis.rate_stops import stops_of
 from surveyapp.diagnosis.result import Diagnosis
 from surveyapp.diagnosis.stochastic import noise_models
@@ -185,8 +187,10 @@ def table_stops(
 
 def test_an_asymmetric_scale_and_a_crooked_seat_on_a_table_are_named() -> None:
     rng = np.random.default_rng(1)
-    found = diagnose(rate_case(table_stops(rng, asymmetry=4e-5), identity="table"))
-    assert named(found) == ["scale_asymmetry"]
+    case = rate_case(table_stops(rng, asymmetry=4e-5), identity="table")
+    assert named(diagnose(case)) == ["scale_asymmetry"]
+    gates = search(replace(case, levels=Levels(0.04, 0.01)), draws=200, confirm=None).gates
+    assert [gate.level for gate in gates] == [0.04, 0.01]
     twice = [*table_stops(rng), *table_stops(rng, flip=120.0 * ARCSEC)]
     twice = [
         replace(s, elapsed_s=60.0 * k, place=(s.place or 0) + 6 * (k // 18))

@@ -170,7 +170,13 @@ def test_the_sigma_of_a_heading_by_a_swing_holds_the_noise_of_its_reading(tmp_pa
     path, truth = swung(tmp_path / "later.csv", rng, rows=200)
     told = api.compensate("compass", path, card=card, out=out, declination="0")
     assert "no_declination_sigma" in [w.code for w in told.warnings]
+    of_model = columns(out, "heading_sigma_deg")[:, 0]
+    told = api.compensate("compass", path, card=card, out=out, declination="0,0")
+    assert "no_declination_sigma" not in [w.code for w in told.warnings]
     found = columns(out, "heading_deg", "heading_sigma_deg")
+    added = np.sqrt(of_model**2 - found[:, 1] ** 2)
+    assert np.ptp(added) < 1e-4
+    assert 0.31 <= added[0] <= 0.5001, "WMM2020 technical report: of a model"
     error = (found[:, 0] - truth + 180.0) % 360.0 - 180.0
     assert 0.90 < np.mean(np.abs(error) < 1.96 * found[:, 1]) < 0.99
 

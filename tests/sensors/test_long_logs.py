@@ -153,3 +153,16 @@ def test_a_mapped_log_is_filtered_and_compensated_as_one_in_memory(
     monkeypatch.setattr(blocks, "BLOCK_BYTES", 1000)
     assert everything(tmp_path / "mapped") == plain
     assert shares[-1] == 1.0
+
+
+def test_a_card_of_a_thinned_log_holds_the_temperatures_of_the_whole() -> None:
+    """Of 250,000 rows one in three is used; 35 C stands in one that is not, -5 C in another."""
+    temperature = np.full(250_000, 20.0)
+    temperature[[100_000, 200_002]] = 35.0, -5.0
+    log = SensorLog("a", {"temperature_c": temperature}, {}, 250_000, rate_hz=90.0)
+    thin = log.thinned(100_000)
+    assert thin.size == 83_334
+    assert thin.columns["temperature_c"].max() == 20.0 == thin.columns["temperature_c"].min()
+    assert thin.temperature_span_c() == (-5.0, 35.0)
+    assert log.chosen(temperature > 0.0, most=100_000).temperature_span_c() == (-5.0, 35.0)
+    assert SensorLog("b", {}, {}, 0).temperature_span_c() is None

@@ -182,3 +182,39 @@ def test_without_a_declination_nothing_is_said_of_north(tmp_path: Path) -> None:
     rows = pre_orientation_rows(item.pre_orientation, AngleUnit.DMS)
     assert len(rows) == 2
     assert rows[1][1] == "-"
+
+
+def test_readings_beyond_the_card_are_told_and_a_rest_is_no_dead_axis(tmp_path: Path) -> None:
+    """The log reads 65 arcsec across and never changes: the instrument stands."""
+    folder = session(tmp_path / "p")
+    card = folder / "t.toml"
+    text = card.read_text()
+    for largest, code in (("", "range_unknown"), ("50.0", "beyond_range"), ("65.0", "")):
+        constants = f"[constants]\nlargest_reading_arcsec = {largest}\n" if largest else ""
+        card.write_text(text + constants)
+        told = {w.code for w in api.open_project(folder).warnings}
+        assert told & {"range_unknown", "beyond_range", "never_changes"} == (
+            {code} if code else set()
+        )
+
+
+def test_a_compass_tilted_beyond_its_card_gives_no_heading(tmp_path: Path) -> None:
+    folder = session(tmp_path / "p", declination=", declination_deg = 2.0, sigma_deg = 0.1")
+    log = folder / "c.csv"
+    iron = {f"hard_iron_{a}": 0.0 for a in "xyz"}
+    iron |= {f"soft_iron_{a}{b}": float(a == b) for a, b in ("xx", "yy", "zz", "xy", "xz", "yz")}
+    unit = "".join(
+        f'[parameter.{name}]\nvalue = {value}\nsigma = 0.0\nunit = "1"\n'
+        for name, value in iron.items()
+    )
+    head = COMPASS_CARD.split("[parameter.")[0].replace("0.1\n", "0.1\nlargest_tilt_deg = 3.0\n")
+    (folder / "c.toml").write_text(head + unit)
+    head, *rows = log.read_text().splitlines()
+    for tilt_deg, sure in ((5.0, False), (1.0, True)):
+        force = f"{9.81 * np.sin(np.radians(tilt_deg))},0.0,{9.81 * np.cos(np.radians(tilt_deg))}"
+        made = [",".join([*row.split(",")[:4], force]) for row in rows]
+        log.write_text("\n".join([head, *made]) + "\n")
+        found = api.open_project(folder).sessions[0].pre_orientation
+        assert found is not None
+        assert (found.heading is not None) is sure
+        assert bool(found.refusals) is not sure

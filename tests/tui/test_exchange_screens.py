@@ -8,10 +8,12 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Static
 
+from surveyapp.observation.exchange import Entry
 from surveyapp.tui.app import SurveyApp
 from surveyapp.tui.screens.exchange import ImportScreen
 from surveyapp.tui.screens.export import ExportScreen
 from surveyapp.tui.screens.project import ProjectScreen
+from surveyapp.tui.views.exchange import entry_text
 from surveyapp.tui.widgets.titlebar import TitleBar
 from tests.formats import field_writers as w
 from tests.formats.importing import field_file, project, tree
@@ -110,3 +112,8 @@ async def test_a_new_project_may_begin_with_a_field_file(
         await settle(pilot)
         assert isinstance(app.screen, ImportScreen)
         assert (tmp_path / "heading" / "project.toml").exists()
+
+
+def test_a_small_file_has_a_size() -> None:
+    assert entry_text(Entry("a.gsi", "a.gsi", "gsi", 0.34)) == "a.gsi  0.3 kB"
+    assert entry_text(Entry("b.gsi", "b.gsi", "gsi", 34.4)) == "b.gsi  34 kB"

@@ -75,7 +75,12 @@ def compass_doubts(log: SensorLog, card: SensorCard, *, where: str) -> list[Resu
     force = part.vector("acc")
     if force is not None and card.get("deviation_A") is not None:
         refuse_swapped(force, log.path)
-    found = list(check_axes(part))
+    return [*check_axes(part), *resting_doubts(log, card, where=where)]
+
+
+def resting_doubts(log: SensorLog, card: SensorCard, *, where: str) -> list[ResultWarning]:
+    """The same of a compass that stands still: its axes may well never change."""
+    found = []
     doubt = field_doubt(log, card, where=where)
     if doubt is not None:
         found.append(ResultWarning("field_differs", doubt))
@@ -94,15 +99,31 @@ def compass_doubts(log: SensorLog, card: SensorCard, *, where: str) -> list[Resu
 
 
 def tilt_doubts(log: SensorLog, card: SensorCard) -> list[ResultWarning]:
-    """Readings beyond those of the calibration, and an axis that never changes.
+    """Readings beyond those of the calibration, and an axis that never changes."""
+    found = range_doubts(log, card)
+    for name in _readings(card):
+        values = log.columns[name]
+        if log.size >= FEWEST_ROWS and not any(np.any(p != values[0]) for p in pieces(values)):
+            text = said("{name} never changes: is the sensor connected?", name=name)
+            found.append(ResultWarning("never_changes", text))
+    return found
+
+
+def _readings(card: SensorCard) -> list[str]:
+    head = card.get("sensitivity") is not None
+    return ["output"] if head else ["tilt_along_arcsec", "tilt_across_arcsec"]
+
+
+def range_doubts(log: SensorLog, card: SensorCard) -> list[ResultWarning]:
+    """Readings beyond those of the calibration.
 
     A card written before cards held a range is used, and that it is not judged is told.
     """
     found: list[ResultWarning] = []
     if card.get("sensitivity") is not None:
-        names, centre, span = ["output"], card.get("zero") or 0.0, abs(card.get("sensitivity") or 0)
+        centre, span = card.get("zero") or 0.0, abs(card.get("sensitivity") or 0)
     else:
-        names, centre = ["tilt_along_arcsec", "tilt_across_arcsec"], 0.0
+        centre = 0.0
         largest = card.constants.get("largest_reading_arcsec")
         span = np.inf if largest is None else RANGE * largest
         if largest is None:
@@ -111,7 +132,7 @@ def tilt_doubts(log: SensorLog, card: SensorCard) -> list[ResultWarning]:
                 "is not judged; a new calibration from its log writes it"
             )
             found.append(ResultWarning("range_unknown", text))
-    for name in names:
+    for name in _readings(card):
         values = log.columns[name]
         beyond = sum(int(np.count_nonzero(np.abs(p - centre) > span)) for p in pieces(values))
         if beyond:
@@ -123,9 +144,6 @@ def tilt_doubts(log: SensorLog, card: SensorCard) -> list[ResultWarning]:
             )
             text += said(": another unit, or a tilt at which nothing was tried")
             found.append(ResultWarning("beyond_range", text))
-        if log.size >= FEWEST_ROWS and not any(np.any(p != values[0]) for p in pieces(values)):
-            text = said("{name} never changes: is the sensor connected?", name=name)
-            found.append(ResultWarning("never_changes", text))
     return found
 
 

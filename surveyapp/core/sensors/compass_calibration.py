@@ -277,7 +277,7 @@ def _result(
         },
         constants={} if refused else _constants(fit, dip, sigma) | _reach(log, verdict),
         notes=_notes(log, verdict),
-        temperature_c=_temperatures(log),
+        temperature_c=log.temperature_span_c(),
     )
 
 
@@ -309,13 +309,6 @@ def _notes(log: SensorLog, verdict: GeometryVerdict) -> dict[str, str]:
     for tilt in _reach(log, verdict).values():
         text += said(": up to {tilt:.1f} degrees", tilt=tilt)
     return {"restricted": text}
-
-
-def _temperatures(log: SensorLog) -> tuple[float, float] | None:
-    values = log.columns.get("temperature_c")
-    if values is None or not np.all(np.isfinite(values)):
-        return None
-    return float(values.min()), float(values.max())
 
 
 def coverage_cells(directions: Floats) -> Floats:

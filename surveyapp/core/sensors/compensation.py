@@ -35,7 +35,7 @@ _DEG_H: Final = math.pi / 180.0 / 3600.0
 
 @dataclass(frozen=True, slots=True)
 class Declination:
-    """Magnetic declination, east positive [rad]; ``sigma`` None = not stated."""
+    """Magnetic declination, east positive [rad]; ``sigma`` None = not stated, to be filled in."""
 
     value: float
     sigma: float | None

@@ -9,9 +9,18 @@ from __future__ import annotations
 
 import datetime as dt
 import math
+from typing import Final
 
+import numpy as np
+
+from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
+
+LEAST_DEG: Final = 0.31
+LARGEST_DEG: Final = 0.50
+"""Sigma of a model declination where the horizontal field is strongest and weakest."""
 
 
 def model_declination(
@@ -87,3 +96,29 @@ def model_declination(
     if not math.isfinite(sigma):
         raise SurveyError(Problem("the model has no uncertainty here", "declination"))
     return float(found.d), sigma
+
+
+def unstated_sigma(log: SensorLog) -> float:
+    """Sigma of a declination of which none is stated: that of a model [rad], .31 to .50 degrees.
+
+    sqrt(0.26^2 + (5625 nT / H)^2), WMM2020 technical report (NOAA), H the horizontal field; .50
+    where the log does not tell its horizontal part.
+    """
+    field, up = log.vector("mag"), log.vector("acc")
+    if field is None or up is None:
+        return math.radians(LARGEST_DEG)
+    unit = up / np.linalg.norm(up, axis=1)[:, None]
+    level = field - np.sum(field * unit, axis=1)[:, None] * unit
+    size = 1000.0 * float(np.median(np.linalg.norm(level, axis=1)))
+    known = math.hypot(0.26, 5625.0 / size) if size > 0.0 else LARGEST_DEG
+    return math.radians(min(LARGEST_DEG, max(LEAST_DEG, known)))
+
+
+def told_unstated(sigma: float) -> ResultWarning:
+    """That a declination without a sigma has been given this one [rad]."""
+    text = said(
+        "the declination has no sigma: that of a model, {sigma:.2f} degrees, is in the sigma of "
+        "the heading (--declination D,SIGMA)",
+        sigma=math.degrees(sigma),
+    )
+    return ResultWarning("no_declination_sigma", text)

@@ -273,7 +273,7 @@ def _result(
         n=log.size,
         sha256=log.sha256,
         covariance=None,
-        temperature_c=_temperatures(log),
+        temperature_c=log.temperature_span_c(),
     )
 
 
@@ -311,10 +311,3 @@ def _left_out(line: Line) -> Floats:
     design = np.column_stack([np.ones(line.angle.size), np.sin(line.angle)])
     q = np.linalg.qr(design)[0]
     return np.asarray(line.fit.residual / (1.0 - np.sum(q**2, axis=1)))
-
-
-def _temperatures(log: SensorLog) -> tuple[float, float] | None:
-    values = log.columns.get("temperature_c")
-    if values is None or not np.all(np.isfinite(values)):
-        return None
-    return float(values.min()), float(values.max())

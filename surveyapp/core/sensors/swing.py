@@ -171,7 +171,7 @@ def _result(
         covariance=_degrees_covariance(fit) if met else None,
         extra={"coverage_cells": [cells.tolist()]},
         constants={} if fit is None or not met else _constants(fit, sigma),
-        temperature_c=_temperatures(log),
+        temperature_c=log.temperature_span_c(),
     )
 
 
@@ -198,13 +198,6 @@ def _held_out(design: Floats, deviation: Floats, block: int) -> float | None:
             return None
         left[held] = deviation[held] - design[held] @ half.x
     return math.degrees(rms(left))
-
-
-def _temperatures(log: SensorLog) -> tuple[float, float] | None:
-    values = log.columns.get("temperature_c")
-    if values is None or not np.all(np.isfinite(values)):
-        return None
-    return float(values.min()), float(values.max())
 
 
 def odd_headings(log: SensorLog, *, met: bool) -> list[ResultWarning]:

@@ -193,10 +193,6 @@ def _result(
     raw = np.concatenate(
         [log.columns[f"tilt_{a}_arcsec"] - log.columns[f"ref_{a}_arcsec"] for a in AXES]
     )
-    temperature = log.columns.get("temperature_c")
-    span = None
-    if temperature is not None and np.all(np.isfinite(temperature)):
-        span = (float(temperature.min()), float(temperature.max()))
     after = rms(np.concatenate([item.fit.residual for item in fits]))
     plain = rms(np.concatenate([item.plain.residual for item in fits]))
     held = HeldOut(
@@ -229,7 +225,7 @@ def _result(
         n=log.size,
         sha256=log.sha256,
         covariance=_covariance(fits),
-        temperature_c=span,
+        temperature_c=log.temperature_span_c(),
         constants=_constants(log, fits, reference_c),
     )
 

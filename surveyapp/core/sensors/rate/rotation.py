@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Final, Literal
 
 import numpy as np
 
+from surveyapp.core.sensors.declination import told_unstated, unstated_sigma
 from surveyapp.core.sensors.rate.carried import Carried, Rest, Run, carry, tilt_of
 from surveyapp.core.sensors.rate.level_phase import still_ends
 from surveyapp.core.sensors.rate.parameters import DEG_H
@@ -56,10 +57,6 @@ STEP_TITLES: Final = (
     (113, "carry the heading through the rotation"),
 )
 
-MODEL_SIGMA: Final = math.radians(0.5)
-"""Of a declination that is stated without one: the World Magnetic Model's is .31 to .50 degrees
-(WMM2020 technical report, NOAA: sqrt(0.26^2 + (5625 nT / H)^2) with H of 13,000 nT)."""
-
 
 @dataclass(frozen=True, slots=True)
 class RotationOptions:
@@ -73,7 +70,7 @@ class RotationOptions:
     heading_sigma : float or None
         Of that heading [rad]; None = not stated, it counts as exact and that is told.
     declination, declination_sigma : float or None
-        [rad]; without a sigma that of a model where it is largest.
+        [rad]; without a sigma that of a model.
     latitude : float or None
         [rad]
     matrix, bias : ndarray
@@ -105,6 +102,10 @@ def find_heading(log: SensorLog, options: RotationOptions) -> NorthResult:
     SurveyError
         If a phase is missing.
     """
+    if options.declination is not None and options.declination_sigma is None:
+        options = replace(options, declination_sigma=unstated_sigma(log))
+        told = told_unstated(options.declination_sigma or 0.0)
+        log = replace(log, warnings=(*log.warnings, told))
     phases = np.array([word.strip() for word in log.texts["phase"]])
     problems = _phase_problems(phases, log.path)
     if problems:
@@ -132,17 +133,10 @@ def find_heading(log: SensorLog, options: RotationOptions) -> NorthResult:
         heading=options.heading + (options.declination or 0.0),
         latitude=options.latitude,
     )
-    sigma = math.hypot(carried.sigma, options.heading_sigma or 0.0, _declination_sigma(options))
+    added = options.declination_sigma or 0.0
+    sigma = math.hypot(carried.sigma, options.heading_sigma or 0.0, added)
     turned = before != after
     return _result(log, options, carried, sigma, found=(warm, levelling, rest, gained, turned))
-
-
-def _declination_sigma(options: RotationOptions) -> float:
-    """Of the declination that was added [rad]."""
-    if options.declination is None:
-        return 0.0
-    stated = options.declination_sigma
-    return MODEL_SIGMA if stated is None else stated
 
 
 def _run_of(log: SensorLog, rates: Floats, forces: Floats, rows: np.ndarray) -> Run:
@@ -328,13 +322,6 @@ def _warnings(options: RotationOptions, warm: WarmUp, *, turned: bool) -> list[R
             "(--initial-heading-sigma-deg)"
         )
         warnings.append(ResultWarning("initial_heading_exact", text))
-    if options.declination is not None and options.declination_sigma is None:
-        text = said(
-            "the declination has no sigma: that of a model where it is largest, {sigma:g} degrees, "
-            "is in the sigma of the heading (--declination D,SIGMA)",
-            sigma=math.degrees(MODEL_SIGMA),
-        )
-        warnings.append(ResultWarning("declination_sigma_of_model", text))
     if options.latitude is None:
         text = (
             "without a latitude the earth's rate is taken out as it was at rest; how it moved in "
