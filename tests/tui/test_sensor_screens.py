@@ -221,6 +221,8 @@ async def test_what_was_named_is_adopted_once_and_stands_in_the_project(
         assert app.screen is screen
         await pilot.press("d")
         await settle(pilot)
+        task = texts.TASK_NAMES["diagnose"]
+        assert screen.query_one(TitleBar).state == texts.TASK_NAMED.format(task=task)
         await pilot.press("a")
         await settle(pilot)
         assert isinstance(app.screen, ConfirmScreen)

@@ -173,6 +173,7 @@ class SensorLogScreen(Screen[None]):
         """Show a result and its first picture."""
         self.found, self.place = message.found, 0
         line = texts.TASK_DONE if message.found.met else texts.TASK_NOT_MET
+        line = texts.TASK_NAMED if message.found.adoptable else line
         self.query_one(TitleBar).state = line.format(task=texts.TASK_NAMES[message.found.task])
         self.show_result()
         self.show_picture()
@@ -259,7 +260,9 @@ class SensorLogScreen(Screen[None]):
 
     def _adopt(self, confirmed: bool | None) -> None:
         if confirmed:
-            self.query_one(TitleBar).state = texts.TASK_COMPUTING.format(task="diagnose")
+            self.query_one(TitleBar).state = texts.TASK_COMPUTING.format(
+                task=texts.TASK_NAMES["diagnose"]
+            )
             self.adopt()
 
     @work(thread=True, exclusive=True)
@@ -272,7 +275,7 @@ class SensorLogScreen(Screen[None]):
             return
         for line in (*(texts.ADOPTED.format(place=place) for place in written), *refused):
             self.app.call_from_thread(partial(self.notify, line, markup=False))
-        done = texts.TASK_DONE.format(task="diagnose")
+        done = texts.TASK_DONE.format(task=texts.TASK_NAMES["diagnose"])
         self.app.call_from_thread(partial(setattr, self.query_one(TitleBar), "state", done))
 
     def action_leave(self) -> None:

@@ -47,7 +47,7 @@ class SensorsScreen(PagedScreen[tuple[SensorDesk, tuple[RunShown, ...]]]):
 
     BINDINGS: ClassVar[list[BindingType]] = [
         *page_bindings(PAGES),
-        Binding("enter", "open", texts.KEY_OPEN, tooltip=texts.LONG_OPEN_LOG),
+        Binding("o,enter", "open", texts.KEY_OPEN, tooltip=texts.LONG_OPEN_LOG),
         Binding("a", "add", texts.KEY_ADD_LOG, tooltip=texts.LONG_ADD_LOG),
         Binding("f5", "reload", texts.KEY_RELOAD, tooltip=texts.LONG_RELOAD),
         Binding("escape", "leave", texts.KEY_BACK, tooltip=texts.LONG_BACK),

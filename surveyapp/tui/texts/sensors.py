@@ -100,6 +100,7 @@ TASK_NAMES: Final = {
 TASK_RUNNING: Final = "{task}: reading {share:.0%}"
 TASK_COMPUTING: Final = "{task}: computing"
 TASK_CANCELLED: Final = "cancelled; nothing was written"
+TASK_NAMED: Final = "{task}: done; A adopts what is named"
 TASK_DONE: Final = "{task}: done"
 TASK_NOT_MET: Final = "{task}: not determined or inconsistent"
 TASK_REFUSED: Final = "refused"
