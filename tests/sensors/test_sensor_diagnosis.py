@@ -68,8 +68,11 @@ def test_each_effect_is_named(tmp_path: Path, kind: str, effects: tuple[str, ...
         assert 0.8 < held["after"] < 1.25
 
 
-def test_a_switch_is_found_with_its_times_beside_a_constant_iron(tmp_path: Path) -> None:
-    document, truth = diagnosed(tmp_path, "compass", "interference_step=15", "hard_iron=10")
+@pytest.mark.parametrize("seed", [3, 4])
+def test_a_switch_is_found_with_its_times_beside_a_constant_iron(tmp_path: Path, seed: int) -> None:
+    """Both times lie within a block: a temperature was named beside it for what that block left."""
+    switch = "interference_step=15,on=40.1,off=78.35"
+    document, truth = diagnosed(tmp_path, "compass", switch, "hard_iron=10", seed=seed)
     assert named(document) == {"interference_step", "hard_iron"}
     step = next(e for e in truth["effects"] if e["effect"] == "interference_step")
     found = coefficients(document, "interference_step")
