@@ -32,7 +32,8 @@ from surveyapp.diagnosis.sensors.records import SensorRecord
 from surveyapp.diagnosis.sensors.windows import block_means
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.domain.project import ResultWarning
-from surveyapp.languages import joined
+from surveyapp.languages import joined, said
+from surveyapp.languages.names import named
 
 HELD_OUT_S: Final = 2.0
 TILT_ROWS: Final = 7
@@ -112,6 +113,11 @@ def diagnose_sensor(
     if proof is not None:
         after = proof.fit
         notes += [ResultWarning("not_adopted", joined(": ", (n, why))) for n, why in proof.refused]
+    notes += [
+        ResultWarning("not_adopted", said("{effect}: may be the field of the room",
+                                          effect=named(name)))
+        for name in found.doubted
+    ]  # fmt: skip
     best = refined(record, found.best) if found.ambiguous else after
     fits = {"before": found.before, "after": after, "after_best": best}
     verdict: Verdict = _verdict(record, found)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -132,6 +132,10 @@ class LoopResult:
         Of each step.
     ambiguous : tuple of Trial
         Effects of the last step that none could be told from another, or from noise.
+    steps : tuple of Trial
+        What was taken at each step.
+    doubted : tuple of str
+        Effects that were taken out again: the field of the room may look like them.
     """
 
     before: LoopFit
@@ -139,7 +143,8 @@ class LoopResult:
     best: LoopFit
     trials: tuple[tuple[Trial, ...], ...]
     ambiguous: tuple[Trial, ...] = ()
-    steps: tuple[Trial, ...] = field(default=())
+    steps: tuple[Trial, ...] = ()
+    doubted: tuple[str, ...] = ()
 
 
 Refine = Callable[[LoopFit], LoopFit]
