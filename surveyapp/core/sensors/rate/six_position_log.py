@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from surveyapp.core.sensors.rate.gross_samples import gross_samples
 from surveyapp.core.sensors.rate.parameters import (
     DEG_H,
     condition_of,
@@ -124,6 +125,7 @@ def calibrate_six_positions(log: SensorLog, options: SixPositionOptions) -> Cali
             *log.warnings,
             *sense_warnings(motion, warnings),
             *noted,
+            *gross_samples(log, used, GYROS),
             *_warnings(log, motion_begin_s(log, placed), options),
         ),
         met=not missing,
