@@ -159,7 +159,8 @@ def _against_rule(log: SensorLog, rule: Rule) -> Problem:
         rule,
         other,
         "from one pass to the other the vertical circle and the elevation changed in opposite "
-        "ways: look it up at the instrument; or were two sets exchanged?",
+        "ways: look it up at the instrument; or does the table turn the other way than the log "
+        "says, or were two sets exchanged?",
     )
 
 
@@ -279,7 +280,12 @@ def _calibration(
             said("repeats about their mean"),
         ),
         geometry=Geometry("good" if not undetermined else "restricted", None, undetermined),
-        warnings=(*log.warnings, *warnings, *_warnings(sets, found, relative)),
+        warnings=(
+            *log.warnings,
+            *warnings,
+            *_sense_unproved(log, found),
+            *_warnings(sets, found, relative),
+        ),
         met=met,
         n=sum(s.samples for s in sets),
         sha256=log.sha256,
@@ -289,6 +295,17 @@ def _calibration(
             "sets": [_set_dict(s, rule, relative or 0.0) for s in sets],
         },
     )
+
+
+def _sense_unproved(log: SensorLog, found: Constant) -> list[ResultWarning]:
+    """One gyro in one pass cannot tell which way the table turned."""
+    if found.scale is not None or "table_angle_deg" in log.columns:
+        return []
+    text = (
+        "only table_rate_deg_s says which way the table turned: had it turned the other way, the "
+        "elevation would have the other sign; table_angle_deg or a second pass would show it"
+    )
+    return [ResultWarning("sense_unproved", text)]
 
 
 _WHY: Final = {

@@ -97,7 +97,7 @@ def calibrate_temperature(log: SensorLog, options: TemperatureOptions) -> Calibr
         raise SurveyError(problems)
     placed, problems = placed_stretches(log, motion, numbers, ("position", CHAMBER))
     _, resting = resting_of(log, motion, placed, levelled=True)
-    shown = means_of(log, placed)
+    shown = means_of(log, placed, latitude=options.latitude)
     means, warnings, wrong = sense_of(shown, where=log.path)
     noted, told = encoder_told(
         log,
