@@ -63,7 +63,9 @@ def exceeding(seed: int, *, grade: float, factor: float, shake: float) -> tuple[
     """Share of innovations beyond the bound, and share of the motion that is called rest."""
     log, truth = drive(seed, grade=grade, shake=shake)
     still = states_of(log, false_alarm=FALSE_ALARM, factor=factor).still
-    force, rate = (np.column_stack([log.columns[c] for c in names]) for names in (ACCELEROMETERS, GYROS))
+    force, rate = (
+        np.column_stack([log.columns[c] for c in names]) for names in (ACCELEROMETERS, GYROS)
+    )
     path = inertial_path(in_memory(force, rate), still, interval_s=1.0 / HZ)
     return path.exceeding or 0.0, float(np.mean(still[~truth]))
 
