@@ -2,10 +2,9 @@
 
 Drives with sensors of four grades, on vehicles that shake and on one that does not: what share of
 the motion a gate calls rest, the right one and wider ones, what share of the velocity innovations
-then lies beyond the 99 % bound, and in what share of the drives that tells. A gate is wrong where it
-calls motion rest: how much wider it must be made for that depends on the quotient of shaking and
-noise. And how often one cluster
-of any of seven shapes is split in two (``CLEARLY_TWO``).
+lies beyond the 99 % bound then, and in what share of the drives that tells. A gate is wrong where
+it calls motion rest: how much wider it must be for that depends on the quotient of shaking and
+noise. And how often one cluster of any of seven shapes is split in two (``CLEARLY_TWO``).
 """
 
 from __future__ import annotations
@@ -104,11 +103,11 @@ def run() -> Iterator[str]:
         found = np.array(
             [exceeding(k, grade=grade, factor=factor, shake=shake) for k in range(DRIVES)]
         )
-        told = found[:, 0] > TOLERATED
+        share = float(np.mean(found[:, 0] > TOLERATED))
         yield (
             f"shaking {shake:g} m/s2, grade {grade:g}, gate times {factor:g}: of the motion called "
             f"rest {found[:, 1].min():.3f} to {found[:, 1].max():.3f}, innovations beyond "
-            f"{found[:, 0].min():.3f} to {found[:, 0].max():.3f}, told {told.mean():.2f}"
+            f"{found[:, 0].min():.3f} to {found[:, 0].max():.3f}, told {share:.2f}"
         )
     for size in (100, 400, 2000):
         told = ", ".join(f"{name} {split(name, size, RECORDS):.2f}" for name in CLUSTERS)

@@ -2,8 +2,9 @@
 
 The rule is that of ``core/sensors/rate/needed``: half the 95 % interval against a stated tolerance.
 For each number of stops, turned about any axis or about one axis only, ``SURVEYAPP_BENCH_RUNS``
-records (40), each of a unit drawn from the tolerances (half widths of 95 %): the share of parameters that are given, the share of these that are off by more than
-the tolerance (at most .05 by the rule), the share whose interval holds the truth.
+records (40), each of a unit drawn from the tolerances (half widths of 95 %): the share of
+parameters that are given, the share of these that are off by more than the tolerance (at most .05
+by the rule), the share whose interval holds the truth.
 """
 
 from __future__ import annotations
