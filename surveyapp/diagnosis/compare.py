@@ -120,17 +120,20 @@ def orthonormal_design(fit: Fit) -> Floats:
     return np.asarray(u[:, s > 1e-9 * s[0]])
 
 
-def most_parameters(size: int) -> float:
-    """Parameters beyond which a set is not considered: half the observations, five at least."""
-    return max(5.0, 0.5 * size)
+def most_parameters(problem: Case) -> float:
+    """Parameters beyond which a set is not considered: half the observations, five at least.
+
+    Nuisance unknowns take as many observations with them and count on neither side.
+    """
+    return max(5.0, 0.5 * (problem.size - problem.nuisance)) + problem.nuisance
 
 
-def may_join(candidate: Candidate, fit: Fit) -> bool:
+def may_join(candidate: Candidate, fit: Fit, *, most: float) -> bool:
     """Whether a candidate can be added: one description of the amplitude, every effect once."""
     if candidate.columns.shape[0] == 0:
         return False
     least = fit.parameters + float(candidate.charge.min())
-    if least > most_parameters(fit.residual.size):
+    if least > most:
         return False
     if candidate.describes_amplitude and any(m.candidate.describes_amplitude for m in fit.members):
         return False
@@ -181,7 +184,7 @@ def _drafts(
     for anchor in level.fits[:ANCHORS]:
         q = orthonormal_design(anchor)
         for candidate in pool:
-            if not may_join(candidate, anchor):
+            if not may_join(candidate, anchor, most=most_parameters(problem)):
                 continue
             found = _best_addition(problem, anchor, candidate, q)
             if found is None:
