@@ -138,10 +138,8 @@ def search(problem: Case, *, draws: int, confirm: Case | None) -> Search:
     last = levels[-1]
     if last.depth == 0:
         return Search(tuple(levels), tuple(gates), (), (), (), implausible, base, base, pool)
-    near = within_margin(last)
+    near, names = _heard(problem, levels, confirmed=confirm is not None)
     chosen = _chosen(last, near) or base
-    near = tuple(f for f in near if f is chosen or not refuted(problem, chosen, f))
-    names = _names(problem, levels, near, confirmed=confirm is not None)
     proofs = Proofs(current, draws, confirm)
     adopted, refused, after = _proved(problem, chosen, names, base, proofs=proofs)
     return Search(
@@ -155,6 +153,29 @@ def search(problem: Case, *, draws: int, confirm: Case | None) -> Search:
         chosen,
         pool,
     )
+
+
+def _heard(
+    problem: Case, levels: list[Level], *, confirmed: bool
+) -> tuple[tuple[Fit, ...], list[str]]:
+    """The rivals that are told, and the names that all of them have.
+
+    A generic shape keeps a first name off only against its odds; beside a first effect it is heard
+    like any other, since what that effect describes badly is left as a shape. Where there is no name
+    it is told as what it is.
+    """
+    last, asked = levels[-1], problem.levels
+    first = asked.shape_odds if last.depth == 1 else 0.0
+    for odds in sorted({first, 0.0}, reverse=True):
+        near = within_margin(last, asked.margin, odds)
+        chosen = _chosen(last, near)
+        near = tuple(
+            f for f in near if f is chosen or chosen is None or not refuted(problem, chosen, f)
+        )
+        names = _names(problem, levels, near, confirmed=confirmed)
+        if names:
+            break
+    return near, names
 
 
 def _chosen(level: Level, near: tuple[Fit, ...]) -> Fit | None:
