@@ -109,6 +109,15 @@ def _doc(item: object) -> list[str]:
     return found
 
 
+def _members(kind: type) -> dict[str, object]:
+    """What a type of this package has, with what it has from others of the package."""
+    found: dict[str, object] = {}
+    for base in reversed(kind.__mro__):
+        if base.__module__.startswith("surveyapp"):
+            found.update(vars(base))
+    return found
+
+
 def _type(name: str) -> list[str]:
     kind = getattr(api, name)
     lines = [f"### {name}", "", (inspect.getdoc(kind) or "").split("\n\n")[0], ""]
@@ -117,7 +126,7 @@ def _type(name: str) -> list[str]:
         lines.append(f"Fields: {', '.join(fields) or 'none'}.")
     own = [
         f"`{n}`" if isinstance(value, property) else f"`{n}()`"
-        for n, value in sorted(vars(kind).items())
+        for n, value in sorted(_members(kind).items())
         if not n.startswith("_") and (isinstance(value, property) or inspect.isfunction(value))
     ]
     if own:

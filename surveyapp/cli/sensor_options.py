@@ -186,9 +186,15 @@ def _print_geometry(result: Calibration) -> None:
         print(paragraph(f"no value, {why}: {', '.join(names)}"))
 
 
+NOTHING_BESIDE = 1e-6
+"""Share of its sigma below which a value is the rounding of a computation."""
+
+
 def shown_pair(value: float | None, sigma: float | None) -> tuple[str, str]:
     """A number and its standard deviation: as many digits of it as the sigma is worth."""
     decimals = decimals_of(sigma)
+    if value is not None and sigma is not None and abs(value) < NOTHING_BESIDE * sigma:
+        value = 0.0
     text = shown(value)
     if value is not None and decimals is not None and "e" not in text:
         known = len(text.partition(".")[2])

@@ -25,6 +25,7 @@ from surveyapp.core.sensors.rate.position_log import (
     placed_stretches,
     sense_of,
 )
+from surveyapp.core.sensors.rate.table_axis import axis_rate
 from surveyapp.core.sensors.rate.table_log import Turned, label, motion_of
 from surveyapp.core.sensors.rate.temperature_log import CHAMBER, node_numbers
 from surveyapp.core.sensors.rate.turn_axes import axes_problems
@@ -34,7 +35,6 @@ from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2, SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
-from surveyapp_models.constants import EARTH_RATE
 from surveyapp_models.rate.turntable import POSITIONS
 
 FIELDS = ("mag_x_uT", "mag_y_uT", "mag_z_uT")
@@ -78,6 +78,9 @@ def stops_of(
     ------
     SurveyError
     """
+    if "position" in log.texts:
+        on_table = _table_stops(log, latitude)
+        return on_table, [], _axis_unknown(on_table, latitude)
     told: tuple[ResultWarning, ...] = ()
     if latitude is None:
         text = (
@@ -85,8 +88,6 @@ def stops_of(
             "a sensitivity to gravity"
         )
         told = (ResultWarning("latitude_unknown", text),)
-    if "position" in log.texts:
-        return _table_stops(log, latitude), [], told
     rests = held_stops(log) if log.has(*ACCELEROMETERS) else []
     if len(rests) < LEAST_STOPS:
         spans = [(s.start, s.stop) for s in rests] if rests else _unmoved(log)
@@ -232,22 +233,24 @@ def _table_stops(log: SensorLog, latitude: float | None) -> list[RateStop]:
     if wrong:
         raise SurveyError(wrong)
     sense = -1.0 if warnings else 1.0
-    vertical = 0.0 if latitude is None else EARTH_RATE * math.sin(latitude)
     columns = [log.columns[c] for c in GYROS]
     found = []
     for place in placed:
         axis = "xyz".index(place.position[0])
-        up = 1.0 if place.position[1] == "+" else -1.0
+        along = np.zeros(3)
+        along[axis] = 1.0 if place.position[1] == "+" else -1.0
+        earth, measured = 0.0, False
+        if latitude is not None:
+            earth, measured = axis_rate(log, place.turned, axis, latitude=latitude)
         for item in place.turned:
-            along = np.zeros(3)
-            along[axis] = up
             first, last = item.stretch.start, item.stretch.stop
             found.append(
                 RateStop(
                     output=np.array([item.mean(c).mean for c in columns]),
                     elapsed_s=float(np.mean(log.columns["time_s"][first:last])),
                     force=along * STANDARD_GRAVITY_M_S2,
-                    known=along * (vertical - sense * item.rate),
+                    known=along * (earth - sense * item.rate),
+                    lean=None if measured else along,
                     place=POSITIONS.index(place.position) + 1 + 6 * (place.group - 1),
                     temperature_c=_mean(log, "temperature_c", first, last),
                     field=_field(log, first, last),
@@ -257,6 +260,23 @@ def _table_stops(log: SensorLog, latitude: float | None) -> list[RateStop]:
                 )
             )
     return sorted(found, key=lambda stop: stop.elapsed_s)
+
+
+def _axis_unknown(stops: Sequence[RateStop], latitude: float | None) -> tuple[ResultWarning, ...]:
+    """That the earth's rate along the table's axis is not known, and what that costs."""
+    if all(stop.lean is None for stop in stops):
+        return ()
+    text = (
+        "without accelerometers over whole turns the lean of the table is not known: the earth "
+        "rate along its axis is left free, and a sensitivity to gravity cannot be told from it"
+    )
+    if latitude is not None:
+        return (ResultWarning("table_lean_unknown", text),)
+    text = (
+        "the latitude is not known: the earth rate along the table's axis is left free, and a "
+        "sensitivity to gravity cannot be told from it"
+    )
+    return (ResultWarning("latitude_unknown", text),)
 
 
 def _table_label(place: Placed, item: Turned) -> str:

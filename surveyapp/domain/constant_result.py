@@ -10,17 +10,13 @@ from surveyapp.domain.subject import Subject
 from surveyapp_models.angles import wrap_pi
 
 
-@dataclass(frozen=True, slots=True)
-class LineConstant:
-    """Instrument constant from one calibration line [rad]."""
+class InArcsec:
+    """A constant and its standard deviation [rad] in the units of the output."""
 
-    station: str
-    target: str
-    value: float
-    sigma: float
-    count: int
-    rounds: int
-    distance_m: float | None
+    __slots__ = ()
+
+    value: float | None
+    sigma: float | None
 
     @property
     def arcsec(self) -> float | None:
@@ -37,6 +33,19 @@ class LineConstant:
         """Its standard deviation in arc-seconds."""
         return to_arcsec(self.sigma)
 
+
+@dataclass(frozen=True, slots=True)
+class LineConstant(InArcsec):
+    """Instrument constant from one calibration line [rad]."""
+
+    station: str
+    target: str
+    value: float
+    sigma: float
+    count: int
+    rounds: int
+    distance_m: float | None
+
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""
         return {
@@ -51,7 +60,7 @@ class LineConstant:
 
 
 @dataclass(frozen=True, slots=True)
-class Determination:
+class Determination(InArcsec):
     """One determination of the instrument constant, for the plot through time."""
 
     session: str
@@ -76,21 +85,6 @@ class Determination:
             return None
         return wrap_pi(self.known_azimuth - self.from_coordinates)
 
-    @property
-    def arcsec(self) -> float | None:
-        """The constant in arc-seconds, None where it is not determined."""
-        return to_arcsec(self.value)
-
-    @property
-    def deg(self) -> float | None:
-        """The constant in decimal degrees with its sign, None where it is not determined."""
-        return None if self.arcsec is None else self.arcsec / 3600.0
-
-    @property
-    def sigma_arcsec(self) -> float | None:
-        """Its standard deviation in arc-seconds."""
-        return to_arcsec(self.sigma)
-
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""
         return {
@@ -107,7 +101,7 @@ class Determination:
 
 
 @dataclass(frozen=True, slots=True)
-class ConstantResult:
+class ConstantResult(InArcsec):
     """Instrument constant (true minus gyro, astronomic terms) of one instrument [rad]."""
 
     instrument: str
@@ -119,21 +113,6 @@ class ConstantResult:
     choice: str
     by_line: tuple[LineConstant, ...]
     determinations: tuple[Determination, ...] = ()
-
-    @property
-    def arcsec(self) -> float | None:
-        """The constant in arc-seconds, None where it is not determined."""
-        return to_arcsec(self.value)
-
-    @property
-    def deg(self) -> float | None:
-        """The constant in decimal degrees with its sign, None where it is not determined."""
-        return None if self.arcsec is None else self.arcsec / 3600.0
-
-    @property
-    def sigma_arcsec(self) -> float | None:
-        """Its standard deviation in arc-seconds."""
-        return to_arcsec(self.sigma)
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""

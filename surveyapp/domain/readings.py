@@ -44,6 +44,21 @@ class Dimension(StrEnum):
     NONE = "none"
 
 
+COLUMNS = (
+    "seq",
+    "time",
+    "elapsed_s",
+    "kind",
+    "value",
+    "unit",
+    "face",
+    "side",
+    "target",
+    "temperature_c",
+    "note",
+)
+"""Columns of a field book."""
+
 QUANTITY: dict[ReadingKind, Dimension] = {
     ReadingKind.BACKSIGHT: Dimension.ANGLE,
     ReadingKind.ZENITH: Dimension.ANGLE,

@@ -23,7 +23,6 @@ from surveyapp.core.simulate.project import (
     simulate_reversal_project,
 )
 from surveyapp.core.simulate.session import (
-    COLUMNS,
     book_text,
     simulate_session,
     simulate_sessions,
@@ -36,6 +35,7 @@ from surveyapp.core.simulate.specification import (
     parse_effect,
 )
 from surveyapp.core.simulate.turning_points import SimulatedPoints, simulate_turning_points
+from surveyapp.domain.readings import COLUMNS
 from surveyapp.errors import SurveyError
 from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, AngleUnit, parse_angle, wrap_pi
 from surveyapp_models.gyro.periods import clamped_period_s, tracking_period_s

@@ -7,9 +7,9 @@ from tempfile import TemporaryDirectory
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from surveyapp.domain.readings import COLUMNS
 from surveyapp.errors import SurveyError
 from surveyapp.io.fieldbook import parse_field_book
-from surveyapp.io.fieldbook.rows import COLUMNS
 from surveyapp.io.project import read_project
 from surveyapp.io.tomltext import toml_key, toml_value
 from surveyapp_models.angles import AngleUnit

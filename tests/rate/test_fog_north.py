@@ -111,6 +111,23 @@ def test_two_positions_need_the_constant_and_its_error_enters_by_the_tangent(
         assert without.north is None
 
 
+def test_the_stated_sigma_of_the_constant_is_not_scaled_by_the_scatter_of_the_rows() -> None:
+    """Twenty rows each way without a stated noise: the constant keeps its 5", north its theory."""
+    phi, rng = math.radians(35.0), np.random.default_rng(4)
+    rows = [p for _ in range(20) for p in positions(1.0, phi, rng, count=2)]
+    found = solve_north(
+        rows,
+        latitude=phi,
+        approximate_north=1.05,
+        constant=PUBLISHED_CONSTANT,
+        constant_sigma=5.0 * ARCSEC,
+    )
+    assert found.sigmas[2] == pytest.approx(5.0 * ARCSEC, rel=1e-6)
+    level = EARTH_RATE * math.cos(phi)
+    theory = math.hypot(0.05 * DEG_H / level / math.sqrt(40.0), 5.0 * ARCSEC * math.tan(phi))
+    assert found.sigma == pytest.approx(theory, rel=0.35)  # 38 degrees of freedom: 11 % each sigma
+
+
 def test_the_approximate_north_decides_between_the_two_roots() -> None:
     north = math.radians(200.0)
     four = positions(north, 0.6, None)

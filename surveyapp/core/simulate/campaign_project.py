@@ -8,7 +8,8 @@ from typing import Any
 
 from surveyapp.core.simulate.campaign import CAMPAIGN_EFFECTS, SimulatedCampaign
 from surveyapp.core.simulate.project import station_pair, toml_head
-from surveyapp.core.simulate.session import COLUMNS, Row, book_text, circle_text
+from surveyapp.core.simulate.session import Row, book_text, circle_text
+from surveyapp.domain.readings import COLUMNS
 from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, AngleUnit, format_angle, wrap_two_pi
 
 

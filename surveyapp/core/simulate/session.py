@@ -25,24 +25,10 @@ from surveyapp.core.simulate.turning_points import (
     tape_zero_div,
     timetable,
 )
+from surveyapp.domain.readings import COLUMNS
 from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, format_angle, wrap_two_pi
 from surveyapp_models.gyro.motion import swing_position, turning_times_s, unspun_swing
 from surveyapp_models.gyro.periods import clamped_period_s, tracking_period_s
-
-COLUMNS = (
-    "seq",
-    "time",
-    "elapsed_s",
-    "kind",
-    "value",
-    "unit",
-    "face",
-    "side",
-    "target",
-    "temperature_c",
-    "note",
-)
-"""Columns of the field book."""
 
 UNSPUN_AMPLITUDE_DIV = 4.0
 """First amplitude of the simulated unspun swing [div]."""

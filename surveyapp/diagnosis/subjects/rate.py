@@ -42,6 +42,8 @@ from surveyapp_models.effects.rate import (
 from surveyapp_models.effects.rate.gross_error import rows as rows_of
 
 LEAST_STOPS = 4
+LEAN = "lean"
+"""Column of what the earth's rate along a table's axis does."""
 SEAT = "seat_"
 """Columns of what crooked seats do begin so."""
 
@@ -69,6 +71,8 @@ class RateStop:
         First and last row of the log, last exclusive.
     node : int or None
         Temperature of the chamber, from 1: the biases are taken anew at each.
+    lean : ndarray, shape (3,), or None
+        Direction of the table's axis in the body where the earth's rate along it is not known.
     """
 
     output: Floats
@@ -81,6 +85,7 @@ class RateStop:
     label: str = ""
     rows: tuple[int, int] | None = None
     node: int | None = None
+    lean: Floats | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,8 +118,13 @@ def rest_base(columns: Columns, /) -> Floats:
 
 
 def turned_base(columns: Columns, /) -> Floats:
-    """Bias and response to the rates of each gyro, shape (n, 9 + 3 nodes)."""
-    return np.column_stack([rest_base(columns), *(columns[need.name] for need in GYRO_RATES)])
+    """Bias and response to the rates of each gyro, shape (n, 9 + 3 nodes).
+
+    One column more where the earth's rate along the table's axis is not known.
+    """
+    free = [columns[LEAN]] if LEAN in columns else []
+    rates = [columns[need.name] for need in GYRO_RATES]
+    return np.column_stack([rest_base(columns), *rates, *free])
 
 
 def _repeated(columns: Columns) -> dict[str, Floats]:
@@ -159,16 +169,20 @@ def seated_base(columns: Columns, /) -> Floats:
     return np.column_stack([turned_base(columns), *(columns[name] for name in names)])
 
 
-def rate_subject(*, turned: bool, nodes: int = 0, seats: int = 0) -> DiagnosedSubject:
+def rate_subject(
+    *, turned: bool, nodes: int = 0, lean: bool = False, seats: int = 0
+) -> DiagnosedSubject:
     """The subject of stops at rest, or of stops on a table that turned, perhaps in a chamber.
 
-    ``seats`` columns of the record say what crooked seats do.
+    With ``lean`` the earth's rate along the table's axis is free; ``seats`` columns of the record
+    say what crooked seats do.
     """
     biases = tuple(f"bias_{a}" for a in "xyz")
     if nodes:
         biases = tuple(f"bias_{a}_node_{k + 1}" for k in range(nodes) for a in "xyz")
     matrix = tuple(f"response_{a}{b}" for a in "xyz" for b in "xyz")
     names = (*biases, *matrix) if turned else biases
+    names = (*names, "earth_rate_along_table") if lean else names
     names = (*names, *(f"{SEAT}{k + 1}" for k in range(seats)))
     return DiagnosedSubject(
         id="rate",
@@ -238,7 +252,8 @@ def rate_case(
     turned = bool(turns) or any(s.known is not None for s in stops)
     nodes = np.unique(columns["node"]).size if "node" in columns else 0
     effective = 0 if seats is None else seats.effective
-    case = case_of(rate_subject(turned=turned, nodes=nodes, seats=effective), record)
+    subject = rate_subject(turned=turned, nodes=nodes, lean=LEAN in columns, seats=effective)
+    case = case_of(subject, record)
     told = np.arange(observed.size) < rests
     weights = np.where(told, 1.0 / rests, 0.0)
     return replace(case, value_weights=weights, reported=told.astype(np.float64), own_scales=scales)
@@ -284,6 +299,9 @@ def _stop_columns(stops: Sequence[RateStop]) -> dict[str, Floats]:
     nodes = [float(s.node) for s in stops if s.node is not None]
     if len(nodes) == count and np.ptp(nodes) > 0.0:
         columns["node"] = each(nodes)
+    if any(s.lean is not None for s in stops):
+        free = [np.zeros(3) if s.lean is None else s.lean for s in stops]
+        columns[LEAN] = np.concatenate(free)
     places = [float(s.place) for s in stops if s.place is not None]
     if len(places) == count:
         columns["place"] = each(places)

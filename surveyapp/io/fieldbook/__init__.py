@@ -5,9 +5,9 @@ How rows are parsed, strikes resolved, sides found and lines written is told in 
 
 from __future__ import annotations
 
+from surveyapp.domain.readings import COLUMNS
 from surveyapp.io.fieldbook.appending import append_row, book_columns
 from surveyapp.io.fieldbook.reading import Judged, judge, parse_field_book, read_field_book
-from surveyapp.io.fieldbook.rows import COLUMNS
 
 __all__ = [
     "COLUMNS",

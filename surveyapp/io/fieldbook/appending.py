@@ -11,10 +11,9 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-from surveyapp.domain.readings import FieldBook
+from surveyapp.domain.readings import COLUMNS, FieldBook
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.fieldbook.reading import judge, move_tail_aside, split_tail
-from surveyapp.io.fieldbook.rows import COLUMNS
 from surveyapp.io.files import has_control, read_bytes, shown, shown_path
 from surveyapp.io.guarded import open_regular
 from surveyapp.io.tomltext import sync_folder

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Final
 
-from surveyapp.domain.readings import QUANTITY, Dimension, Face, Reading, ReadingKind, Side
+from surveyapp.domain.readings import COLUMNS, QUANTITY, Dimension, Face, Reading, ReadingKind, Side
 from surveyapp.errors import Problem, nearest_names
 from surveyapp.io.files import (
     MAX_COLUMNS,
@@ -27,19 +27,6 @@ from surveyapp.io.files import (
 from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, TWO_PI, AngleError, AngleUnit, parse_angle
 
-COLUMNS: Final = (
-    "seq",
-    "time",
-    "elapsed_s",
-    "kind",
-    "value",
-    "unit",
-    "face",
-    "side",
-    "target",
-    "temperature_c",
-    "note",
-)
 REQUIRED_COLUMNS: Final = ("seq", "kind", "value")
 
 _UNITS: Final = {

@@ -14,8 +14,8 @@ from typing import Final
 
 from surveyapp.domain.fieldfile import ImportResult
 from surveyapp.domain.project import Project, ResultWarning
+from surveyapp.domain.readings import COLUMNS
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.io.fieldbook.rows import COLUMNS
 from surveyapp.io.files import shown
 from surveyapp.io.guarded import is_reserved, name_hint
 from surveyapp.io.importers.fieldfiles.catalogue import importer_of

@@ -5,16 +5,13 @@ Columns ``kind,place,at,from,to,value,unit,sigma,sigma_unit,set,note`` (penetrat
 
 from __future__ import annotations
 
-import csv
-import math
 from typing import Final, Literal, cast
 
 from surveyapp.domain.shaft import ShaftRow, ShaftRowKind
 from surveyapp.errors import Problem, nearest_names
-from surveyapp.io.files import shown, too_many_lines
-from surveyapp.io.measures import MEASURES, is_measure
+from surveyapp.io.book_rows import MGON, BookRow, rows_of
 from surveyapp.languages import either, said
-from surveyapp_models.angles import ARCSEC, AngleError, AngleUnit, parse_angle
+from surveyapp_models.angles import ARCSEC, AngleUnit
 
 COLUMNS: Final = (
     "kind",
@@ -32,11 +29,9 @@ COLUMNS: Final = (
 REQUIRED: Final = ("kind", "value")
 PLACES: Final = ("surface", "underground")
 K = ShaftRowKind
-_UNITS: Final = {"dms": AngleUnit.DMS, "gon": AngleUnit.GON, "deg": AngleUnit.DEG}
-_MGON: Final = math.pi / 200_000.0
 _SIGMA_UNITS: Final = {
-    K.ANGLE: {"arcsec": ARCSEC, "mgon": _MGON},
-    K.AZIMUTH: {"arcsec": ARCSEC, "mgon": _MGON},
+    K.ANGLE: {"arcsec": ARCSEC, "mgon": MGON},
+    K.AZIMUTH: {"arcsec": ARCSEC, "mgon": MGON},
     K.DISTANCE: {"mm": 1e-3, "m": 1.0},
     K.DEPTH: {"mm": 1e-3, "m": 1.0},
     K.SWING: {"mm": 1.0},
@@ -48,31 +43,10 @@ _LENGTH_UNITS: Final = {
 }
 
 
-class _Row:
-    """Cells of one row and where its problems go."""
+class _Row(BookRow):
+    """One row of a shaft book."""
 
-    __slots__ = ("cells", "problems", "where")
-
-    def __init__(self, cells: dict[str, str], where: str, problems: list[Problem]) -> None:
-        self.cells, self.where, self.problems = cells, where, problems
-
-    def problem(self, what: str, found: str, expected: str, hint: str = "") -> None:
-        self.problems.append(Problem(what, self.where, shown(found), expected, hint))
-
-    def number(self, key: str) -> float | None:
-        text = self.cells[key]
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
-        if is_measure(value):
-            return value
-        if math.isfinite(value):
-            self.problem(said("{key} is beyond all measures", key=key), text, MEASURES)
-            return None
-        hint = "decimals are written with a point" if "," in text else ""
-        self.problem(said("{key} is no number", key=key), text, "a number", hint)
-        return None
+    __slots__ = ()
 
     def value(self, kind: ShaftRowKind, default: AngleUnit) -> float | None:
         text, unit = self.cells["value"], self.cells["unit"]
@@ -80,16 +54,7 @@ class _Row:
             self.problem("the value is missing", "", "what was observed")
             return None
         if kind in (K.ANGLE, K.AZIMUTH):
-            if unit and unit not in _UNITS:
-                self.problem(said("{kind} in a wrong unit", kind=kind), unit, "dms, gon or deg")
-                return None
-            try:
-                return parse_angle(text, _UNITS[unit] if unit else default)
-            except AngleError as error:
-                self.problem(
-                    said("{kind} is no angle", kind=kind), text, error.expected, error.hint
-                )
-                return None
+            return self.angle(kind, default)
         units = _LENGTH_UNITS[kind]
         if unit not in units:
             self.problem(
@@ -140,7 +105,7 @@ def _points(row: _Row, kind: ShaftRowKind) -> None:
         row.problem("the axis of the swing is not known", cells["set"], "set = x or y")
 
 
-def _read(row: _Row, default: AngleUnit, line: int) -> ShaftRow | None:
+def _read(row: _Row, default: AngleUnit) -> ShaftRow | None:
     before, cells = len(row.problems), row.cells
     if cells["kind"] not in [str(kind) for kind in K]:
         hint = nearest_names(cells["kind"], [str(kind) for kind in K])
@@ -165,7 +130,7 @@ def _read(row: _Row, default: AngleUnit, line: int) -> ShaftRow | None:
         sigma,
         cells["set"],
         cells["note"],
-        line,
+        row.line,
     )
 
 
@@ -182,44 +147,7 @@ def parse_shaft_book(
     where : str
         What messages call the book.
     """
-    too_many = too_many_lines(text, where)
-    if too_many is not None:
-        return [], [too_many]
     problems: list[Problem] = []
-    rows: list[ShaftRow] = []
-    header: list[str] | None = None
-    reader = csv.reader(text.splitlines(), strict=True)
-    try:
-        for cells in reader:
-            stripped = [cell.strip() for cell in cells]
-            if not any(stripped) or stripped[0].startswith("#"):
-                continue
-            place = said("{where}, line {line_num}", where=where, line_num=reader.line_num)
-            if header is None:
-                header = [name.lower() for name in stripped]
-                missing = [name for name in REQUIRED if name not in header]
-                if missing:
-                    what = said("there is no column {names}", names=", ".join(missing))
-                    problems.append(Problem(what, place, shown(",".join(cells)), ",".join(COLUMNS)))
-                    return rows, problems
-                continue
-            if len(stripped) > len(header):
-                hint = "decimals are written with a point"
-                found = shown(",".join(cells))
-                problems.append(Problem("more values than columns", place, found, "", hint))
-                continue
-            named = dict.fromkeys(COLUMNS, "")
-            named.update(zip(header, stripped, strict=False))
-            row = _read(_Row(named, place, problems), angle_unit, reader.line_num)
-            if row is not None:
-                rows.append(row)
-    except csv.Error as error:
-        problems.append(
-            Problem(
-                said("no CSV ({error})", error=error),
-                said("{where}, line {line_num}", where=where, line_num=reader.line_num),
-            )
-        )
-    if header is None:
-        problems.append(Problem("the book is empty", where, "", ",".join(COLUMNS)))
-    return rows, problems
+    found = rows_of(_Row, text, columns=COLUMNS, required=REQUIRED, where=where, problems=problems)
+    read = [_read(row, angle_unit) for row in found]
+    return [row for row in read if row is not None], problems

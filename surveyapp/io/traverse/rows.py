@@ -6,17 +6,16 @@ network is made (``core.network.traverse_network``).
 
 from __future__ import annotations
 
-import csv
 import math
 from typing import Final
 
 from surveyapp.domain.observations import ANGULAR, KINDS, ObservationKind
 from surveyapp.domain.traverse_book import TraverseRow
 from surveyapp.errors import Problem, nearest_names
-from surveyapp.io.files import MAX_COLUMNS, shown, too_many_columns, too_many_lines, visible
-from surveyapp.io.measures import MEASURES, is_measure
+from surveyapp.io.book_rows import MGON, BookRow, rows_of
+from surveyapp.io.measures import is_measure
 from surveyapp.languages import either, said
-from surveyapp_models.angles import ARCSEC, AngleError, AngleUnit, parse_angle
+from surveyapp_models.angles import ARCSEC, AngleUnit
 
 COLUMNS: Final = (
     "kind",
@@ -37,48 +36,13 @@ OPTIONAL: Final = ("length_m",)
 REQUIRED: Final = ("kind", "at", "to", "value")
 BOOK_KINDS: Final = {str(item.kind): item for item in KINDS if item.book}
 """Kinds that a row may have, by the word in its column."""
-_ANGLE_UNITS: Final = {"dms": AngleUnit.DMS, "gon": AngleUnit.GON, "deg": AngleUnit.DEG}
-MGON: Final = math.pi / 200_000.0
 MM: Final = 1e-3
 
 
-class _Row:
-    """Cells of one row and the place for messages."""
+class _Row(BookRow):
+    """One row of a traverse book."""
 
-    __slots__ = ("cells", "line", "problems", "where")
-
-    def __init__(
-        self, cells: dict[str, str], where: str, line: int, problems: list[Problem]
-    ) -> None:
-        self.cells, self.where, self.line, self.problems = cells, where, line, problems
-
-    def problem(self, what: str, found: str, expected: str, hint: str = "") -> None:
-        self.problems.append(
-            Problem(
-                what,
-                said("{where}, line {line}", where=self.where, line=self.line),
-                shown(found),
-                expected,
-                hint,
-            )
-        )
-
-    def number(self, key: str) -> float | None:
-        text = self.cells[key]
-        if not text:
-            return None
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
-        if is_measure(value):
-            return value
-        if math.isfinite(value):
-            self.problem(said("{key} is beyond all measures", key=key), text, MEASURES)
-            return None
-        hint = "decimals are written with a point" if "," in text else ""
-        self.problem(said("{key} is no number", key=key), text, "a number", hint)
-        return None
+    __slots__ = ()
 
     def value(self, kind: ObservationKind, default: AngleUnit) -> float | None:
         text, unit = self.cells["value"], self.cells["unit"]
@@ -92,15 +56,7 @@ class _Row:
                 self.problem(said("{kind} in a wrong unit", kind=kind), unit, "m")
                 return None
             return self.number("value")
-        if unit and unit not in _ANGLE_UNITS:
-            hint = nearest_names(unit, _ANGLE_UNITS)
-            self.problem(said("{kind} in a wrong unit", kind=kind), unit, "dms, gon or deg", hint)
-            return None
-        try:
-            return parse_angle(text, _ANGLE_UNITS[unit] if unit else default)
-        except AngleError as error:
-            self.problem(said("{kind} is no angle", kind=kind), text, error.expected, error.hint)
-            return None
+        return self.angle(kind, default)
 
     def sigma(self, kind: ObservationKind, value: float | None) -> float | None:
         text, unit = self.cells["sigma"], self.cells["sigma_unit"]
@@ -174,27 +130,6 @@ def _read(row: _Row, default: AngleUnit) -> TraverseRow | None:
     )
 
 
-def _header(cells: list[str], line: str, where: str, problems: list[Problem]) -> bool:
-    place = said("{where}, line 1", where=where)
-    if ";" in line and "," not in line:
-        problems.append(
-            Problem("the columns are separated by semicolons", place, shown(line), "commas")
-        )
-        return False
-    missing = [name for name in REQUIRED if name not in cells]
-    if missing:
-        expected = ",".join(COLUMNS)
-        problems.append(
-            Problem(
-                said("there is no column {names}", names=", ".join(missing)),
-                place,
-                shown(line),
-                expected,
-            )
-        )
-    return not missing
-
-
 def parse_traverse(
     text: str, *, angle_unit: AngleUnit, where: str
 ) -> tuple[list[TraverseRow], list[Problem]]:
@@ -212,45 +147,8 @@ def parse_traverse(
     -------
     rows, problems
     """
-    too_many = too_many_lines(text, where)
-    if too_many is not None:
-        return [], [too_many]
     problems: list[Problem] = []
-    rows: list[TraverseRow] = []
-    header: list[str] | None = None
-    reader = csv.reader(visible(text).splitlines(), strict=True)
-    try:
-        for cells in reader:
-            stripped = [cell.strip() for cell in cells]
-            if not any(stripped) or stripped[0].startswith("#"):
-                continue
-            if header is None:
-                header = [name.lower() for name in stripped]
-                if len(header) > MAX_COLUMNS:
-                    problems.append(too_many_columns(len(header), where))
-                    break
-                if not _header(header, ",".join(cells), where, problems):
-                    return rows, problems
-                continue
-            if len(stripped) > len(header):
-                place = said("{where}, line {line_num}", where=where, line_num=reader.line_num)
-                hint = "decimals are written with a point"
-                problems.append(
-                    Problem("more values than columns", place, shown(",".join(cells)), "", hint)
-                )
-                continue
-            named = dict.fromkeys((*COLUMNS, *OPTIONAL), "")
-            named.update(zip(header, stripped, strict=False))
-            row = _read(_Row(named, where, reader.line_num, problems), angle_unit)
-            if row is not None:
-                rows.append(row)
-    except csv.Error as error:
-        problems.append(
-            Problem(
-                said("no CSV ({error})", error=error),
-                said("{where}, line {line_num}", where=where, line_num=reader.line_num),
-            )
-        )
-    if header is None:
-        problems.append(Problem("the book is empty", where, "", ",".join(COLUMNS)))
-    return rows, problems
+    columns = (*COLUMNS, *OPTIONAL)
+    found = rows_of(_Row, text, columns=columns, required=REQUIRED, where=where, problems=problems)
+    read = [_read(row, angle_unit) for row in found]
+    return [row for row in read if row is not None], problems

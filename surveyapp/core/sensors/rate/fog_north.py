@@ -19,6 +19,14 @@ from surveyapp_models.arrays import Floats
 from surveyapp_models.constants import EARTH_RATE
 
 NAMES = ("north", "bias", "collimation", "elevation")
+SCALE = np.array([1.0, EARTH_RATE, 1.0, 1.0])
+"""Units of these unknowns in the design [rad], [rad/s], [rad], [rad]."""
+FIRST_NOISE = 1e-9
+"""Of a row before the residuals tell it [rad/s]."""
+LEAST_NOISE = 1e-15
+"""Of rows without any [rad/s]."""
+NOISE_ROUNDS = 4
+"""In which the rows' own scatter settles against the sigma that is stated for the constant."""
 UNDETERMINED = 1e-3
 """Singular value, as a share of the largest, below which a direction is not told by the rows: a
 thousandth of the earth rate per radian, 0.015 deg/h."""
@@ -119,35 +127,58 @@ def solve_north(
     """
     offsets = elevation_offsets(positions, constant, reading_increases=reading_increases)
     measured = np.array([p.rate for p in positions])
-    scale = np.array([1.0, EARTH_RATE, 1.0, 1.0])
     estimate = np.array([approximate_north, 0.0, 0.0, 0.0])
     prior = None if constant is None else max(constant_sigma, 1e-9)
-    noise = rate_sigma if rate_sigma is not None and rate_sigma > 0.0 else 1e-9
-    basis = _determined(positions, estimate, scale, latitude, offsets=offsets, prior=prior)
+    noise = rate_sigma if rate_sigma is not None and rate_sigma > 0.0 else FIRST_NOISE
+    basis = _determined(positions, estimate, latitude, offsets=offsets, prior=prior)
+    dof = measured.size + (prior is not None) - basis.shape[1]
+    for _ in range(1 if rate_sigma is not None or dof < 1 else NOISE_ROUNDS):
+        estimate, design = _fitted(
+            positions, estimate, basis, latitude, offsets=offsets, prior=prior, noise=noise
+        )
+        at = _at(positions, estimate, latitude, offsets=offsets)
+        if rate_sigma is None and dof > 0:
+            noise = max(math.sqrt(float((measured - at) @ (measured - at)) / dof), LEAST_NOISE)
+    return _result(
+        measured - at, estimate, design, basis=basis, noise=noise, rate_sigma=rate_sigma, dof=dof
+    )
+
+
+def _fitted(
+    positions: Sequence[Position],
+    estimate: Floats,
+    basis: Floats,
+    latitude: float,
+    *,
+    offsets: Floats,
+    prior: float | None,
+    noise: float,
+) -> tuple[Floats, Floats]:
+    """Unknowns by least squares from a first estimate on, and the design at them."""
+    measured = np.array([p.rate for p in positions])
     design = np.zeros((0, 4))
     for _ in range(30):
-        at = [
-            predicted(p, estimate, latitude=latitude, offset=o)
-            for p, o in _both(positions, offsets)
-        ]
         design, rest = _rows(
-            positions, estimate, scale, latitude, offsets=offsets, prior=prior, noise=noise
+            positions, estimate, latitude, offsets=offsets, prior=prior, noise=noise
         )
+        at = _at(positions, estimate, latitude, offsets=offsets)
         rest[: measured.size] += (measured - at) / noise
         step, *_ = np.linalg.lstsq(design @ basis, rest, rcond=None)
-        estimate = estimate + basis @ step * scale
+        estimate = estimate + basis @ step * SCALE
         if float(np.abs(step).max(initial=0.0)) < 1e-13:
             break
-    at = [predicted(p, estimate, latitude=latitude, offset=o) for p, o in _both(positions, offsets)]
-    return _result(
-        measured - at,
-        estimate,
-        scale,
-        design,
-        basis=basis,
-        noise=noise,
-        rate_sigma=rate_sigma,
-        prior=prior,
+    return estimate, design
+
+
+def _at(
+    positions: Sequence[Position], estimate: Floats, latitude: float, *, offsets: Floats
+) -> Floats:
+    """What the positions would show, shape (n,) [rad/s]."""
+    return np.array(
+        [
+            predicted(p, estimate, latitude=latitude, offset=o)
+            for p, o in zip(positions, offsets.tolist(), strict=True)
+        ]
     )
 
 
@@ -178,21 +209,20 @@ def elevation_offsets(
 def _rows(
     positions: Sequence[Position],
     estimate: Floats,
-    scale: Floats,
     latitude: float,
     *,
     offsets: Floats,
     prior: float | None,
     noise: float,
 ) -> tuple[Floats, Floats]:
-    """Design in units of ``scale`` and of the noise, and the right side that the prior gives."""
+    """Design in units of ``SCALE`` and of the noise, and the right side that the prior gives."""
     rows = []
     step = 1e-6
     for position, offset in _both(positions, offsets):
         row = []
         for k in range(4):
             shift = np.zeros(4)
-            shift[k] = step * scale[k]
+            shift[k] = step * SCALE[k]
             high = predicted(position, estimate + shift, latitude=latitude, offset=offset)
             low = predicted(position, estimate - shift, latitude=latitude, offset=offset)
             row.append((high - low) / (2.0 * step) / noise)
@@ -207,16 +237,13 @@ def _rows(
 def _determined(
     positions: Sequence[Position],
     estimate: Floats,
-    scale: Floats,
     latitude: float,
     *,
     offsets: Floats,
     prior: float | None,
 ) -> Floats:
     """Directions of the four unknowns that the rows tell, shape (4, k)."""
-    design, _ = _rows(
-        positions, estimate, scale, latitude, offsets=offsets, prior=None, noise=EARTH_RATE
-    )
+    design, _ = _rows(positions, estimate, latitude, offsets=offsets, prior=None, noise=EARTH_RATE)
     if prior is not None:
         design = np.vstack([design, [0.0, 0.0, 0.0, 1.0]])
     _, size, right = np.linalg.svd(design, full_matrices=False)
@@ -226,20 +253,18 @@ def _determined(
 def _result(
     rest: Floats,
     estimate: Floats,
-    scale: Floats,
     design: Floats,
     *,
     basis: Floats,
     noise: float,
     rate_sigma: float | None,
-    prior: float | None,
+    dof: int,
 ) -> FogNorth:
     known = np.sum(basis**2, axis=1) > 1.0 - 1e-6
     missing = {name for name, told in zip(NAMES, known, strict=True) if not told}
-    dof = rest.size + (prior is not None) - basis.shape[1]
     _, r = np.linalg.qr(design @ basis)
     inverse = basis @ np.linalg.solve(r, np.eye(basis.shape[1]))
-    spread = np.sqrt(np.sum(inverse**2, axis=1)) * scale
+    spread = np.sqrt(np.sum(inverse**2, axis=1)) * SCALE
     factor, quantile = _judged(rest, noise, rate_sigma, dof)
     sigma = [None if factor is None else float(s * factor) for s in spread]
     value = [None if name in missing else float(v) for name, v in zip(NAMES, estimate, strict=True)]

@@ -14,6 +14,7 @@ from surveyapp.core.sensors.rate.fog_station import (
     Scatter,
     combine,
 )
+from surveyapp.core.sensors.rate.gross_samples import gross_samples
 from surveyapp.core.sensors.rate.table_log import (
     Turned,
     encoder_told,
@@ -84,6 +85,7 @@ def calibrate_fog_station(
     found = combine(sets, rule=rule, relative_rate_sigma=relative_rate_sigma or 0.0)
     if found.scale is not None and abs(found.scale) > NO_SCALE_ERROR:
         raise SurveyError(_against_rule(log, rule))
+    warnings += gross_samples(log, [t for turned in turns.values() for t in turned], NEEDED)
     return _calibration(log, sets, found, rule, relative=relative_rate_sigma, warnings=warnings)
 
 
@@ -128,7 +130,7 @@ def turned_sets(
     noted, wrong = encoder_told(log, motion, every, relative_rate_sigma=relative_rate_sigma)
     problems = [*problems, *wrong]
     if problems:
-        raise SurveyError(_told_once(problems))
+        raise SurveyError(list(dict.fromkeys(problems)))
     return found, [*sense_warnings(motion), *noted]
 
 
@@ -159,12 +161,9 @@ def _against_rule(log: SensorLog, rule: Rule) -> Problem:
         rule,
         other,
         "from one pass to the other the vertical circle and the elevation changed in opposite "
-        "ways: look it up at the instrument; or were two sets exchanged?",
+        "ways: look it up at the instrument; or does the table turn the other way than the log "
+        "says, or were two sets exchanged?",
     )
-
-
-def _told_once(problems: list[Problem]) -> list[Problem]:
-    return list(dict.fromkeys(problems))
 
 
 def _paired(groups: dict[tuple[int, int], list[Any]]) -> dict[tuple[int, int], list[Any]]:
@@ -279,7 +278,12 @@ def _calibration(
             said("repeats about their mean"),
         ),
         geometry=Geometry("good" if not undetermined else "restricted", None, undetermined),
-        warnings=(*log.warnings, *warnings, *_warnings(sets, found, relative)),
+        warnings=(
+            *log.warnings,
+            *warnings,
+            *_sense_unproved(log, found),
+            *_warnings(sets, found, relative),
+        ),
         met=met,
         n=sum(s.samples for s in sets),
         sha256=log.sha256,
@@ -289,6 +293,17 @@ def _calibration(
             "sets": [_set_dict(s, rule, relative or 0.0) for s in sets],
         },
     )
+
+
+def _sense_unproved(log: SensorLog, found: Constant) -> list[ResultWarning]:
+    """One gyro in one pass cannot tell which way the table turned."""
+    if found.scale is not None or "table_angle_deg" in log.columns:
+        return []
+    text = (
+        "only table_rate_deg_s says which way the table turned: had it turned the other way, the "
+        "elevation would have the other sign; table_angle_deg or a second pass would show it"
+    )
+    return [ResultWarning("sense_unproved", text)]
 
 
 _WHY: Final = {

@@ -14,6 +14,7 @@ import numpy as np
 
 from surveyapp.core.sensors.rate.accelerometers import Resting
 from surveyapp.core.sensors.rate.six_position import PositionMeans, StaticMeans, position_means
+from surveyapp.core.sensors.rate.table_axis import axis_rate
 from surveyapp.core.sensors.rate.table_log import (
     Turned,
     motion_of,
@@ -137,8 +138,10 @@ def _saturation(log: SensorLog, placed: Placed, where: str) -> list[Problem]:
     return []
 
 
-def means_of(log: SensorLog, placed: Sequence[Placed]) -> list[PositionMeans]:
-    """Slope and rest of each position."""
+def means_of(
+    log: SensorLog, placed: Sequence[Placed], *, latitude: float | None = None
+) -> list[PositionMeans]:
+    """Slope and rest of each position, and the earth's rate along it where a latitude [rad] is."""
     columns = [log.columns[c] for c in GYROS]
     every = [t for p in placed for t in p.turned]
     red = [red_noise_factor(every, c) for c in columns]
@@ -153,6 +156,9 @@ def means_of(log: SensorLog, placed: Sequence[Placed]) -> list[PositionMeans]:
         )
         if not all(t.whole for t in place.turned):
             one = replace(one, rest=np.full(3, np.nan))
+        if latitude is not None:
+            earth, _ = axis_rate(log, place.turned, one.axis, latitude=latitude)
+            one = replace(one, earth=earth)
         found.append(one)
     return found
 

@@ -37,6 +37,8 @@ class PositionMeans:
         Round of the programme: the body is seated anew in each.
     rate : float
         Mean size of the table's rate [rad/s].
+    earth : float or None
+        The earth's rate along the table's axis, upwards [rad/s]; None without a latitude.
     """
 
     position: str
@@ -46,6 +48,7 @@ class PositionMeans:
     sigma_rest: Floats
     group: int = 0
     rate: float = 0.0
+    earth: float | None = None
 
     @property
     def axis(self) -> int:
@@ -141,19 +144,17 @@ def solve_six_positions(
     *,
     flip_sigma: float = 0.0,
     relative_rate_sigma: float = 0.0,
-    vertical_rate: float | None = None,
 ) -> GyroTriad:
     """Matrix and biases from whatever positions there are.
 
     Parameters
     ----------
     means : sequence of PositionMeans
+        Where they know the earth's rate, one position of a pair suffices for the bias.
     flip_sigma : float
         Standard deviation of the seating about each body axis [rad].
     relative_rate_sigma : float
         Of the table's rate.
-    vertical_rate : float, optional
-        Vertical part of the earth rate [rad/s]: then one position of a pair suffices for the bias.
 
     Returns
     -------
@@ -171,7 +172,7 @@ def solve_six_positions(
         noise = np.sqrt(np.sum([m.sigma_slope**2 for m in here], axis=0)) / count
         sigma[:, axis] = _with_flips(noise, axis, count, flip_sigma, relative=relative_rate_sigma)
         bias[axis], sigma_bias[axis] = _own_bias(
-            here, axis, matrix[axis, axis], vertical_rate, relative=relative_rate_sigma
+            here, axis, matrix[axis, axis], relative=relative_rate_sigma
         )
     return GyroTriad(matrix, bias, sigma, sigma_bias)
 
@@ -194,7 +195,6 @@ def _own_bias(
     here: Sequence[PositionMeans],
     axis: int,
     scale: float,
-    vertical: float | None,
     *,
     relative: float,
 ) -> tuple[float, float]:
@@ -207,9 +207,9 @@ def _own_bias(
             for side in rests.values()
         ]
         return float(np.mean(sides)), 0.5 * math.sqrt(float(sum(variance)))
-    if vertical is None:
+    free = [m.rest[axis] - m.up * scale * m.earth for m in here if m.earth is not None]
+    if len(free) < len(here):
         return math.nan, math.nan
-    free = [m.rest[axis] - m.up * scale * vertical for m in here]
     variance_one = sum(m.own_rest_sigma(relative) ** 2 for m in here) / len(here) ** 2
     return float(np.mean(free)), math.sqrt(float(variance_one))
 

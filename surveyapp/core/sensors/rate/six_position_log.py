@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from surveyapp.core.sensors.rate.gross_samples import gross_samples
 from surveyapp.core.sensors.rate.parameters import (
     DEG_H,
     condition_of,
@@ -99,7 +100,7 @@ def calibrate_six_positions(log: SensorLog, options: SixPositionOptions) -> Cali
     if problems:
         raise SurveyError(problems)
     static, resting = resting_of(log, motion, placed)
-    shown = means_of(log, placed)
+    shown = means_of(log, placed, latitude=options.latitude)
     means, warnings, problems = sense_of(shown, where=log.path)
     used = [t for p in placed for t in p.turned]
     noted, wrong = encoder_told(log, motion, used, relative_rate_sigma=options.relative_rate_sigma)
@@ -124,6 +125,7 @@ def calibrate_six_positions(log: SensorLog, options: SixPositionOptions) -> Cali
             *log.warnings,
             *sense_warnings(motion, warnings),
             *noted,
+            *gross_samples(log, used, GYROS),
             *_warnings(log, motion_begin_s(log, placed), options),
         ),
         met=not missing,
@@ -138,12 +140,10 @@ def calibrate_six_positions(log: SensorLog, options: SixPositionOptions) -> Cali
 
 
 def _solve(means: Sequence[PositionMeans], options: SixPositionOptions) -> GyroTriad:
-    vertical = None if options.latitude is None else EARTH_RATE * math.sin(options.latitude)
     return solve_six_positions(
         means,
         flip_sigma=options.flip_sigma,
         relative_rate_sigma=options.relative_rate_sigma,
-        vertical_rate=vertical,
     )
 
 

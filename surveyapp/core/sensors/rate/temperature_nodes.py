@@ -35,7 +35,6 @@ from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2
 from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats
-from surveyapp_models.constants import EARTH_RATE
 
 FULL_RANK = 12
 """Of the accelerometers in six positions."""
@@ -152,19 +151,17 @@ def _common(triad: AccelerometerTriad, *, alone: bool) -> dict[str, float]:
 def _gyro(means: Sequence[PositionMeans], options: TemperatureOptions) -> GyroTriad:
     """Matrix as in six positions; the bias from every position with the matrix as measured there.
 
-    How the unit is seated enters the measured column and the vertical earth rate alike, so every
-    position serves for every bias.
+    How the unit is seated enters the measured column and the earth's rate along the table's axis
+    alike, so every position serves for every bias.
     """
-    vertical = EARTH_RATE * math.sin(options.latitude)
     triad = solve_six_positions(
         means,
         flip_sigma=options.flip_sigma,
         relative_rate_sigma=options.relative_rate_sigma,
-        vertical_rate=vertical,
     )
     if not means:
         return triad
-    free = np.array([m.rest - m.up * m.column() * vertical for m in means])
+    free = np.array([m.rest - m.up * m.column() * (m.earth or 0.0) for m in means])
     noise = np.array([m.sigma_rest for m in means])
     for one, row in zip(means, noise, strict=True):
         row[one.axis] = one.own_rest_sigma(options.relative_rate_sigma)

@@ -279,6 +279,12 @@ def about_turns(stretch: Steady, values: Floats) -> Floats:
     return np.asarray(part - design @ solution)
 
 
+def round_the_turn(stretch: Steady, values: Floats) -> Floats:
+    """Cosine and sine of the table's angle in the samples of a stretch, shape (2,)."""
+    part = values[stretch.start : stretch.stop]
+    return np.asarray(np.linalg.lstsq(_design(stretch.angles), part, rcond=None)[0][1:])
+
+
 def mean_over_turns(stretch: Steady, values: Floats) -> TurnMean:
     """Mean of whole turns, the turning earth rate fitted beside it.
 
