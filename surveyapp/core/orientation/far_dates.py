@@ -82,8 +82,8 @@ def drift_notes(
             continue
         text = said(
             "line {line}: far in time from the determinations of {instrument}. One instrument in "
-            "{odds} drifts; if it does, its constant here is {value:.1f}\" +- {half:.0f}\" (95 %) "
-            "instead of +- {interval95:.1f}\". A determination near this date would tell",
+            '{odds} drifts; if it does, its constant here is {value:.1f}" +- {half:.0f}" (95 %) '
+            'instead of +- {interval95:.1f}". A determination near this date would tell',
             line=line.line,
             instrument=instrument,
             odds=round(1.0 / drift_share(priors)),
