@@ -1,6 +1,6 @@
 """What each part of the rule of names does: right against wrong names, on records of its own.
 
-Every line of runs at N = 20 of ``operating_characteristics`` and the lines that are in no catalogue,
+Every line of runs at N = 20 of ``operating_characteristics`` and the lines that no catalogue has,
 with seeds of this bench, searched under several rules: the specification's own (a gate of .05 at
 every depth, rivals worse by 4 BIC), then one change after the other to the rule that is used, then
 smaller margins. SURVEYAPP_BENCH_RUNS is the number of records a line.

@@ -161,8 +161,8 @@ def _heard(
     """The rivals that are told, and the names that all of them have.
 
     A generic shape keeps a first name off only against its odds; beside a first effect it is heard
-    like any other, since what that effect describes badly is left as a shape. Where there is no name
-    it is told as what it is.
+    like any other, since what that effect describes badly is left as a shape. Where there is no
+    name it is told as what it is.
     """
     last, asked = levels[-1], problem.levels
     first = asked.shape_odds if last.depth == 1 else 0.0

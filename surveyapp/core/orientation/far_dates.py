@@ -1,4 +1,4 @@
-"""What a line far in time from the determinations of its instrument must know: if it drifts, +- X."""
+"""What a line far in time from the determinations must know: if the instrument drifts, +- X."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
-"""What a constant may be at a far date if the instrument drifts: the average says how likely that is.
+"""What a constant may be at a far date if the instrument drifts; the average says how likely it is.
 
-Determinations of one day leave the rate of a drift as open as it was before. Averaged over
-everything that may be at work a drift counts as often as the archive has taught, one time in twenty;
-whoever has such an instrument wants to know what then. The rate is that of the archive: a size in
-standard deviations of a determination over the span of a campaign, and spans of many lengths.
+Determinations of one day leave the rate of a drift as open as it was before. Averaged over all that
+may be at work a drift counts as often as the archive has taught, one time in twenty; whoever has
+such an instrument wants to know what then. The rate is that of the archive: a size in standard
+deviations of a determination over the span of a campaign, and spans of many lengths.
 
 Source: the equations of ``members`` for one straight line beside a flat constant (prediction.md A,
 equations 1 to 8).
