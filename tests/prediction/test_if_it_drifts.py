@@ -60,7 +60,7 @@ def test_it_is_generalized_least_squares_with_a_prior_of_the_rate() -> None:
 
 @pytest.mark.parametrize("n", [4, 20])
 def test_it_holds_drifts_that_a_day_does_not_show(n: int) -> None:
-    """A drift alone: the average holds a third of them at 120 days, this .95 (of 60: 52 at least)."""
+    """A drift alone: the average holds a third of them at 120 days, this .95 (52 of 60)."""
     inside = averaged = 0
     for i in range(60):
         made = draw_short("drift", n, 1, np.random.default_rng([77, n, i]))
