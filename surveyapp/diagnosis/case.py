@@ -59,18 +59,24 @@ class OwnScale:
 
 @dataclass(frozen=True, slots=True)
 class Levels:
-    """Family p below which the search goes on (diagnosis.md step 3).
+    """What the search asks of a record (diagnosis.md steps 3 and 4).
 
     Parameters
     ----------
-    first : float
-        Beside the base model: the rate of false alarms.
-    further : float
-        Beside what was found: the rate of wrong names that stand with a right one.
+    first, further : float
+        Family p below which the search goes on. Beside the base model: the rate of false alarms;
+        beside what was found: the rate of wrong names that stand with a right one.
+    margin : float
+        BIC by which every rival of a name must be worse.
+    shape_odds : float
+        BIC that each generic shape in a rival is charged beforehand: twice the logarithm of prior
+        odds against it.
     """
 
     first: float = 0.05
     further: float = 0.05
+    margin: float = 4.0
+    shape_odds: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
