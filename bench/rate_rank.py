@@ -2,8 +2,9 @@
 
 The rule is that of ``core/sensors/rate/needed``: half the 95 % interval against a stated tolerance.
 For each number of stops, turned about any axis or about one axis only, ``SURVEYAPP_BENCH_RUNS``
-records (40): the share of parameters that are given, the share of these that are off by more than
-the tolerance (at most .05 by the rule), the share whose interval holds the truth.
+records (40), each of a unit drawn from the tolerances (half widths of 95 %): the share of
+parameters that are given, the share of these that are off by more than the tolerance (at most .05
+by the rule), the share whose interval holds the truth.
 """
 
 from __future__ import annotations
@@ -20,14 +21,40 @@ from surveyapp.core.sensors.rate.multi_position_log import (
     MultiPositionOptions,
     calibrate_multi_position,
 )
-from surveyapp.core.sensors.rate.needed import tolerance_of
+from surveyapp.core.sensors.rate.needed import (
+    CROSS_TOLERANCE,
+    SCALE_TOLERANCE,
+    ZERO_TOLERANCE,
+    tolerance_of,
+)
 from surveyapp.core.simulate.rate.recipes import hand_run
-from surveyapp.core.simulate.rate.vehicle import hand_held_log
+from surveyapp.core.simulate.rate.vehicle import HandRun, hand_held_log
 from surveyapp.core.statistics.distributions import NORMAL_95
 from surveyapp.errors import SurveyError
+from surveyapp_models.arrays import Floats
 
 RUNS = int(os.environ.get("SURVEYAPP_BENCH_RUNS", "40"))
 STOPS = (5, 6, 7, 8, 10, 12, 18)
+
+
+def drawn(run: HandRun, rng: np.random.Generator) -> HandRun:
+    """The run with a unit of errors as large as makers leave open."""
+
+    def some(half: float, *shape: int) -> Floats:
+        return rng.normal(0.0, half / NORMAL_95, shape)
+
+    gyro = replace(
+        run.gyro,
+        scale=some(SCALE_TOLERANCE, 3),
+        misalignment=some(CROSS_TOLERANCE, 3, 3) * (1.0 - np.eye(3)),
+    )
+    accelerometer = replace(
+        run.accelerometer,
+        bias=some(ZERO_TOLERANCE, 3),
+        scale=some(SCALE_TOLERANCE, 3),
+        misalignment=some(CROSS_TOLERANCE, 3, 3) * np.tri(3, k=-1),
+    )
+    return replace(run, gyro=gyro, accelerometer=accelerometer)
 
 
 def counts(stops: int, *, one_axis: bool, runs: int) -> list[int]:
@@ -36,6 +63,7 @@ def counts(stops: int, *, one_axis: bool, runs: int) -> list[int]:
     for k in range(runs):
         rng = np.random.default_rng([9, stops, k, int(one_axis)])
         run = replace(hand_run({"stops": float(stops)}, rng), interval_s=0.04, warmth=0.0)
+        run = drawn(run, rng)
         log = hand_held_log(replace(run, one_axis=one_axis), rng)
         try:
             result = calibrate_multi_position(as_read(log), MultiPositionOptions(run.latitude))

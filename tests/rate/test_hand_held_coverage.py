@@ -15,6 +15,7 @@ from bench.rate_coverage import (
     temperature_alone,
 )
 from bench.rate_rank import counts
+from surveyapp.core.sensors.rate.hand_forces import LEVELS, fit_forces
 
 
 @pytest.mark.statistical
@@ -68,12 +69,32 @@ def test_intervals_of_table_programmes_hold_the_truth() -> None:
     assert float(np.mean([share for share, _ in alone.values()])) >= 0.70
 
 
+@pytest.mark.parametrize("tilt", [0.05, 0.14, 0.6, 1.2])
+@pytest.mark.parametrize("bias", [-0.5, 0.03, 0.5])
+def test_of_two_spheres_through_a_circle_of_stops_the_one_near_zero_is_taken(
+    bias: float, tilt: float
+) -> None:
+    """Stops turned about z lie on a circle; the mirrored centre is 2 g cos(tilt) away.
+
+    Without a word on scale and zero both fit exactly; half of the records took the mirror.
+    """
+    turns = np.linspace(0.3, 6.0, 9)
+    level = np.column_stack([np.sin(turns), np.cos(turns)]) * np.sin(tilt)
+    ups = np.column_stack([level, np.full(turns.size, np.cos(tilt))])
+    noise = np.random.default_rng(7).normal(0.0, 1e-3, ups.shape)
+    forces = 9.80665 * ups + [0.02, -0.03, bias] + noise
+    for sign in (1.0, -1.0):  # the unit upside down, too
+        for form in LEVELS:
+            found = fit_forces(sign * forces, level=form, gravity=9.80665)
+            assert abs(found.bias[2]) < 0.8, form
+
+
 @pytest.mark.statistical
 def test_parameters_of_too_few_or_alike_stops_are_not_given() -> None:
     """About one axis next to nothing is given; what is given is within the tolerance."""
-    total, given, wrong, _ = counts(12, one_axis=True, runs=3)
-    assert given <= 0.3 * total
-    assert wrong <= 0.1 * total
+    total, given, wrong, _ = counts(10, one_axis=True, runs=6)
+    assert 0 < given <= 0.3 * total
+    assert wrong == 0
     total, given, wrong, _ = counts(12, one_axis=False, runs=3)
     assert given >= 0.8 * total
     assert wrong == 0

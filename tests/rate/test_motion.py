@@ -242,14 +242,20 @@ def test_two_detectors_agree_on_a_measured_walk_and_a_static_record_has_no_motio
 
 @pytest.mark.statistical
 def test_a_gate_that_calls_driving_rest_is_told_at_every_grade_of_sensor() -> None:
-    """Bench rate_motion: .000 to .003 with a right gate, .10 and more with a wrong one."""
-    for grade in (1.0, 4.0):
-        share, off = exceeding(0, grade, 1.0)
-        assert off <= 0.02
+    """Bench rate_motion: a gate is wrong by what it calls rest, not by its factor.
+
+    A fine sensor on a vehicle that shakes fifty times more than it reads is at rest by no gate
+    500 times too wide; one 2000 times too wide is wrong there, too.
+    """
+    for grade, shake, wide in ((0.3, 0.15, 2000.0), (1.0, 0.6, 2000.0), (4.0, 0.15, 500.0)):
+        share, off = exceeding(0, grade=grade, factor=1.0, shake=shake)
+        assert off == 0.0
         assert share <= TOLERATED
-        share, off = exceeding(0, grade, 500.0)
+        share, off = exceeding(0, grade=grade, factor=wide, shake=shake)
         assert off > 0.05
-        assert share > 5.0 * TOLERATED
+        assert share > 3.0 * TOLERATED
+    share, off = exceeding(0, grade=0.3, factor=500.0, shake=0.15)
+    assert off <= 0.05
 
 
 def test_one_state_is_seldom_taken_for_two() -> None:

@@ -109,10 +109,8 @@ def fit_forces(
     start : ndarray, shape (p,), optional
         Parameters to begin with.
     """
-    vector = _first_guess(forces, level, gravity) if start is None else start
     dof = forces.shape[0] - PARAMETERS[level]
-    if start is None:
-        vector = _fitted(forces, level, vector, gravity, noise=_STOP_NOISE)
+    vector = _from_nothing(forces, level, gravity) if start is None else start
     rest, _ = _misfit(forces, level, vector, gravity)
     noise = math.sqrt(float(rest @ rest) / max(dof, 1))
     vector = _fitted(forces, level, vector, gravity, noise=min(noise, _STOP_NOISE))
@@ -134,7 +132,7 @@ def _fitted(forces: Floats, level: str, vector: Floats, gravity: float, *, noise
     count = PARAMETERS[level]
     damping = 1e-6
     weight = noise / _tolerances(level)
-    nominal = np.array([0.0] * 3 + [1.0] * 3 + [0.0] * 3)[:count]
+    nominal = _nominal(level)
 
     def held(at: Floats) -> tuple[Floats, Floats]:
         rest, jacobian = _misfit(forces, level, at, gravity)
@@ -158,6 +156,28 @@ def _fitted(forces: Floats, level: str, vector: Floats, gravity: float, *, noise
         else:
             damping = min(damping * 10.0, 1e3)
     return vector
+
+
+def _from_nothing(forces: Floats, level: str, gravity: float) -> Floats:
+    """Parameters where none are known yet.
+
+    Stops turned about one axis lie on a circle, and two spheres of one gravity go through it: the
+    true centre and its mirror, two gravities away. So the fit is begun at the nominal values, too,
+    and what the tolerances of any unit find likelier is kept.
+    """
+    tolerances, nominal = _tolerances(level), _nominal(level)
+
+    def cost(at: Floats) -> float:
+        rest = _misfit(forces, level, at, gravity)[0] / _STOP_NOISE
+        own = (at - nominal) / tolerances
+        return float(rest @ rest + own @ own)
+
+    starts = (_first_guess(forces, level, gravity), nominal)
+    return min((_fitted(forces, level, s, gravity, noise=_STOP_NOISE) for s in starts), key=cost)
+
+
+def _nominal(level: str) -> Floats:
+    return np.array([0.0] * 3 + [1.0] * 3 + [0.0] * 3)[: PARAMETERS[level]]
 
 
 def _tolerances(level: str) -> Floats:

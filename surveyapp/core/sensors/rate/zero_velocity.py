@@ -166,14 +166,14 @@ def _unit_of(samples: Samples, still: Mask, interval_s: float) -> _Unit:
     rest = _first_rest(still)
     force, rate = samples(rest.start, min(rest.stop, rest.start + MOVING_ROWS))
     felt = force.mean(axis=0)
-    shaking = _white_while(samples, ~still)
+    of_force, of_rate = _white_while(samples, ~still)
     at_rest, turning = _white(force), _white(rate)
     return _Unit(
         _levelled(felt),
         rate.mean(axis=0),
         float(np.linalg.norm(felt)),
         _noise(at_rest, turning, interval_s),
-        _noise(shaking, turning, interval_s),
+        _noise(max(of_force, at_rest), max(of_rate, turning), interval_s),
     )
 
 
@@ -318,7 +318,8 @@ class _Way:
 def _noise(force: float, rate: float, interval_s: float) -> tuple[float, float]:
     """Variance that a sample adds to velocity [m2/s2] and attitude [rad2]: its white noise.
 
-    While a unit moves it shakes, and what the samples miss of that is an error of the velocity.
+    While a unit moves it shakes, and what the samples miss of that is an error of the velocity and
+    of the attitude.
     """
     walks = (
         max(FORCE_WALK, force * math.sqrt(interval_s)),
@@ -334,17 +335,19 @@ def _white(values: Floats) -> float:
     return float(np.std(np.diff(values, axis=0), axis=0).max() / math.sqrt(2.0))
 
 
-def _white_while(samples: Samples, moving: Mask) -> float:
-    """The same of the forces of the marked rows, piece by piece."""
-    count, total, squares = 0, np.zeros(3), np.zeros(3)
+def _white_while(samples: Samples, moving: Mask) -> tuple[float, float]:
+    """The same of forces and rates of the marked rows, piece by piece."""
+    count, total, squares = 0, np.zeros(6), np.zeros(6)
     for first, last in runs_of(moving):
         for begin in range(first, last, MOVING_ROWS):
-            steps = np.diff(samples(begin, min(begin + MOVING_ROWS, last))[0], axis=0)
+            piece = np.hstack(samples(begin, min(begin + MOVING_ROWS, last)))
+            steps = np.diff(piece, axis=0)
             count += steps.shape[0]
             total, squares = total + steps.sum(axis=0), squares + (steps**2).sum(axis=0)
     if count < 2:
-        return 0.0
-    return float(np.sqrt((squares / count - (total / count) ** 2).max() / 2.0))
+        return 0.0, 0.0
+    spread = np.sqrt((squares / count - (total / count) ** 2) / 2.0)
+    return float(spread[:3].max()), float(spread[3:].max())
 
 
 def _first_rest(still: Mask) -> slice:
