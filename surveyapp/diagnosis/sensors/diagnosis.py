@@ -113,11 +113,7 @@ def diagnose_sensor(
     if proof is not None:
         after = proof.fit
         notes += [ResultWarning("not_adopted", joined(": ", (n, why))) for n, why in proof.refused]
-    notes += [
-        ResultWarning("not_adopted", said("{effect}: may be the field of the room",
-                                          effect=named(name)))
-        for name in found.doubted
-    ]  # fmt: skip
+    notes += [_of_the_room(name) for name in found.doubted]
     best = refined(record, found.best) if found.ambiguous else after
     fits = {"before": found.before, "after": after, "after_best": best}
     verdict: Verdict = _verdict(record, found)
@@ -130,12 +126,6 @@ def diagnose_sensor(
     if proof is not None:
         models["before"]["confirm_rms"] = proof.before
         models["after"]["confirm_rms"] = proof.after
-    held = {
-        "scheme": "contiguous blocks, two halves fitted alternately",
-        "before": _held_out(record, found.before),
-        "after": _held_out(record, after),
-        "unit": record.unit,
-    }
     document: dict[str, Any] = {
         "schema": "surveyapp.diagnose/1",
         "subject": record.subject,
@@ -147,7 +137,7 @@ def diagnose_sensor(
         "candidates": candidates_of(found, record),
         **models,
         "averaged": None,
-        "held_out": held,
+        "held_out": _blocks_left_out(record, found.before, after),
         "noise": {"before": found.before.noise, "after": after.noise},
         "lines": [],
         "remedy": remedies_of(record, adopted),
@@ -161,6 +151,20 @@ def diagnose_sensor(
         (*words_of(document), *told),
         tuple(_record_of(item, document, data_sha256) for item in adopted),
     )
+
+
+def _of_the_room(effect: str) -> ResultWarning:
+    text = said("{effect}: may be the field of the room", effect=named(effect))
+    return ResultWarning("not_adopted", text)
+
+
+def _blocks_left_out(record: SensorRecord, before: LoopFit, after: LoopFit) -> dict[str, Any]:
+    return {
+        "scheme": "contiguous blocks, two halves fitted alternately",
+        "before": _held_out(record, before),
+        "after": _held_out(record, after),
+        "unit": record.unit,
+    }
 
 
 def _record_of(item: dict[str, Any], document: dict[str, Any], sha256: str) -> AdoptedEffect:
