@@ -83,7 +83,7 @@ def test_without_a_latitude_gravity_is_not_blamed_for_the_earth_rate() -> None:
         for c, v in log.columns.items()
         if c.startswith("gyr_")
     }
-    rounds = 1.0 + (np.arange(log.size) >= second)
+    rounds = np.where(np.arange(log.size) < second, 1.0, 2.0)
     log = replace(log, columns={**log.columns, **gyros, "round": rounds})
     made = case_of_log(log, SensorLogEntry("log", "rate", ""))
     assert [w.code for w in made.warnings] == ["latitude_unknown"]
