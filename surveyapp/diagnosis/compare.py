@@ -7,10 +7,9 @@ compete at every depth.
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -341,7 +340,7 @@ def scored(problem: Case, fit: Fit) -> Fit:
         searched = member.charge - member.candidate.size
         score += 2.0 * float(np.log(len(member.candidate.points) / max(weight, 1.0)))
         score -= searched * float(np.log(problem.size))
-    return dataclasses.replace(fit, score=score)
+    return replace(fit, score=score)
 
 
 def _profile(problem: Case, fit: Fit, member: Member, others: tuple[Member, ...]) -> Floats:
