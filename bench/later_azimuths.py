@@ -67,12 +67,12 @@ HEAD = """# Later azimuths
 Declared simulation: campaigns of some months, one to three determinations a day of 4 to 7
 arc-seconds, four later visits at other lines, days and temperatures, most of them after the
 campaign; sizes of the causes log-uniform from {low} to {high} standard deviations of a
-determination; {runs} campaigns a line ({clean} clean ones). rms and interval (median half-width, 95 %)
-of the constant in arc-seconds; coverage of the constant, and of a later azimuth whose own standard
-deviation is 2.6. Mean: the mean of the campaign with its Student interval, which was used before.
-Ratio: interval of the azimuth over that with the mean (median). Reference: rms with the clean share
-{reference} of the reference solution in place of {base}. Beyond: visits 8 to 20 K warmer than
-every determination.
+determination; {runs} campaigns a line ({clean} clean ones). rms and interval (median
+half-width, 95 %) of the constant in arc-seconds; coverage of the constant, and of a later azimuth
+whose own standard deviation is 2.6. Mean: the mean of the campaign with its Student interval, which
+was used before. Ratio: interval of the azimuth over that with the mean (median). Reference: rms
+with the clean share {reference} of the reference solution in place of {base}. Beyond: visits 8 to
+20 K warmer than every determination.
 
 """
 
