@@ -36,6 +36,7 @@ from bench._programmes import GROUPS as PROGRAMMES
 from bench._programmes import draw_programme
 from bench._short_campaigns import CAUSES, LATER_DAYS, draw_short
 from surveyapp.core.prediction.average import averaged, members, predict
+from surveyapp.core.prediction.drifting import half_width_about, if_it_drifts
 from surveyapp.core.prediction.members import Members
 from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp.domain.priors import BASE, DEFAULT_PRIORS, DEFAULT_SHARES
@@ -81,7 +82,8 @@ SHORT_SIZES = (4, 8, 20)
 SHORT = """Campaigns of one day and of two (`bench/_short_campaigns.py`): what acts goes on at a
 pace of its own, a span of 13 to 220 days, which such a campaign cannot have seen. Coverage of a
 later azimuth and median half-width of the constant, a day, a month and four months after it.
-Together: each as often as the archive has taught (nothing that time moves: {clean:.0%})."""
+Told beside it: by the interval if the
+instrument drifts. Together: each as often as the archive has taught (nothing that time moves: {clean:.0%})."""
 SHORT_SHARES = {
     "drift": ("drift", "bend"),
     "walk": ("walk",),
@@ -220,6 +222,25 @@ def short_line(cause: str, n: int, spread: int) -> tuple[Floats, Floats]:
     return np.reshape(holds, shape).mean(axis=0), np.median(np.reshape(halves, shape), axis=0)
 
 
+def if_drifting_line(n: int, spread: int) -> tuple[Floats, Floats]:
+    """Of drifts: coverage by the interval that is told beside it, and its median half-width."""
+    place, shape = list(CAUSES).index("drift"), (RUNS, len(LATER_DAYS))
+    holds, halves = [], []
+    for i in range(RUNS):
+        made = draw_short(
+            "drift", n, spread, np.random.default_rng([20261129, place, n, spread, i])
+        )
+        data, days = made.data, made.data.columns["elapsed_days"]
+        told = if_it_drifts(data.values, data.sigmas, days[:n], days[n:], priors=DEFAULT_PRIORS)
+        found = predict(data, DEFAULT_PRIORS)
+        for t, mixture in enumerate(told):
+            value = float(found.values[t])
+            error = value - float(made.truth[t]) + made.errors[t]
+            holds.append(abs(error) <= half_width_about(mixture, value, LINE_SIGMA**2))
+            halves.append(half_width_about(mixture, value))
+    return np.reshape(holds, shape).mean(axis=0), np.median(np.reshape(halves, shape), axis=0)
+
+
 def short_table() -> list[str]:
     """Lines of the campaigns of one and two days."""
     shares = short_shares()
@@ -233,6 +254,9 @@ def short_table() -> list[str]:
                 whole += shares[cause] * holds
                 cells = [f"{h:.2f} / {w:.1f}" for h, w in zip(holds, halves, strict=True)]
                 lines.append(f"| {cause} | {spread} | {n} | " + " | ".join(cells) + " |")
+            beside = zip(*if_drifting_line(n, spread), strict=True)
+            cells = [f"{h:.2f} / {w:.1f}" for h, w in beside]
+            lines.append(f"| drift, told beside it | {spread} | {n} | " + " | ".join(cells) + " |")
             cells = [f"{h:.3f}" for h in whole]
             lines.append(f"| together | {spread} | {n} | " + " | ".join(cells) + " |")
     return lines
