@@ -154,6 +154,8 @@ class Case:
         At which its gates open.
     base_of : callable or None
         The base design of other rows; None = the mean of the record's own rows.
+    nuisance : int
+        Columns of the base model of which nobody asks, such as those of crooked seats.
     planner : callable or None
         Makes the record with its actions where these are no further rows of the columns (a
         ``next_rows.Planner``): when advice is asked for, as it costs.
@@ -194,6 +196,7 @@ class Case:
     reported: Floats | None = None
     own_scales: tuple[OwnScale, ...] = ()
     levels: Levels = field(default_factory=Levels)
+    nuisance: int = 0
     planner: Callable[[], Planner | None] | None = None
 
     def __post_init__(self) -> None:

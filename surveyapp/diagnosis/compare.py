@@ -7,10 +7,9 @@ compete at every depth.
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -121,17 +120,20 @@ def orthonormal_design(fit: Fit) -> Floats:
     return np.asarray(u[:, s > 1e-9 * s[0]])
 
 
-def most_parameters(size: int) -> float:
-    """Parameters beyond which a set is not considered: half the observations, five at least."""
-    return max(5.0, 0.5 * size)
+def most_parameters(problem: Case) -> float:
+    """Parameters beyond which a set is not considered: half the observations, five at least.
+
+    Nuisance unknowns take as many observations with them and count on neither side.
+    """
+    return max(5.0, 0.5 * (problem.size - problem.nuisance)) + problem.nuisance
 
 
-def may_join(candidate: Candidate, fit: Fit) -> bool:
+def may_join(candidate: Candidate, fit: Fit, *, most: float) -> bool:
     """Whether a candidate can be added: one description of the amplitude, every effect once."""
     if candidate.columns.shape[0] == 0:
         return False
     least = fit.parameters + float(candidate.charge.min())
-    if least > most_parameters(fit.residual.size):
+    if least > most:
         return False
     if candidate.describes_amplitude and any(m.candidate.describes_amplitude for m in fit.members):
         return False
@@ -182,7 +184,7 @@ def _drafts(
     for anchor in level.fits[:ANCHORS]:
         q = orthonormal_design(anchor)
         for candidate in pool:
-            if not may_join(candidate, anchor):
+            if not may_join(candidate, anchor, most=most_parameters(problem)):
                 continue
             found = _best_addition(problem, anchor, candidate, q)
             if found is None:
@@ -338,7 +340,7 @@ def scored(problem: Case, fit: Fit) -> Fit:
         searched = member.charge - member.candidate.size
         score += 2.0 * float(np.log(len(member.candidate.points) / max(weight, 1.0)))
         score -= searched * float(np.log(problem.size))
-    return dataclasses.replace(fit, score=score)
+    return replace(fit, score=score)
 
 
 def _profile(problem: Case, fit: Fit, member: Member, others: tuple[Member, ...]) -> Floats:

@@ -156,14 +156,14 @@ def _possible(problem: Case, level: Level) -> tuple[Level, dict[str, Fit]]:
     kept: list[Fit] = []
     dropped: dict[str, Fit] = {}
     for fit in level.fits:
-        if fit.parameters > most_parameters(problem.size):
+        if fit.parameters > most_parameters(problem):
             continue
         outside = set(plausible(problem, fit))
         if not outside:
             kept.append(fit)
         elif len(fit.members) == 1 or level.depth > 1:
             dropped |= {name: fit for name in outside if name not in dropped}
-    allowed = [f for f in level.noises if f.parameters <= most_parameters(problem.size)]
+    allowed = [f for f in level.noises if f.parameters <= most_parameters(problem)]
     return Level(level.depth, tuple(kept), tuple(allowed)), dropped
 
 

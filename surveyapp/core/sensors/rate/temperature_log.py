@@ -108,8 +108,8 @@ def calibrate_temperature(log: SensorLog, options: TemperatureOptions) -> Calibr
         relative_rate_sigma=options.relative_rate_sigma,
     )
     problems += [*wrong, *told]
-    problems += [] if problems else unit_problems(shown, where=log.path)
     problems += label_problems(resting, where=log.path)
+    problems += [] if problems else unit_problems(shown, where=log.path)
     if problems:
         raise SurveyError(problems)
     room = None
