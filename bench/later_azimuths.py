@@ -83,7 +83,8 @@ SHORT = """Campaigns of one day and of two (`bench/_short_campaigns.py`): what a
 pace of its own, a span of 13 to 220 days, which such a campaign cannot have seen. Coverage of a
 later azimuth and median half-width of the constant, a day, a month and four months after it.
 Told beside it: by the interval if the
-instrument drifts. Together: each as often as the archive has taught (nothing that time moves: {clean:.0%})."""
+instrument drifts. Together: each as often as the archive has taught (nothing that time moves:
+{clean:.0%})."""
 SHORT_SHARES = {
     "drift": ("drift", "bend"),
     "walk": ("walk",),
