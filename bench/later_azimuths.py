@@ -263,6 +263,24 @@ def short_table() -> list[str]:
     return lines
 
 
+def write_page(text: list[str]) -> None:
+    """The page of the reference, with what is told above its tables."""
+    low, high = STRENGTH
+    PAGE.write_text(
+        HEAD.format(
+            low=low,
+            high=high,
+            runs=RUNS,
+            clean=CLEAN_TIMES * RUNS,
+            reference=REFERENCE_BASE,
+            base=DEFAULT_PRIORS.share(BASE),
+        )
+        + "\n".join(text)
+        + "\n",
+        encoding="utf-8",
+    )
+
+
 def run() -> list[str]:
     """Evaluate every line, write the page, return what is printed."""
     found = [(group, name, n, stored(group, name, n, place)) for group, name, n, place in tasks()]
@@ -311,18 +329,5 @@ def run() -> list[str]:
         "",
         *short_table(),
     ]
-    low, high = STRENGTH
-    PAGE.write_text(
-        HEAD.format(
-            low=low,
-            high=high,
-            runs=RUNS,
-            clean=CLEAN_TIMES * RUNS,
-            reference=REFERENCE_BASE,
-            base=DEFAULT_PRIORS.share(BASE),
-        )
-        + "\n".join(text)
-        + "\n",
-        encoding="utf-8",
-    )
+    write_page(text)
     return text
