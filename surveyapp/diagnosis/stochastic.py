@@ -197,7 +197,13 @@ class NoiseFit:
 
 
 def best_noises(
-    problem: Case, J: Floats, residual: Floats, *, scale: float, floor: float
+    problem: Case,
+    J: Floats,
+    residual: Floats,
+    *,
+    scale: float,
+    floor: float,
+    rows: np.ndarray | None = None,
 ) -> tuple[NoiseFit, ...]:
     """Every kind of noise for the residuals of a design, by its marginal likelihood.
 
@@ -218,6 +224,8 @@ def best_noises(
         Unit in which the likelihood is counted [SI].
     floor : float
         Smallest white variance [SI^2].
+    rows : ndarray of int, shape (n,), optional
+        Observations that the design and the residuals are of, whole channels; all of them.
 
     Returns
     -------
@@ -225,7 +233,8 @@ def best_noises(
     """
     models = noise_models(problem)
     basis, triangle, norms = _independent(J)
-    whiteners = np.stack([m.whitener for m in models])
+    part = slice(None) if rows is None else np.ix_(rows, rows)
+    whiteners = np.stack([m.whitener[part] for m in models])
     seen = whiteners @ residual
     q, r = np.linalg.qr(whiteners @ basis)
     along = np.einsum("gnp,gn->gp", q, seen)

@@ -13,7 +13,7 @@ import numpy as np
 
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.fits import Fit
-from surveyapp.diagnosis.stochastic import effect_gain
+from surveyapp.diagnosis.stochastic import best_noises, effect_gain
 
 ODDS = 2.0
 """An effect stands against noise of a kind instead of it where it is so many times likelier. By
@@ -41,11 +41,22 @@ def log_odds(problem: Case, fit: Fit, rival: Fit) -> float:
     """
     if rival.noise is None or problem.series is None:
         return 0.0
-    rows = int(np.isfinite(problem.series).sum())
-    each = rows // max(np.unique(problem.series[np.isfinite(problem.series)]).size, 1)
+    channels = np.isfinite(problem.series)
+    base, residual, kind = rival.design, rival.residual, rival.noise.kind
+    effect = fit.design - base @ np.linalg.lstsq(base, fit.design, rcond=None)[0]
+    # what wanders through the channels only is judged there: their white noise is their own
+    if not np.any(np.abs(effect[~channels]) > 1e-9 * np.abs(effect).max()):
+        rows = np.flatnonzero(channels)
+    else:
+        rows = np.arange(channels.size)
+    each = int(channels.sum()) // max(np.unique(problem.series[channels]).size, 1)
     floor = max(problem.noise_floor, 1e-6 * problem.scale) ** 2
-    gain = effect_gain(rival.design, fit.design, rival.residual, each=each, floor=floor)
-    return 0.5 * (gain - rival.noise.gain)
+    base, residual, effect = base[rows], residual[rows], effect[rows]
+    gain = effect_gain(base, effect, residual, each=each, floor=floor)
+    found = best_noises(
+        problem, base, residual, scale=problem.scale, floor=problem.noise_floor**2, rows=rows
+    )
+    return 0.5 * (gain - next(noise.gain for noise in found if noise.kind == kind))
 
 
 def refuted(problem: Case, fit: Fit, rival: Fit) -> bool:
