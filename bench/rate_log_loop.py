@@ -28,6 +28,8 @@ from surveyapp_models.angles import ARCSEC
 
 RUNS = int(os.environ.get("SURVEYAPP_BENCH_RUNS", "200"))
 HOUR = DEG_H / 3600.0
+WALK = "random_walk"
+"""No effect that is named: what every gyro has wandered by the end, standard deviation."""
 SIZES: Mapping[str, float] = {
     "scale_asymmetry": 2e-4,
     "temperature": 1.0 * DEG_H,
@@ -36,6 +38,7 @@ SIZES: Mapping[str, float] = {
     "magnetic_sensitivity": 0.01 * DEG_H,
     "flip_error": 120.0 * ARCSEC,
     "gross_error": 3.0 * DEG_H,
+    WALK: 3.0 * DEG_H,
 }
 """As the simulator takes them; the flip is that of one position of one round."""
 KINDS: Mapping[str, tuple[str, str, tuple[str, ...]]] = {
@@ -44,23 +47,32 @@ KINDS: Mapping[str, tuple[str, str, tuple[str, ...]]] = {
     "temperature": (
         "rate",
         "temperature",
-        ("scale_asymmetry", "interference_line", "magnetic_sensitivity", "gross_error"),
+        ("scale_asymmetry", "interference_line", "magnetic_sensitivity", "gross_error", WALK),
     ),
     "gyro on a total station": (
         "fog-station",
         "",
-        ("temperature", "interference_line", "bias_ramp", "gross_error"),
+        ("temperature", "interference_line", "bias_ramp", "gross_error", WALK),
     ),
     "at rest": (
         "rate",
         "static",
-        ("temperature", "interference_line", "bias_ramp", "magnetic_sensitivity", "gross_error"),
+        (
+            "temperature",
+            "interference_line",
+            "bias_ramp",
+            "magnetic_sensitivity",
+            "gross_error",
+            WALK,
+        ),
     ),
 }
 
 
 def simulated(kind: str, effect: str, rng: np.random.Generator) -> SimulatedLog:
-    """A log of a kind with one effect, or none."""
+    """A log of a kind with one effect, or none, or with gyros that wander."""
+    if effect == WALK:
+        return _wandering(simulated(kind, "", rng), rng)
     command, programme, _ = KINDS[kind]
     recipe = PROGRAMMES[command][programme][0]
     size = SIZES.get(effect, 0.0)
@@ -76,6 +88,15 @@ def simulated(kind: str, effect: str, rng: np.random.Generator) -> SimulatedLog:
     drift = SIZES[effect] * whole.columns["time_s"] if effect == "bias_ramp" else 0.0
     gyros = {f"gyr_{a}_rad_s": whole.columns[f"gyr_{a}_rad_s"] + drift for a in "xyz"}
     return SimulatedLog({**whole.columns, **gyros}, whole.texts, whole.truth)
+
+
+def _wandering(log: SimulatedLog, rng: np.random.Generator) -> SimulatedLog:
+    """The log with a random walk of its own in every gyro."""
+    columns = dict(log.columns)
+    for name in [c for c in columns if c.startswith("gyr_")]:
+        step = SIZES[WALK] / math.sqrt(columns[name].size)
+        columns[name] = columns[name] + np.cumsum(rng.normal(0.0, step, columns[name].size))
+    return SimulatedLog(columns, log.texts, log.truth)
 
 
 def _crooked(log: SimulatedLog, rng: np.random.Generator) -> SimulatedLog:
@@ -143,7 +164,7 @@ def diagnosed(kind: str, effect: str, seed: int) -> Told:
 def cell(kind: str, effect: str) -> list[float]:
     """Shares detected, rightly and wrongly named, and the median of after through before."""
     every = [diagnosed(kind, effect, seed) for seed in range(RUNS)]
-    wanted = {effect} - {""}
+    wanted = {effect} - {"", WALK}
     right = [bool(wanted) and t.names == wanted for t in every]
     ratio = [t.left_out for t, good in zip(every, right, strict=True) if good]
     return [

@@ -4,7 +4,8 @@
 .4 m for the middle of the record; "walked": one turned through every attitude, in a hand that
 wanders. The gradient
 has no sources and no currents; its size is the rms of what it changes. Named in a room is wrong; of
-iron, a turn and a switch without a room the planted one is right.
+iron, a turn and a switch without a room the planted one is right. Then with the place: the room is
+a dipole some way from the nearest end of the path, and any name but ``field_gradient`` is wrong.
 """
 
 from __future__ import annotations
@@ -79,6 +80,36 @@ def in_a_room(log: SensorLog, place: Floats, size: float, rng: np.random.Generat
     return replace(log, columns=columns)
 
 
+def beside_a_dipole(motion: str, seed: int, size: float, distance: float) -> SensorLog:
+    """A log with its place near a dipole that changes the field along the path by ``size``."""
+    rng = np.random.default_rng([seed, 77])
+    if motion == "lifted":
+        log, place = lifted(seed)
+    else:
+        log, _ = log_of("compass", np.random.default_rng([seed, 9]))
+        walked = log.vector("ref_p")
+        place = np.zeros((log.size, 3)) if walked is None else walked - walked.mean(axis=0)
+        place = place * 0.4 / np.sqrt(np.mean(np.sum(place**2, axis=1)))
+    place = place - place.mean(axis=0)
+    towards = rng.normal(size=3)
+    towards /= np.linalg.norm(towards)
+    moment = rng.normal(size=3)
+    r = place - towards * (distance + float(np.max(place @ towards)))
+    d = np.linalg.norm(r, axis=1)[:, None]
+    change = 3.0 * (r @ moment)[:, None] * r / d**5 - moment / d**3
+    change -= change.mean(axis=0)
+    change *= size / np.sqrt(np.mean(np.sum(change**2, axis=1)))
+    quaternion = log.quaternion()
+    if quaternion is None:
+        raise ValueError("a log without attitude")
+    seen = np.einsum("nij,ni->nj", rotation_matrices(quaternion), change)
+    columns = dict(log.columns)
+    for i, axis in enumerate("xyz"):
+        columns[f"mag_{axis}_uT"] = columns[f"mag_{axis}_uT"] + seen[:, i]
+        columns[f"ref_p{axis}_m"] = place[:, i]
+    return replace(log, columns=columns, units=dict.fromkeys(columns, "1"))
+
+
 def named(log: SensorLog) -> set[str]:
     """What is named in one record."""
     return {item["effect"] for item in found_in(log, "compass").document["adopted"]}
@@ -112,3 +143,12 @@ def run() -> Iterator[str]:
         right = np.mean([effect.id in names for names in found])
         other = np.mean([bool(names - {effect.id}) for names in found])
         yield f"no room, {effect.id} {effect.size:.3g}: named {right:.2f}, another {other:.2f}"
+    for motion in ("lifted", "walked"):
+        for size in (1.4, 4.0):
+            for distance in (0.6, 1.5):
+                names = [named(beside_a_dipole(motion, s, size, distance)) for s in range(RUNS)]
+                wrong = [bool(found - {"field_gradient"}) for found in names]
+                yield (
+                    f"dipole at {distance} m, {size} uT, {motion}, with the place: "
+                    f"wrongly named {np.mean(wrong):.2f} of {RUNS}"
+                )

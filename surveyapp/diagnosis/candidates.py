@@ -36,9 +36,9 @@ candidates share stay where they are (weighted p values: Genovese, Roeder & Wass
 SHAPE_WEIGHT = 0.5
 """A generic shape ends in no name."""
 SHAPE_ODDS = 4.0
-"""Of channels side by side: BIC that a generic shape is charged beforehand against a named effect,
-prior odds of e^2. A step of all channels at once is the nearest imitation of an even drift, and
-without this half of the slow drifts end beside one."""
+"""BIC that a generic shape is charged beforehand against a named effect, prior odds of e^2: of
+channels side by side and of runs. A step of all channels at once is the nearest imitation of an
+even drift, a bend that of a warm-up: without this half of them end beside one."""
 PULSES_FROM, SMOOTH_FROM = 12, 16
 """Observations from which pulses and bent decays are looked for."""
 SINGLE_SHARE = 0.75

@@ -59,18 +59,24 @@ class OwnScale:
 
 @dataclass(frozen=True, slots=True)
 class Levels:
-    """Family p below which the search goes on (diagnosis.md step 3).
+    """What the search asks of a record (diagnosis.md steps 3 and 4).
 
     Parameters
     ----------
-    first : float
-        Beside the base model: the rate of false alarms.
-    further : float
-        Beside what was found: the rate of wrong names that stand with a right one.
+    first, further : float
+        Family p below which the search goes on. Beside the base model: the rate of false alarms;
+        beside what was found: the rate of wrong names that stand with a right one.
+    margin : float
+        BIC by which every rival of a name must be worse.
+    shape_odds : float
+        BIC that each generic shape in a rival is charged beforehand: twice the logarithm of prior
+        odds against it.
     """
 
     first: float = 0.05
     further: float = 0.05
+    margin: float = 4.0
+    shape_odds: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,6 +154,8 @@ class Case:
         At which its gates open.
     base_of : callable or None
         The base design of other rows; None = the mean of the record's own rows.
+    nuisance : int
+        Columns of the base model of which nobody asks, such as those of crooked seats.
     planner : callable or None
         Makes the record with its actions where these are no further rows of the columns (a
         ``next_rows.Planner``): when advice is asked for, as it costs.
@@ -188,6 +196,7 @@ class Case:
     reported: Floats | None = None
     own_scales: tuple[OwnScale, ...] = ()
     levels: Levels = field(default_factory=Levels)
+    nuisance: int = 0
     planner: Callable[[], Planner | None] | None = None
 
     def __post_init__(self) -> None:

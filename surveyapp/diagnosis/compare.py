@@ -7,10 +7,9 @@ compete at every depth.
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -32,7 +31,8 @@ from surveyapp.diagnosis.projection import project
 from surveyapp_models.arrays import Floats
 
 MARGIN = 4.0
-"""BIC by which every rival must be worse (diagnosis.md step 4)."""
+"""BIC by which every rival must be worse (diagnosis.md step 4), where no simulation of the subject
+says how much will do."""
 BETTER = 3.0
 """BIC by which a set that spans the simpler one must be better to be heard beside it."""
 FULL_SIZE = 12
@@ -49,16 +49,16 @@ SPANNED = 0.05
 """Share of a fitted effect that may be left beside a rival that spans it."""
 
 
-def margin(fit: Fit) -> float:
+def margin(fit: Fit, asked: float = MARGIN) -> float:
     """BIC by which every rival must be worse than a fit.
 
     From few observations BIC overrates a difference: it counts all n, and n - p are free.
     """
     n = fit.residual.size
     if n >= FULL_SIZE:
-        return MARGIN
+        return asked
     base = fit.design.shape[1] - sum(m.candidate.size for m in fit.members)
-    return float(MARGIN * n / max(n - base, 1))
+    return float(asked * n / max(n - base, 1))
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,17 +120,20 @@ def orthonormal_design(fit: Fit) -> Floats:
     return np.asarray(u[:, s > 1e-9 * s[0]])
 
 
-def most_parameters(size: int) -> float:
-    """Parameters beyond which a set is not considered: half the observations, five at least."""
-    return max(5.0, 0.5 * size)
+def most_parameters(problem: Case) -> float:
+    """Parameters beyond which a set is not considered: half the observations, five at least.
+
+    Nuisance unknowns take as many observations with them and count on neither side.
+    """
+    return max(5.0, 0.5 * (problem.size - problem.nuisance)) + problem.nuisance
 
 
-def may_join(candidate: Candidate, fit: Fit) -> bool:
+def may_join(candidate: Candidate, fit: Fit, *, most: float) -> bool:
     """Whether a candidate can be added: one description of the amplitude, every effect once."""
     if candidate.columns.shape[0] == 0:
         return False
     least = fit.parameters + float(candidate.charge.min())
-    if least > most_parameters(fit.residual.size):
+    if least > most:
         return False
     if candidate.describes_amplitude and any(m.candidate.describes_amplitude for m in fit.members):
         return False
@@ -181,7 +184,7 @@ def _drafts(
     for anchor in level.fits[:ANCHORS]:
         q = orthonormal_design(anchor)
         for candidate in pool:
-            if not may_join(candidate, anchor):
+            if not may_join(candidate, anchor, most=most_parameters(problem)):
                 continue
             found = _best_addition(problem, anchor, candidate, q)
             if found is None:
@@ -280,23 +283,40 @@ def _refined(problem: Case, members: tuple[Member, ...], anchor: Fit, *, every: 
     return fit
 
 
-def within_margin(level: Level) -> tuple[Fit, ...]:
-    """The best set and every rival that is not worse by the margin, nested supersets dropped."""
+def charged(fit: Fit, odds: float) -> float:
+    """Score of a fit with ``odds`` BIC for each generic shape in it."""
+    shapes = {m.candidate.id for m in fit.members if m.candidate.kind == "shape"}
+    return fit.score + odds * len(shapes)
+
+
+def within_margin(level: Level, asked: float = MARGIN, odds: float = 0.0) -> tuple[Fit, ...]:
+    """The best set and every rival that is not worse by the margin, nested supersets dropped.
+
+    Parameters
+    ----------
+    level : Level
+    asked : float
+        The margin.
+    odds : float
+        BIC that each generic shape is charged beforehand.
+    """
     best = level.preferred
     if best is None:
         return level.every[:1]
-    limit = min(best.score, level.best_score) + margin(best)
+    score = {id(fit): charged(fit, odds) for fit in level.every}
+    own = score[id(best)]
+    limit = min(score.values()) + margin(best, asked)
     # A shape says that something is there, not that no cause would do: causes are heard longer.
-    patience = MARGIN if best.is_generic else 0.0
+    patience = asked if best.is_generic else 0.0
     near = [
         f
         for f in level.every
-        if f.key != best.key and f.score < limit + (0.0 if f.is_generic else patience)
+        if f.key != best.key and score[id(f)] < limit + (0.0 if f.is_generic else patience)
     ]
-    rivals = [f for f in near if f.score <= best.score - BETTER or not spans(f, best)]
+    rivals = [f for f in near if score[id(f)] <= own - BETTER or not spans(f, best)]
     # What a smaller set within the margin explains needs no more.
     rivals = [f for f in rivals if not any(g.key < f.key for g in rivals)]
-    chosen = (best,) if best.score < limit or not rivals else ()
+    chosen = (best,) if own < limit or not rivals else ()
     return tuple(sorted((*chosen, *rivals), key=lambda fit: (fit.bic, fit is not best)))
 
 
@@ -320,7 +340,7 @@ def scored(problem: Case, fit: Fit) -> Fit:
         searched = member.charge - member.candidate.size
         score += 2.0 * float(np.log(len(member.candidate.points) / max(weight, 1.0)))
         score -= searched * float(np.log(problem.size))
-    return dataclasses.replace(fit, score=score)
+    return replace(fit, score=score)
 
 
 def _profile(problem: Case, fit: Fit, member: Member, others: tuple[Member, ...]) -> Floats:

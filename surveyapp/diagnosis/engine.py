@@ -11,7 +11,7 @@ from surveyapp.diagnosis.ambiguity import ambiguities
 from surveyapp.diagnosis.battery import run_battery
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.checks import check_input
-from surveyapp.diagnosis.compare import MARGIN, Level, base_level, best_with, spans
+from surveyapp.diagnosis.compare import MARGIN, Level, base_level, best_with, charged, spans
 from surveyapp.diagnosis.datum import datum_with_rivals
 from surveyapp.diagnosis.events import event_notes
 from surveyapp.diagnosis.fits import Fit, unit_variance
@@ -279,7 +279,7 @@ def _candidates(problem: Case, found: Search) -> tuple[CandidateResult, ...]:
             verdict = "not_separable"
         elif family is not None and family <= 0.05:
             verdict = "candidate"
-            reason = _why_no_rival(found, level, identity, delta)
+            reason = _why_no_rival(problem, found, level, identity)
         else:
             verdict = "not_significant"
         result.append(CandidateResult(identity, verdict, p, family, delta, candidate.kind, reason))
@@ -295,8 +295,9 @@ def _candidates(problem: Case, found: Search) -> tuple[CandidateResult, ...]:
     return tuple(result)
 
 
-def _why_no_rival(found: Search, level: Level | None, identity: str, delta: float | None) -> str:
+def _why_no_rival(problem: Case, found: Search, level: Level | None, identity: str) -> str:
     """Why a candidate close behind in BIC is none of the rivals beside what was named."""
+    delta = None if level is None else rivals_delta(level, identity)
     if not found.adopted or level is None or delta is None or delta >= MARGIN:
         return ""
     fit = best_with(level, identity)
@@ -306,6 +307,9 @@ def _why_no_rival(found: Search, level: Level | None, identity: str, delta: floa
         return "contains what was named, and explains no more"
     if fit.score - fit.bic > found.best.score - found.best.bic:
         return "its search is paid for by how little of it explains the record"
+    odds = problem.levels.shape_odds
+    if charged(fit, odds) > fit.score:
+        return said("a shape without a cause is charged {odds:.0f} BIC beforehand", odds=odds)
     return ""
 
 

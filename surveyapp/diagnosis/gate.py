@@ -9,7 +9,7 @@ import numpy as np
 
 from surveyapp.diagnosis.candidates import Candidate
 from surveyapp.diagnosis.case import Case
-from surveyapp.diagnosis.compare import may_join, orthonormal_design, slip_bends
+from surveyapp.diagnosis.compare import may_join, most_parameters, orthonormal_design, slip_bends
 from surveyapp.diagnosis.fits import Fit, scan_exact, scan_law, unit_variance
 from surveyapp.diagnosis.nulls import Noise, null_of, ratio, reductions
 from surveyapp.diagnosis.projection import Projected, project
@@ -113,7 +113,8 @@ def open_gate(problem: Case, fit: Fit, pool: Iterable[Candidate], draws: int) ->
     """
     level = problem.levels.further if fit.effects else problem.levels.first
     q = orthonormal_design(fit)
-    joining = [c for c in pool if may_join(c, fit)]
+    most = most_parameters(problem)
+    joining = [c for c in pool if may_join(c, fit, most=most)]
     every = [project(c, q) for c in joining]
     family = tuple(item for item in every if item.index.size)
     if not family:

@@ -24,23 +24,19 @@ from surveyapp.diagnosis.compare import (
     next_level,
     orthonormal_design,
     spans,
-    within_margin,
 )
 from surveyapp.diagnosis.fits import Fit, fit_members, with_noise
 from surveyapp.diagnosis.gate import Gate, open_gate
 from surveyapp.diagnosis.held_out import confirm_rms, flagged, leave_one_out, unforetold
+from surveyapp.diagnosis.rivals import NAMED_DEPTH, heard, standing
 from surveyapp.diagnosis.run_value import plausible
-from surveyapp.diagnosis.wandering import imitates, refuted
+from surveyapp.diagnosis.wandering import imitates
 from surveyapp.languages import said, term
 from surveyapp_models.arrays import Floats
 
 DEFAULT_DRAWS = 4000
 DEPTHS = ((45, 4), (20, 3), (12, 2), (8, 1))
 """At most so many effects from so many observations on (diagnosis.md step 6)."""
-NAMED_DEPTH = 2
-"""Effects that enter later are named only when a second set confirms them. Noise that wanders does
-not end the search before: two effects at once look like it."""
-LEAST_TO_NAME = 8
 NOISE_MARGIN = 2.0 * MARGIN
 """BIC by which noise that wanders must be worse: it is no single rival but stands for every shape
 that it may take by chance. By simulation of walks and of drifts and steps beside them
@@ -138,10 +134,8 @@ def search(problem: Case, *, draws: int, confirm: Case | None) -> Search:
     last = levels[-1]
     if last.depth == 0:
         return Search(tuple(levels), tuple(gates), (), (), (), implausible, base, base, pool)
-    near = within_margin(last)
-    chosen = _chosen(last, near) or base
-    near = tuple(f for f in near if f is chosen or not refuted(problem, chosen, f))
-    names = _names(problem, levels, near, confirmed=confirm is not None)
+    near, names = heard(problem, levels, confirmed=confirm is not None)
+    chosen = standing(last, near) or base
     proofs = Proofs(current, draws, confirm)
     adopted, refused, after = _proved(problem, chosen, names, base, proofs=proofs)
     return Search(
@@ -157,42 +151,20 @@ def search(problem: Case, *, draws: int, confirm: Case | None) -> Search:
     )
 
 
-def _chosen(level: Level, near: tuple[Fit, ...]) -> Fit | None:
-    """The set that stands for those that are told: the preferred one, if it is among them."""
-    if level.preferred is not None and any(fit is level.preferred for fit in near):
-        return level.preferred
-    return next((fit for fit in near if fit.noise is None), near[0] if near else None)
-
-
 def _possible(problem: Case, level: Level) -> tuple[Level, dict[str, Fit]]:
     """Drop sets with too many parameters or coefficients outside their physical range."""
     kept: list[Fit] = []
     dropped: dict[str, Fit] = {}
     for fit in level.fits:
-        if fit.parameters > most_parameters(problem.size):
+        if fit.parameters > most_parameters(problem):
             continue
         outside = set(plausible(problem, fit))
         if not outside:
             kept.append(fit)
         elif len(fit.members) == 1 or level.depth > 1:
             dropped |= {name: fit for name in outside if name not in dropped}
-    allowed = [f for f in level.noises if f.parameters <= most_parameters(problem.size)]
+    allowed = [f for f in level.noises if f.parameters <= most_parameters(problem)]
     return Level(level.depth, tuple(kept), tuple(allowed)), dropped
-
-
-def _names(
-    problem: Case, levels: list[Level], near: tuple[Fit, ...], *, confirmed: bool
-) -> list[str]:
-    """Ids of named effects that are in every set within the margin."""
-    if problem.size < LEAST_TO_NAME:
-        return []
-    common = frozenset.intersection(*[fit.key for fit in near])
-    named = {m.candidate.id for f in near for m in f.members if m.candidate.kind == "named"}
-    found = [i for i in near[0].effects if i in common & named]
-    if confirmed or len(levels) - 1 <= NAMED_DEPTH:
-        return found
-    early = levels[NAMED_DEPTH].preferred
-    return [i for i in found if early is not None and i in early.key]
 
 
 @dataclass(frozen=True, slots=True)

@@ -198,7 +198,11 @@ class BudgetLine:
 
 @dataclass(frozen=True, slots=True)
 class LineResult:
-    """The oriented line: what the whole program is for."""
+    """The oriented line: what the whole program is for.
+
+    ``if_drifting`` is the half-width of the 95 % interval of its constant if the instrument drifts
+    [rad], None where the determinations are not far from the line in time.
+    """
 
     station: str
     target: str
@@ -219,6 +223,7 @@ class LineResult:
     existing_azimuth: float | None = None
     distance_m: float | None = None
     levelling: float | None = None
+    if_drifting: float | None = None
 
     @property
     def subject(self) -> Subject:
@@ -258,6 +263,7 @@ class LineResult:
                 "arcsec": to_arcsec(self.constant),
                 "sigma_arcsec": to_arcsec(self.constant_sigma),
                 "choice": self.constant_choice,
+                "if_drifting_interval95_arcsec": to_arcsec(self.if_drifting),
             }
         return {
             "station": self.station,

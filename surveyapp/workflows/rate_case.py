@@ -57,7 +57,9 @@ def case_of_log(log: SensorLog, entry: SensorLogEntry, own: tuple[Effect, ...] =
         seated = partial(with_seats, seats=seats, before=base_model(made))
         made = rate_case(stops, turns, identity=entry.id, extra=own, seats=seats)
     if not any(stop.known is None and stop.force is not None for stop in stops):  # held by hand
-        made = replace(made, levels=LEVELS)
+        # beside crooked seats, which are named, anything is a further effect
+        first = LEVELS.first if seats is None else LEVELS.further
+        made = replace(made, levels=replace(LEVELS, first=first))
     lines = partial(
         with_lines_beside,
         log=log,

@@ -10,11 +10,16 @@ import pytest
 
 from surveyapp.core.sensors.rate.adopted import adopted_flip_sigma
 from surveyapp.core.simulate.rate.log import SimulatedLog
-from surveyapp.core.simulate.rate.table_programmes import six_position_log
+from surveyapp.core.simulate.rate.recipes import PROGRAMMES
+from surveyapp.core.simulate.rate.table_programmes import DEG_H, six_position_log
+from surveyapp.core.simulate.specification import Effect
 from surveyapp.diagnosis.crooked_seats import Seats
+from surveyapp.diagnosis.engine import diagnose
 from surveyapp.diagnosis.rate_stops import stops_of
 from surveyapp.diagnosis.subjects.rate import seats_of
 from surveyapp.domain.instrument import AdoptedEffect
+from surveyapp.domain.sensor_entry import SensorLogEntry
+from surveyapp.workflows.rate_case import case_of_log
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.effects.rate.flip_error import SEAT_SD
 from tests.cli.command import run as surveyapp
@@ -81,3 +86,14 @@ def test_named_adopted_and_counted(tmp_path: Path) -> None:
     widened = 2.4469 / 1.9600 * size  # Student's quantile of six degrees of freedom
     one = next(p for p in told["parameters"] if p["name"] == "misalignment_xy")
     assert one["sigma"] == pytest.approx(widened / math.sqrt(2.0), rel=0.02)
+
+
+def test_a_second_effect_is_named_beside_the_seats_of_one_round() -> None:
+    """Twelve unknowns of the unit and six of the seats are half of the 36 rows of one round."""
+    rng = np.random.default_rng([3, 9])
+    effects = [Effect("flip_error", 60.0 * ARCSEC), Effect("bias_ramp", 10.0 * DEG_H / 3600.0)]
+    log = PROGRAMMES["rate"]["six-position"][0](effects, rng)
+    made = case_of_log(as_read(log), SensorLogEntry("log", "rate", "", latitude_deg=45.77))
+    assert made.finished is not None
+    found, _ = made.finished(diagnose(made.case, advise=False))
+    assert {a.effect for a in found.adopted} == {"flip_error", "bias_ramp"}

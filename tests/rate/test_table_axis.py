@@ -73,15 +73,18 @@ def test_one_position_of_a_pair_on_a_leaning_table() -> None:
 
 
 def test_without_a_latitude_gravity_is_not_blamed_for_the_earth_rate() -> None:
-    """10.8 deg/h along every axis that points up, in a noise of .13 deg/h a stop."""
-    log = replace(as_read(leaning(0.3)), path="log")
+    """10.8 deg/h along every axis that points up, in a noise of .13 deg/h a stop, two rounds."""
+    log = replace(as_read(leaning(0.3, positions=POSITIONS + POSITIONS)), path="log")
     rng = np.random.default_rng(3)
+    first = log.texts["position"].index("z-")
+    second = log.texts["position"].index("x+", first)
     gyros = {
         c: v + rng.normal(0.0, 2.0 * DEG_H, v.size)
         for c, v in log.columns.items()
         if c.startswith("gyr_")
     }
-    log = replace(log, columns={**log.columns, **gyros})
+    rounds = np.where(np.arange(log.size) < second, 1.0, 2.0)
+    log = replace(log, columns={**log.columns, **gyros, "round": rounds})
     made = case_of_log(log, SensorLogEntry("log", "rate", ""))
     assert [w.code for w in made.warnings] == ["latitude_unknown"]
     found = diagnose(made.case, advise=False)
@@ -90,4 +93,7 @@ def test_without_a_latitude_gravity_is_not_blamed_for_the_earth_rate() -> None:
     assert gravity.verdict == "not_separable"
     known = case_of_log(log, SensorLogEntry("log", "rate", "", latitude_deg=45.77))
     assert not known.warnings
-    assert diagnose(known.case, advise=False).verdict == "adequate"
+    told = diagnose(known.case, advise=False)
+    assert told.verdict == "adequate"
+    gravity = next(c for c in told.candidates if c.effect == "g_sensitivity")
+    assert gravity.verdict == "not_significant"

@@ -27,6 +27,7 @@ from surveyapp.core.sensors.rate.temperature_nodes import TemperatureOptions
 from surveyapp.core.simulate.rate.log import SimulatedLog
 from surveyapp.core.simulate.rate.recipes import example_unit, simulate_rate
 from surveyapp.core.simulate.rate.table_programmes import (
+    DEG_H,
     ImuOnTable,
     TableRun,
     six_position_log,
@@ -297,3 +298,22 @@ def test_a_tilted_table_and_a_chamber_that_is_read_often_change_nothing() -> Non
             assert item.sigma is not None
             error = item.value - float(str(room.truth[item.name]))
             assert abs(error) < 4.0 * item.sigma, item.name
+
+
+def test_samples_far_off_are_told_and_coarse_counts_are_none() -> None:
+    """Three samples of 250 standard deviations; steps of two standard deviations of the noise."""
+    log = as_read(six_position_log(unit(), np.random.default_rng(4)))
+    gyro = log.columns["gyr_y_rad_s"]
+    rows = np.flatnonzero(
+        (np.array(log.texts["position"]) == "z+") & (log.columns["table_rate_deg_s"] > 19.9)
+    )
+    struck = gyro.copy()
+    struck[rows[[20, 40, 60]]] += 500.0 * DEG_H
+    coarse = np.round(gyro / (4.0 * DEG_H)) * 4.0 * DEG_H
+    for values, wanted in ((gyro, ""), (struck, "gyr_y_rad_s 3"), (coarse, "")):
+        found = calibrate_six_positions(
+            replace(log, columns={**log.columns, "gyr_y_rad_s": values}), SixPositionOptions()
+        )
+        told = [w.text for w in found.warnings if w.code == "gross_samples"]
+        assert len(told) == bool(wanted)
+        assert all(wanted in text for text in told)

@@ -120,6 +120,15 @@ def test_rows_at_the_end_of_the_range_are_left_out(
         api.calibrate("compass", still)
 
 
+def test_a_sensor_slower_than_its_logger_is_not_at_the_end_of_its_range() -> None:
+    """Each reading stands in five rows, so the largest one does (measured: vqf_imu)."""
+    values = np.random.default_rng(4).normal(0.0, 10.0, 400)
+    held = np.repeat(values, 5)
+    assert ends_of_range(held) == {}
+    end = float(np.sort(values)[-12])
+    assert ends_of_range(np.minimum(held, end)) == {end: 60}
+
+
 def test_a_force_of_something_else_does_not_tell_the_dip(
     sphere: tuple[Path, Log], tmp_path: Path
 ) -> None:

@@ -15,6 +15,7 @@ import numpy as np
 
 from surveyapp.core.orientation.campaign_columns import BY_NAME
 from surveyapp.core.orientation.circumstances import Circumstances, columns_of
+from surveyapp.core.orientation.far_dates import drift_notes, if_drifting
 from surveyapp.core.orientation.instrument_constant import (
     LEAST_PREDICTED,
     Calibration,
@@ -69,6 +70,9 @@ class PredictedConstants:
         The constant averaged over the campaign.
     lines : tuple of Uncertain
         One for each line that was wanted.
+    drifting : tuple of (float or None)
+        Half-width of the 95 % interval of each if the instrument drifts [rad], where the
+        determinations are far from it in time.
     causes : mapping of unit to float
         Weight of each cause in the average.
     scatter : RunScatter
@@ -78,6 +82,7 @@ class PredictedConstants:
 
     average: Uncertain
     lines: tuple[Uncertain, ...]
+    drifting: tuple[float | None, ...]
     causes: Mapping[str, float]
     scatter: RunScatter
     warnings: tuple[ResultWarning, ...]
@@ -128,11 +133,16 @@ def predict_constants(
         lines += values[1:]
         warnings += [w for w in told if w not in warnings]
         warnings += told_of(constant.instrument.id, part, known, gaps)
+    stated = base.sigmas if base.stated else None
+    drifting = if_drifting(wanted, known, lines, values=base.values, sigmas=stated, priors=priors)
+    warnings += drift_notes(constant.instrument.id, wanted, lines, drifting, priors=priors)
     warnings += one_block(constant.instrument.id, known, bool(wanted))
     assert found is not None
     assert average is not None
     scatter = RunScatter(found.excess if base.stated else 0.0, round(found.dof), None)
-    return PredictedConstants(average, tuple(lines), found.weights, scatter, tuple(warnings))
+    return PredictedConstants(
+        average, tuple(lines), drifting, found.weights, scatter, tuple(warnings)
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,6 +154,12 @@ class _Base:
     known: Sequence[Circumstances]
     sources: list[Source]
     carried: Floats
+
+    @property
+    def values(self) -> Floats:
+        """The determinations, about the first [rad]."""
+        first = self.used[0].value.value
+        return np.array([first + wrap_pi(item.value.value - first) for item in self.used])
 
     @property
     def sigmas(self) -> Floats:
@@ -169,11 +185,7 @@ class _Base:
         gaps = gaps & alike
         n, sigmas = len(self.used), self.sigmas if self.stated else None
         columns, targets, states = _scenarios(columns, _targets(part, n, sigmas), gaps, n)
-        first = self.used[0].value.value
-        values = [first + wrap_pi(item.value.value - first) for item in self.used]
-        data = Determinations(
-            np.array(values), sigmas, columns, targets, self.carried, states, chosen
-        )
+        data = Determinations(self.values, sigmas, columns, targets, self.carried, states, chosen)
         return predict(data, priors), gaps, told
 
 

@@ -25,10 +25,15 @@ Members = list[tuple[ReducedSession, Uncertain]]
 
 @dataclass(frozen=True, slots=True)
 class PredictedLine:
-    """The constant of a line and what each of its runs has beside its stated sigma."""
+    """The constant of a line and what each of its runs has beside its stated sigma.
+
+    ``drifting`` is the half-width of its 95 % interval if the instrument drifts [rad], None where
+    the determinations are not far from it in time.
+    """
 
     constant: Uncertain
     scatter: RunScatter
+    drifting: float | None = None
 
 
 def survey_groups(reduced: Sequence[ReducedSession], only: str | None) -> dict[Key, Members]:
@@ -80,8 +85,8 @@ def predicted_lines(
         # the lines repeat themselves too: whichever of both tells of more
         seen = run_scatter([aligned([a for _, a in members]) for members in own.values()])
         scatter = seen if seen.sigma > result.scatter.sigma else result.scatter
-        for key, value in zip(own, result.lines, strict=True):
-            lines[key] = PredictedLine(value, scatter)
+        for key, value, half in zip(own, result.lines, result.drifting, strict=True):
+            lines[key] = PredictedLine(value, scatter, half)
         if constant.choice.kind == "predicted" or constant.instrument.constant_choice is None:
             warnings += [item.about(Subject.of("instrument", name)) for item in result.warnings]
         found.append(replace(constant, average=result.average))

@@ -127,20 +127,28 @@ def _beyond(line: Wanted, known: Sequence[Circumstances]) -> list[str]:
                     thetas2=max(thetas),
                 )
             )
-    days, visits = _told(known, "elapsed_days"), _told(visited, "elapsed_days")
-    if len(days) == len(known) and visits:
-        span = max(days) - min(days)
-        gap = max(max(visits) - max(days), min(days) - min(visits))
-        if gap > max(span, 1.0):
-            found.append(
-                said(
-                    "it was observed {gap:.0f} days from the nearest determination, and they "
-                    "span {span:.0f} days",
-                    gap=gap,
-                    span=span,
-                )
+    away = far_in_time(line, known)
+    if away is not None:
+        found.append(
+            said(
+                "it was observed {gap:.0f} days from the nearest determination, and they "
+                "span {span:.0f} days",
+                gap=away[0],
+                span=away[1],
             )
+        )
     return found
+
+
+def far_in_time(line: Wanted, known: Sequence[Circumstances]) -> tuple[float, float] | None:
+    """Days from the nearest determination and days that they span, where the first is longer."""
+    visited = [visit for _, visit in line.visits]
+    days, visits = _told(known, "elapsed_days"), _told(visited, "elapsed_days")
+    if len(days) != len(known) or not visits:
+        return None
+    span = max(days) - min(days)
+    gap = max(max(visits) - max(days), min(days) - min(visits))
+    return (gap, span) if gap > max(span, 1.0) else None
 
 
 def _told(items: Sequence[Circumstances], column: str) -> list[float]:

@@ -95,16 +95,15 @@ class SurveyedLines:
                 problems += error.problems
                 continue
             first = members[0][0].session
-            lines.append(
-                orient_line(
-                    self.geometry[first.id, target],
-                    rounds,
-                    instrument=instrument,
-                    centring=centring_of(self.project, first),
-                    calibration_sessions=calibrated,
-                    agreement_of=[azimuth for _, azimuth in members],
-                )
+            line = orient_line(
+                self.geometry[first.id, target],
+                rounds,
+                instrument=instrument,
+                centring=centring_of(self.project, first),
+                calibration_sessions=calibrated,
+                agreement_of=[azimuth for _, azimuth in members],
             )
+            lines.append(_with_drift(line, predicted.get(key)))
             warnings += [
                 warning.about(Subject.session(item.session, target))
                 for item in rounds
@@ -114,6 +113,13 @@ class SurveyedLines:
         if problems:
             raise SurveyError(problems)
         return tuple(lines), warnings
+
+
+def _with_drift(line: OrientedLine, predicted: PredictedLine | None) -> OrientedLine:
+    """The line with what its constant may be if the instrument drifts, where it is predicted."""
+    if predicted is None or line.result.constant_choice != "predicted":
+        return line
+    return replace(line, result=replace(line.result, if_drifting=predicted.drifting))
 
 
 def _round(

@@ -11,6 +11,7 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from surveyapp.domain.columns import pieces
 from surveyapp.domain.project import ResultWarning
@@ -37,9 +38,24 @@ def ends_of_range(values: Array) -> dict[float, int]:
             less = less[less < end]
             below = max(below, float(less.max()) if less.size else -np.inf)
         next_to = sum(int(np.count_nonzero(sign * piece == below)) for piece in pieces(values))
-        if at_end > CLIPPED_RATIO * next_to:
+        if at_end > CLIPPED_RATIO * next_to and _readings(values, sign * end) >= CLIPPED_ROWS:
             found[sign * end] = at_end
     return found
+
+
+def _readings(values: Array, end: float) -> int:
+    """Readings at an end: a logger that is faster than its sensor writes each several times.
+
+    A run at the end is as many readings as it is longer than the longest run of another value.
+    """
+    lengths, held = list[NDArray[np.int64]](), 1
+    for piece in pieces(values):
+        starts = np.flatnonzero(np.concatenate([[True], piece[1:] != piece[:-1]]))
+        runs = np.diff(np.concatenate([starts, [piece.size]]))
+        ends = piece[starts] == end
+        lengths.append(runs[ends])
+        held = max(held, int(np.max(runs[~ends], initial=1)))
+    return int(np.sum(-(-np.concatenate(lengths) // held)))
 
 
 def unclipped_rows(log: SensorLog, names: Sequence[str]) -> np.ndarray | None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Final
 
 import numpy as np
@@ -25,13 +26,14 @@ from surveyapp.diagnosis.sensors.document import (
     words_of,
 )
 from surveyapp.diagnosis.sensors.doubts import doubted
-from surveyapp.diagnosis.sensors.loop import Chosen, LoopFit, LoopResult, fit_model, run_loop
+from surveyapp.diagnosis.sensors.edges import refined, row_residual
+from surveyapp.diagnosis.sensors.loop import LoopFit, LoopResult, fit_model, run_loop
 from surveyapp.diagnosis.sensors.records import SensorRecord
-from surveyapp.diagnosis.sensors.windows import block_means, switched
+from surveyapp.diagnosis.sensors.windows import block_means
 from surveyapp.domain.instrument import AdoptedEffect
 from surveyapp.domain.project import ResultWarning
-from surveyapp.languages import joined
-from surveyapp_models.arrays import Floats
+from surveyapp.languages import joined, said
+from surveyapp.languages.names import named
 
 HELD_OUT_S: Final = 2.0
 TILT_ROWS: Final = 7
@@ -103,15 +105,16 @@ def diagnose_sensor(
     data_sha256 : str
         Of the log.
     """
-    found = run_loop(record.data, record.candidates)
+    found = run_loop(record.data, record.candidates, refine=partial(refined, record))
     found = doubted(record, found)
-    after = _refined(record, found.after)
+    after = refined(record, found.after)
     proof = None if second is None else confirmed(record, after, second)
     notes = list(warnings)
     if proof is not None:
         after = proof.fit
         notes += [ResultWarning("not_adopted", joined(": ", (n, why))) for n, why in proof.refused]
-    best = _refined(record, found.best) if found.ambiguous else after
+    notes += [_of_the_room(name) for name in found.doubted]
+    best = refined(record, found.best) if found.ambiguous else after
     fits = {"before": found.before, "after": after, "after_best": best}
     verdict: Verdict = _verdict(record, found)
     if proof is not None and proof.refused and not found.ambiguous:
@@ -123,12 +126,6 @@ def diagnose_sensor(
     if proof is not None:
         models["before"]["confirm_rms"] = proof.before
         models["after"]["confirm_rms"] = proof.after
-    held = {
-        "scheme": "contiguous blocks, two halves fitted alternately",
-        "before": _held_out(record, found.before),
-        "after": _held_out(record, after),
-        "unit": record.unit,
-    }
     document: dict[str, Any] = {
         "schema": "surveyapp.diagnose/1",
         "subject": record.subject,
@@ -140,7 +137,7 @@ def diagnose_sensor(
         "candidates": candidates_of(found, record),
         **models,
         "averaged": None,
-        "held_out": held,
+        "held_out": _blocks_left_out(record, found.before, after),
         "noise": {"before": found.before.noise, "after": after.noise},
         "lines": [],
         "remedy": remedies_of(record, adopted),
@@ -154,6 +151,20 @@ def diagnose_sensor(
         (*words_of(document), *told),
         tuple(_record_of(item, document, data_sha256) for item in adopted),
     )
+
+
+def _of_the_room(effect: str) -> ResultWarning:
+    text = said("{effect}: may be the field of the room", effect=named(effect))
+    return ResultWarning("not_adopted", text)
+
+
+def _blocks_left_out(record: SensorRecord, before: LoopFit, after: LoopFit) -> dict[str, Any]:
+    return {
+        "scheme": "contiguous blocks, two halves fitted alternately",
+        "before": _held_out(record, before),
+        "after": _held_out(record, after),
+        "unit": record.unit,
+    }
 
 
 def _record_of(item: dict[str, Any], document: dict[str, Any], sha256: str) -> AdoptedEffect:
@@ -175,77 +186,6 @@ def _record_of(item: dict[str, Any], document: dict[str, Any], sha256: str) -> A
     )
 
 
-def _refined(record: SensorRecord, fit: LoopFit) -> LoopFit:
-    """Switch times to the row: where each row fits better with or without the step."""
-    if record.step_rows is None:
-        return fit
-    for _ in range(2):
-        index = next(
-            (i for i, c in enumerate(fit.chosen) if c.candidate.id == "interference_step"), None
-        )
-        if index is None:
-            return fit
-        chosen = fit.chosen[index]
-        on, off = _edges(record, fit, chosen)
-        rows = record.step_rows * switched(record.time, on, off)[:, None, None]
-        moved = Chosen(
-            chosen.candidate, {"on_s": on, "off_s": off}, block_means(rows, record.block)
-        )
-        trial = fit_model(record.data, (*fit.chosen[:index], moved, *fit.chosen[index + 1 :]))
-        if trial is None or trial.bic > fit.bic + 6.0:
-            return fit
-        fit = trial
-    return fit
-
-
-def _row_residual(record: SensorRecord, fit: LoopFit, *, without: str = "") -> Floats:
-    """Residual row by row of base and effects."""
-    size = record.base.shape[2]
-    residual = record.rows - record.base_rows @ fit.x[:size]
-    start = size
-    for chosen in fit.chosen:
-        k = chosen.design.shape[2]
-        x = fit.x[start : start + k]
-        start += k
-        if chosen.candidate.id == without:
-            continue
-        if chosen.candidate.id == "interference_step" and record.step_rows is not None:
-            on, off = chosen.grid["on_s"], chosen.grid["off_s"]
-            residual = residual - (record.step_rows @ x) * switched(record.time, on, off)[:, None]
-        elif chosen.candidate.rows is not None:
-            residual = residual - chosen.candidate.rows(chosen.grid) @ x
-        else:
-            residual = residual - (chosen.design @ x)[record.block]
-    return np.asarray(residual)
-
-
-def _edges(record: SensorRecord, fit: LoopFit, chosen: Chosen) -> tuple[float, float]:
-    bare = _row_residual(record, fit, without="interference_step")
-    size, start = record.base.shape[2], 0
-    start = size
-    for item in fit.chosen:
-        if item is chosen:
-            break
-        start += item.design.shape[2]
-    x = fit.x[start : start + chosen.design.shape[2]]
-    if record.step_rows is None:
-        return chosen.grid["on_s"], chosen.grid["off_s"]
-    gain = np.sum(bare**2, axis=1) - np.sum((bare - record.step_rows @ x) ** 2, axis=1)
-    per_block = int(np.ceil(record.time.size / record.observed.shape[0]))
-    reach = 2 * per_block + 2
-    first = int(np.searchsorted(record.time, chosen.grid["on_s"]))
-    last = int(np.searchsorted(record.time, chosen.grid["off_s"]))
-    total = np.concatenate([[0.0], np.cumsum(gain)])
-    if first > 0:
-        a = np.arange(max(first - reach, 0), min(first + reach, last))
-        first = int(a[np.argmin(total[a])])
-    if last < record.time.size:
-        b = np.arange(max(last - reach, first + 1), min(last + reach, record.time.size) + 1)
-        last = int(b[np.argmax(total[b])])
-    off = float(record.time[last]) if last < record.time.size else math.inf
-    return float(record.time[first]), off
-
-
 def _verdict(record: SensorRecord, found: LoopResult) -> Verdict:
     if found.ambiguous:
         return "not_separable"
@@ -260,7 +200,7 @@ def _plain(record: SensorRecord, fit: LoopFit) -> LoopFit:
 
 
 def _model(record: SensorRecord, fit: LoopFit, *, gross: bool) -> dict[str, Any]:
-    residual = _row_residual(record, _plain(record, fit))
+    residual = row_residual(record, _plain(record, fit))
     n = residual.shape[0] * residual.shape[1]
     dof = max(n - fit.parameters, 1)
     rms = rms_of(record, residual, gross=gross)
@@ -288,7 +228,7 @@ def _held_out(record: SensorRecord, fit: LoopFit) -> float | None:
     else:
         block = max(TILT_ROWS * n // max(record.time.size, 1), 1)
     design = np.concatenate([record.base, *(c.design for c in fit.chosen)], axis=2)
-    rows = _row_residual(record, _plain(record, fit))
+    rows = row_residual(record, _plain(record, fit))
     inside = rows - block_means(rows, record.block)[record.block]
     held = np.full((n, d), np.nan)
     for used, left in alternate_blocks(n, block):
@@ -311,7 +251,7 @@ def _compass_figures(record: SensorRecord, before: LoopFit, after: LoopFit) -> d
     for name, model in (("before", before), ("after", after)):
         fit = _plain(record, model)
         level = fit.x[:size]
-        corrected = record.base_rows @ level + _row_residual(record, fit)
+        corrected = record.base_rows @ level + row_residual(record, fit)
         length = np.linalg.norm(corrected, axis=1)
         figures["size_rms_uT"][name] = float(np.std(length))
         turned = np.einsum("nij,nj->ni", record.matrices, corrected)

@@ -142,7 +142,7 @@ def candidates_of(found: LoopResult, record: SensorRecord) -> list[dict[str, Any
         verdict: CandidateVerdict = "not_significant"
         if candidate.id in found.after.ids:
             verdict = "adopted"
-        elif candidate.id in ambiguous:
+        elif candidate.id in ambiguous or candidate.id in found.doubted:
             verdict = "candidate"
         elif trial is None or trial.gain is None:
             verdict = "not_applicable"
@@ -155,7 +155,9 @@ def candidates_of(found: LoopResult, record: SensorRecord) -> list[dict[str, Any
                 "p_family": None if p is None else min(1.0, p * len(record.candidates)),
                 "delta_bic": None if trial is None else trial.gain,
                 "kind": "named",
-                "reason": "",
+                "reason": said("may be the field of the room")
+                if candidate.id in found.doubted
+                else "",
             }
         )
     for identity, reason in record.missing:

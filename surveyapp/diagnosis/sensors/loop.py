@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -132,6 +132,10 @@ class LoopResult:
         Of each step.
     ambiguous : tuple of Trial
         Effects of the last step that none could be told from another, or from noise.
+    steps : tuple of Trial
+        What was taken at each step.
+    doubted : tuple of str
+        Effects that were taken out again: the field of the room may look like them.
     """
 
     before: LoopFit
@@ -139,7 +143,11 @@ class LoopResult:
     best: LoopFit
     trials: tuple[tuple[Trial, ...], ...]
     ambiguous: tuple[Trial, ...] = ()
-    steps: tuple[Trial, ...] = field(default=())
+    steps: tuple[Trial, ...] = ()
+    doubted: tuple[str, ...] = ()
+
+
+Refine = Callable[[LoopFit], LoopFit]
 
 
 def fit_model(
@@ -195,13 +203,20 @@ def _possible(chosen: Sequence[Chosen], x: Floats) -> bool:
     return True
 
 
-def run_loop(data: Data, candidates: Sequence[Candidate]) -> LoopResult:
+def run_loop(
+    data: Data,
+    candidates: Sequence[Candidate],
+    *,
+    refine: Refine = lambda fit: fit,
+) -> LoopResult:
     """Search the effects of a record.
 
     Parameters
     ----------
     data : Data
     candidates : sequence of Candidate
+    refine : callable
+        Finds in every model that is tried what the grid of an effect is too coarse for.
 
     Returns
     -------
@@ -214,7 +229,7 @@ def run_loop(data: Data, candidates: Sequence[Candidate]) -> LoopResult:
     ambiguous: tuple[Trial, ...] = ()
     best = current
     for _ in range(MOST_EFFECTS):
-        fits = _tried(data, candidates, current)
+        fits = _tried(data, candidates, current, refine)
         trials = tuple(_trial(current, cid, fit) for cid, fit in fits.items())
         history.append(trials)
         ranked = sorted((t for t in trials if t.gain is not None), key=lambda t: -(t.gain or 0.0))
@@ -224,17 +239,16 @@ def run_loop(data: Data, candidates: Sequence[Candidate]) -> LoopResult:
         top = fits[ranked[0].id]
         if top is None:
             break
-        if len(near) > 1 and not _both(data, candidates, (top, near[1].id)):
+        if len(near) > 1 and not _both(data, candidates, (top, near[1].id), refine):
             ambiguous, best = near, top
             break
         steps.append(ranked[0])
-        current = best = top
-        current = best = _pruned(data, current)
+        current = best = _pruned(data, top)
     return LoopResult(before, current, best, tuple(history), ambiguous, tuple(steps))
 
 
 def _tried(
-    data: Data, candidates: Sequence[Candidate], current: LoopFit
+    data: Data, candidates: Sequence[Candidate], current: LoopFit, refine: Refine
 ) -> dict[str, LoopFit | None]:
     found: dict[str, LoopFit | None] = {}
     for candidate in candidates:
@@ -245,7 +259,7 @@ def _tried(
             fit = fit_model(data, (*current.chosen, Chosen(candidate, grid, design)))
             if fit is not None and (best is None or fit.bic < best.bic):
                 best = fit
-        found[candidate.id] = best
+        found[candidate.id] = None if best is None else refine(best)
     return found
 
 
@@ -258,11 +272,13 @@ def _trial(current: LoopFit, identity: str, fit: LoopFit | None) -> Trial:
     return Trial(identity, gain, ratio, max(extra, 1), fit.noise)
 
 
-def _both(data: Data, candidates: Sequence[Candidate], pair: tuple[LoopFit, str]) -> bool:
+def _both(
+    data: Data, candidates: Sequence[Candidate], pair: tuple[LoopFit, str], refine: Refine
+) -> bool:
     """Whether the second effect is still there once the first is in the model."""
     first, second = pair
     candidate = next(c for c in candidates if c.id == second)
-    fit = _tried(data, [candidate], first)[second]
+    fit = _tried(data, [candidate], first, refine)[second]
     return fit is not None and first.bic - fit.bic > MARGIN
 
 

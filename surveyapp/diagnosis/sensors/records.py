@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -18,6 +19,7 @@ from surveyapp.diagnosis.candidates import missing_columns
 from surveyapp.diagnosis.sensors.field_size import possible_iron, size_candidates
 from surveyapp.diagnosis.sensors.loop import Candidate, Data
 from surveyapp.diagnosis.sensors.noise import along, whiteners
+from surveyapp.diagnosis.sensors.room import room_columns
 from surveyapp.diagnosis.sensors.turn import turn
 from surveyapp.diagnosis.sensors.windows import Blocks, block_means, blocks_of, switch
 from surveyapp.domain.sensor_log import SensorLog
@@ -73,6 +75,8 @@ class SensorRecord:
         Effects of the catalogue that the record cannot show, and what it lacks.
     own : tuple of Effect
         The user's.
+    room : callable or None
+        Makes the fields that a room may have along the path, shape (n, d, k); None without a path.
     """
 
     subject: str
@@ -92,6 +96,7 @@ class SensorRecord:
     scale: float = 1.0
     missing: tuple[tuple[str, str], ...] = ()
     own: tuple[Effect, ...] = ()
+    room: Callable[[], Floats] | None = None
 
     @property
     def data(self) -> Data:
@@ -270,7 +275,7 @@ def _vector_record(log: SensorLog, matrices: Floats, effects: tuple[Effect, ...]
     columns |= {f"level_{a}": base_rows[kept][:, :, j].ravel() for j, a in enumerate("xyz")}
     candidates, missing = _catalogued(effects, columns, block, None)
     candidates.append(turn((base_rows @ level)[kept], base_rows[kept], block))
-    used = log.columns["time_s"][kept]
+    used, place = log.columns["time_s"][kept], log.vector("ref_p")
     eye = np.tile(np.eye(3), (used.size, 1, 1))
     candidates.append(
         switch(used, block, eye, ("step_x", "step_y", "step_z"), base_rows=base_rows[kept])
@@ -279,6 +284,7 @@ def _vector_record(log: SensorLog, matrices: Floats, effects: tuple[Effect, ...]
         "compass", "uT", used, block, mag[kept], base_rows[kept],
         block_means(mag[kept], block), block_means(base_rows[kept], block), tuple(candidates),
         eye, tuple(gross), "vector", matrices[kept], mag[kept], missing=tuple(missing),
+        room=None if place is None else partial(room_columns, place[kept], matrices[kept], block),
     )  # fmt: skip
 
 

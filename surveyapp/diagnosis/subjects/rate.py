@@ -256,7 +256,8 @@ def rate_case(
     case = case_of(subject, record)
     told = np.arange(observed.size) < rests
     weights = np.where(told, 1.0 / rests, 0.0)
-    return replace(case, value_weights=weights, reported=told.astype(np.float64), own_scales=scales)
+    case = replace(case, nuisance=effective, own_scales=scales)
+    return replace(case, value_weights=weights, reported=told.astype(np.float64))
 
 
 def seats_of(stops: Sequence[RateStop]) -> Seats | None:

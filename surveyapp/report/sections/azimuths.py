@@ -142,6 +142,9 @@ def _steps(
     if choice:
         origin = joined(", ", (line.instrument, term(choice)))
     small(said("+ instrument constant"), line.constant, line.constant_sigma, origin)
+    if line.if_drifting is not None:
+        half = seconds(line.if_drifting)
+        rows.append((said("its interval if it drifts"), "", "", half, said("far in time: 95 %")))
     if line.true_azimuth is not None:
         strong.add(len(rows))
     result(said("= true azimuth (astronomic)"), line.true_azimuth, "")

@@ -14,6 +14,7 @@ from surveyapp.core.sensors.rate.fog_station import (
     Scatter,
     combine,
 )
+from surveyapp.core.sensors.rate.gross_samples import gross_samples
 from surveyapp.core.sensors.rate.table_log import (
     Turned,
     encoder_told,
@@ -84,6 +85,7 @@ def calibrate_fog_station(
     found = combine(sets, rule=rule, relative_rate_sigma=relative_rate_sigma or 0.0)
     if found.scale is not None and abs(found.scale) > NO_SCALE_ERROR:
         raise SurveyError(_against_rule(log, rule))
+    warnings += gross_samples(log, [t for turned in turns.values() for t in turned], NEEDED)
     return _calibration(log, sets, found, rule, relative=relative_rate_sigma, warnings=warnings)
 
 
@@ -128,7 +130,7 @@ def turned_sets(
     noted, wrong = encoder_told(log, motion, every, relative_rate_sigma=relative_rate_sigma)
     problems = [*problems, *wrong]
     if problems:
-        raise SurveyError(_told_once(problems))
+        raise SurveyError(list(dict.fromkeys(problems)))
     return found, [*sense_warnings(motion), *noted]
 
 
@@ -162,10 +164,6 @@ def _against_rule(log: SensorLog, rule: Rule) -> Problem:
         "ways: look it up at the instrument; or does the table turn the other way than the log "
         "says, or were two sets exchanged?",
     )
-
-
-def _told_once(problems: list[Problem]) -> list[Problem]:
-    return list(dict.fromkeys(problems))
 
 
 def _paired(groups: dict[tuple[int, int], list[Any]]) -> dict[tuple[int, int], list[Any]]:

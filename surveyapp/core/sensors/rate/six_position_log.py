@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from surveyapp.core.sensors.rate.gross_samples import gross_samples
 from surveyapp.core.sensors.rate.parameters import (
     DEG_H,
     condition_of,
@@ -103,8 +104,8 @@ def calibrate_six_positions(log: SensorLog, options: SixPositionOptions) -> Cali
     means, warnings, problems = sense_of(shown, where=log.path)
     used = [t for p in placed for t in p.turned]
     noted, wrong = encoder_told(log, motion, used, relative_rate_sigma=options.relative_rate_sigma)
-    problems += wrong or ([] if problems else unit_problems(shown, where=log.path))
-    problems += label_problems(resting, where=log.path)
+    problems += [*wrong, *label_problems(resting, where=log.path)]
+    problems += [] if problems else unit_problems(shown, where=log.path)
     if problems:
         raise SurveyError(problems)
     triad = _solve(means, options)
@@ -124,6 +125,7 @@ def calibrate_six_positions(log: SensorLog, options: SixPositionOptions) -> Cali
             *log.warnings,
             *sense_warnings(motion, warnings),
             *noted,
+            *gross_samples(log, used, GYROS),
             *_warnings(log, motion_begin_s(log, placed), options),
         ),
         met=not missing,

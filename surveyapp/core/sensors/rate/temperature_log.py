@@ -24,11 +24,13 @@ from surveyapp.core.sensors.rate.compensation import (
     chosen_model,
     compare_models,
 )
+from surveyapp.core.sensors.rate.gross_samples import gross_samples
 from surveyapp.core.sensors.rate.parameters import (
     condition_of,
 )
 from surveyapp.core.sensors.rate.position_log import (
     ACCELEROMETERS,
+    GYROS,
     label_problems,
     means_of,
     place_problems,
@@ -106,8 +108,8 @@ def calibrate_temperature(log: SensorLog, options: TemperatureOptions) -> Calibr
         relative_rate_sigma=options.relative_rate_sigma,
     )
     problems += [*wrong, *told]
-    problems += [] if problems else unit_problems(shown, where=log.path)
     problems += label_problems(resting, where=log.path)
+    problems += [] if problems else unit_problems(shown, where=log.path)
     if problems:
         raise SurveyError(problems)
     room = None
@@ -117,6 +119,7 @@ def calibrate_temperature(log: SensorLog, options: TemperatureOptions) -> Calibr
         if problems:
             raise SurveyError(problems)
     nodes = nodes_of(levels, means, resting, room, options=options)
+    noted += gross_samples(log, [t for p in placed for t in p.turned], GYROS)
     return _calibration(log, nodes, options, [*sense_warnings(motion, warnings), *noted])
 
 
@@ -286,7 +289,13 @@ def _warnings(
             "none. --room FILE brings them from six positions at room temperature"
         )
         warnings.append(ResultWarning("accelerometer_rank", text))
-    if log.has(*ACCELEROMETERS):
+    if not log.has(*ACCELEROMETERS):
+        text = (
+            "no accelerometers: the table's axis was taken for vertical; a lean of .3 degrees puts "
+            "up to .08 deg/h into the biases"
+        )
+        warnings.append(ResultWarning("table_lean_unknown", text))
+    else:
         text = said(
             "accelerometer scale factors refer to {gravity:.5f} m/s2; "
             "--gravity-m-s2 states the local one",
