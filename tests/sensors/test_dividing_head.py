@@ -59,6 +59,32 @@ def test_the_three_pairs_of_linearity_of_the_source(tmp_path: Path) -> None:
     assert result.met
 
 
+def with_output(row: str, output: float) -> str:
+    cells = row.split(",")
+    return ",".join([*cells[:4], f"{output:.0f}", *cells[5:]])
+
+
+def test_outputs_that_do_not_follow_the_tilt_are_refused(tmp_path: Path) -> None:
+    """Readings at the wrong angles were "good", with a sensitivity of less than a sigma."""
+    rng = np.random.default_rng(1)
+    rows = [with_output(row, rng.normal(0.0, K1)) for row in static_rows({})[:13]]
+    result = calibrated(tmp_path, [*rows, "reversal,,,0,10,,,", "reversal,,,1,20,,,"])
+    assert result.geometry.verdict == "refused"
+    assert not result.met
+    lost = {"sensitivity", "zero", "linearity_90", "tilt_reversal"}
+    assert lost <= set(result.geometry.undetermined)
+    assert all(result.value(name) is None for name in result.geometry.undetermined)
+
+
+def test_a_single_row_off_the_line_is_told(tmp_path: Path) -> None:
+    rng = np.random.default_rng(2)
+    rows = [with_output(r, float(r.split(",")[4]) + rng.normal(0, 300)) for r in static_rows({})]
+    assert "outlying_row" not in {w.code for w in calibrated(tmp_path, rows).warnings}
+    rows[7] = with_output(rows[7], float(rows[7].split(",")[4]) + 9000.0)
+    texts = [w.text for w in calibrated(tmp_path, rows).warnings]
+    assert any("at 15 degrees is off the line" in text for text in texts)
+
+
 def test_transverse_by_seven_positions_misses_the_peak_and_the_sinusoid_does_not(
     tmp_path: Path,
 ) -> None:

@@ -17,7 +17,7 @@ import numpy as np
 from surveyapp.core.sensors.dividing_head_rows import RANGES, TESTS, check_rows, rows_of
 from surveyapp.core.sensors.dynamic_test import bandwidth
 from surveyapp.core.sensors.linear import LinearFit, fit_linear, rms
-from surveyapp.core.sensors.linearity import Line, linearity, null
+from surveyapp.core.sensors.linearity import Line, linearity, null, outlying, sloped
 from surveyapp.domain.calibration import (
     Calibration,
     Geometry,
@@ -65,6 +65,7 @@ def calibrate_dividing_head(log: SensorLog) -> Calibration:
     parameters += _sensitivity(first, unit)
     for number, span in RANGES.items():
         parameters += linearity(lines[number], span)
+        warnings += _outlying(lines[number], span, unit)
     parameters += _transverse(log, first)
     parameters += _zero(log, first, warnings)
     parameters += _reversal(log, first)
@@ -77,13 +78,32 @@ def _line(log: SensorLog, number: int) -> Line | None:
     if "set" not in log.columns or "angle_deg" not in log.columns:
         return None
     rows = rows_of(log, "static") & (log.columns["set"] == number)
-    if np.count_nonzero(rows) < 3:
+    if np.count_nonzero(rows) < LEAST_ROWS:
         return None
     angle, output = np.radians(log.columns["angle_deg"][rows]), log.columns["output"][rows]
     fit = fit_linear(np.column_stack([np.ones(angle.size), np.sin(angle)]), output)
-    if fit is None or fit.x[1] == 0.0:
+    if fit is None or fit.x[1] == 0.0 or not sloped(fit):
         return None
     return Line(fit, angle, output)
+
+
+def _outlying(line: Line | None, span: int, unit: str) -> list[ResultWarning]:
+    """That single rows of a range are no readings of its line."""
+    rows = [] if line is None else outlying(line)
+    return [
+        ResultWarning(
+            "outlying_row",
+            said(
+                "static, +-{span} degrees: the output at {angle:g} degrees is off the line of the "
+                "others by {size:.4g} {unit}: read or set wrongly?",
+                span=span,
+                angle=round(angle, 6),
+                size=size,
+                unit=unit,
+            ),
+        )
+        for angle, size in rows
+    ]
 
 
 def _sensitivity(line: Line | None, unit: str) -> list[SensorParameter]:
@@ -236,11 +256,14 @@ def _result(
     unit = log.units.get("output", "LSB")
     first = lines[1]
     present = {name for name in TESTS if np.any(rows_of(log, name))}
+    told = tuple(_with_reason(log, item, present, lines) for item in parameters)
     undetermined: list[str] = []
-    if "static" in present and first is None and _has_set(log, 1):
-        undetermined += ["sensitivity", "zero"]
+    if first is None and _static_rows(log, 1):
+        asked = ("sensitivity", "zero")
+        lost = ("no_slope", "no_scale")
+        undetermined = [p.name for p in told if p.name in asked or p.reason in lost]
     if first is None and present - {"static", "capacitance", "dynamic"}:
-        text = "without the static test over +-90 degrees nothing has a scale"
+        text = said("without the static test over +-90 degrees nothing has a scale")
         warnings.append(ResultWarning("no_sensitivity", text))
     held = None
     if first is not None:
@@ -253,7 +276,7 @@ def _result(
     return Calibration(
         kind="dividing-head",
         source=log.id,
-        parameters=tuple(_with_reason(item, present, first) for item in parameters),
+        parameters=told,
         before=Misfit(
             None if first is None else rms(first.output - first.output.mean()),
             unit,
@@ -289,21 +312,30 @@ _TEST_OF: Final = {
 """First word of a parameter to its test; ``zero_stability`` is of the test ``zero``."""
 
 
-def _with_reason(item: SensorParameter, present: set[str], first: Line | None) -> SensorParameter:
+def _with_reason(
+    log: SensorLog, item: SensorParameter, present: set[str], lines: dict[int, Line | None]
+) -> SensorParameter:
     """A parameter without a value says whether its test, its scale or rows are missing."""
     if item.value is not None:
         return item
     test = "zero" if item.name.startswith("zero_") else _TEST_OF[item.name.split("_")[0]]
     if test not in present:
         return replace(item, reason="test_absent")
-    scaled = test in ("transverse", "zero", "reversal")
-    return replace(item, reason="no_scale" if first is None and scaled else "too_few_rows")
+    if lines[1] is None and test in ("transverse", "zero", "reversal"):
+        return replace(item, reason="no_scale")
+    number = next((k for k, span in RANGES.items() if f"_{span}" in item.name), 1)
+    flat = test == "static" and lines[number] is None and _static_rows(log, number) >= LEAST_ROWS
+    return replace(item, reason="no_slope" if flat else "too_few_rows")
 
 
-def _has_set(log: SensorLog, number: int) -> bool:
-    return "set" in log.columns and bool(
-        np.any(rows_of(log, "static") & (log.columns["set"] == number))
-    )
+LEAST_ROWS: Final = 3
+"""Of a range that a line is laid through."""
+
+
+def _static_rows(log: SensorLog, number: int) -> int:
+    if "set" not in log.columns:
+        return 0
+    return int(np.count_nonzero(rows_of(log, "static") & (log.columns["set"] == number)))
 
 
 def _left_out(line: Line) -> Floats:

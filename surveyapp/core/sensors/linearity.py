@@ -79,6 +79,42 @@ def linearity(line: Line | None, span: int) -> list[SensorParameter]:
     ]
 
 
+SLOPE_P = 0.01
+"""Significance that a slope needs before anything is divided by it."""
+OUTLYING_P = 0.001
+"""Probability, over all rows of a range, of a sound one that leaves the line so far."""
+
+
+def sloped(fit: LinearFit) -> bool:
+    """Whether the output follows the tilt at all: Student's t of the slope."""
+    from scipy.special import stdtrit
+
+    size = float(fit.sigma[1])
+    return abs(float(fit.x[1])) > size * float(stdtrit(max(fit.dof, 1), 1.0 - 0.5 * SLOPE_P))
+
+
+def outlying(line: Line) -> list[tuple[float, float]]:
+    """Rows that leave the line of the others: angle [deg], and by how much the output is off.
+
+    Externally studentised residuals at a Bonferroni limit (Cook and Weisberg 1982, 2.2.2); a smooth
+    non-linearity, which all rows share, stays far below it.
+    """
+    from scipy.special import stdtrit
+
+    dof = line.fit.dof
+    if dof < LEAST_FREE:
+        return []
+    q, _ = np.linalg.qr(np.column_stack([np.ones(line.angle.size), np.sin(line.angle)]))
+    free = np.maximum(1.0 - np.sum(q**2, axis=1), 1e-12)
+    squares = line.fit.residual**2 / free
+    rest = np.maximum(dof * line.fit.sigma0**2 - squares, 0.0) / (dof - 1)
+    limit = float(stdtrit(dof - 1, 1.0 - 0.5 * OUTLYING_P / line.angle.size))
+    rounding = 1e-9 * float(np.ptp(line.output))
+    rows = np.flatnonzero(squares > np.maximum(limit**2 * rest, rounding**2))
+    off = line.fit.residual / free
+    return [(math.degrees(float(line.angle[i])), float(off[i])) for i in rows]
+
+
 SMOOTH_DEGREE = 5
 """Polynomial of the angle that a real non-linearity follows; what it leaves is noise."""
 LEAST_FREE = 3
