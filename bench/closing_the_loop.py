@@ -3,7 +3,8 @@
 Alarm: shares of runs of 20 points, 5 arc-seconds of noise, that ring at any of their points, with
 the median point. Advice: twelve determinations are there and a cause is at work; the proposed
 observation that is expected to tell most is made, or one drawn at random, until the true cause
-holds 90 % of the weight (pairs of causes left out: most of them contain it), eight at most.
+holds 90 % of the weight (pairs of causes left out: most of them contain it), eight at most. The
+same at a traverse of nine sides (``bench/_advice.py``).
 SURVEYAPP_BENCH_RUNS is the number of campaigns a line (clean runs: 1000), SURVEYAPP_BENCH_STORE a
 folder in which finished lines are kept.
 """
@@ -17,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from bench._advice import TRAVERSES, traverse_visits
 from bench._records import Truth, simulate
 from bench._stored import stored
 from surveyapp.core.observing.run_alert import find_trouble
@@ -150,8 +152,24 @@ def _counts(name: str, advised: bool) -> list[int]:
     return [visits(name, i, advised=advised) for i in range(RUNS)]
 
 
+def _traverse_counts(name: str, advised: bool) -> list[int]:
+    return [
+        traverse_visits(name.removeprefix("traverse: "), i, advised=advised) for i in range(RUNS)
+    ]
+
+
+def compared(name: str, counting: Callable[[str, bool], list[int]]) -> str:
+    """Observations and share that were separated, by advice and at random."""
+    cells = []
+    for advised in (True, False):
+        how = "advised" if advised else "random"
+        counts = np.array(stored(f"{how} {name}", RUNS, partial(counting, name, advised)))
+        cells.append(f"{np.minimum(counts, MOST).mean():.2f} ({(counts <= MOST).mean():.2f})")
+    return f"| {name} | {' | '.join(cells)} |"
+
+
 def run() -> list[str]:
-    """Both tables."""
+    """The tables."""
     text = ["| run | runs | alarm | median point |", "|---|---|---|---|"]
     text += [
         str(stored(f"alarm {name}", (sizes, RUNS), partial(alarm_line, name, sizes)))
@@ -159,12 +177,6 @@ def run() -> list[str]:
     ]
     text[2] += " (asked: .03 at most)"
     text += ["", "| cause | by advice (separated) | at random (separated) |", "|---|---|---|"]
-    for name in CAUSES:
-        cells = []
-        for advised in (True, False):
-            how = "advised" if advised else "random"
-            counts = np.array(stored(f"{how} {name}", RUNS, partial(_counts, name, advised)))
-            sure = counts <= MOST
-            cells.append(f"{np.minimum(counts, MOST).mean():.2f} ({sure.mean():.2f})")
-        text.append(f"| {name} | {' | '.join(cells)} |")
+    text += [compared(name, _counts) for name in CAUSES]
+    text += [compared(f"traverse: {name}", _traverse_counts) for name in TRAVERSES]
     return text

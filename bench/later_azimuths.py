@@ -36,6 +36,7 @@ from bench._programmes import GROUPS as PROGRAMMES
 from bench._programmes import draw_programme
 from bench._short_campaigns import CAUSES, LATER_DAYS, draw_short
 from surveyapp.core.prediction.average import averaged, members, predict
+from surveyapp.core.prediction.drifting import half_width_about, if_it_drifts
 from surveyapp.core.prediction.members import Members
 from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp.domain.priors import BASE, DEFAULT_PRIORS, DEFAULT_SHARES
@@ -45,6 +46,7 @@ PAGE = Path(__file__).resolve().parent.parent / "docs/reference/later-azimuths.m
 SOURCES = Path(__file__).resolve().parent.parent / "surveyapp/core/prediction"
 SIZES = (8, 12, 20, 45)
 RUNS = int(os.environ.get("SURVEYAPP_BENCH_RUNS", "200"))
+CLEAN_TIMES = 5
 STRENGTH = (0.7, 5.0)
 """Sizes of a cause, log-uniform, in standard deviations of a determination."""
 REFERENCE_BASE = 0.5
@@ -66,12 +68,12 @@ HEAD = """# Later azimuths
 Declared simulation: campaigns of some months, one to three determinations a day of 4 to 7
 arc-seconds, four later visits at other lines, days and temperatures, most of them after the
 campaign; sizes of the causes log-uniform from {low} to {high} standard deviations of a
-determination; {runs} campaigns a line. rms and interval (median half-width, 95 %) of the
-constant in arc-seconds; coverage of the constant, and of a later azimuth whose own standard
-deviation is 2.6. Mean: the mean of the campaign with its Student interval, which was used before.
-Ratio: interval of the azimuth over that with the mean (median). Reference: rms with the clean share
-{reference} of the reference solution in place of {base}. Beyond: visits 8 to 20 K warmer than
-every determination.
+determination; {runs} campaigns a line ({clean} clean ones). rms and interval (median
+half-width, 95 %) of the constant in arc-seconds; coverage of the constant, and of a later azimuth
+whose own standard deviation is 2.6. Mean: the mean of the campaign with its Student interval, which
+was used before. Ratio: interval of the azimuth over that with the mean (median). Reference: rms
+with the clean share {reference} of the reference solution in place of {base}. Beyond: visits 8 to
+20 K warmer than every determination.
 
 """
 
@@ -80,7 +82,9 @@ SHORT_SIZES = (4, 8, 20)
 SHORT = """Campaigns of one day and of two (`bench/_short_campaigns.py`): what acts goes on at a
 pace of its own, a span of 13 to 220 days, which such a campaign cannot have seen. Coverage of a
 later azimuth and median half-width of the constant, a day, a month and four months after it.
-Together: each as often as the archive has taught (nothing that time moves: {clean:.0%})."""
+Told beside it: by the interval if the
+instrument drifts. Together: each as often as the archive has taught (nothing that time moves:
+{clean:.0%})."""
 SHORT_SHARES = {
     "drift": ("drift", "bend"),
     "walk": ("walk",),
@@ -113,6 +117,13 @@ def drawn(group: str, name: str, n: int, g: np.random.Generator) -> Drawn:
     return draw(GROUPS[group][name], n, g, sizes=STRENGTH)
 
 
+def runs_of(group: str) -> int:
+    """Campaigns of a line; of clean ones more, since the width of an interval is judged by them."""
+    if group == "clean":
+        return CLEAN_TIMES * RUNS
+    return RUNS if group in GROUPS else RUNS // 4
+
+
 def one_line(group: str, name: str, n: int, place: int) -> Floats:
     """Rows of one line, the four later visits of a campaign after each other.
 
@@ -120,7 +131,7 @@ def one_line(group: str, name: str, n: int, place: int) -> Floats:
     holding of the mean; ratio of the intervals; error of the reference.
     """
     rows = []
-    for i in range(RUNS if group in GROUPS else RUNS // 4):
+    for i in range(runs_of(group)):
         g = np.random.default_rng([20261128, place, n, i])
         made = drawn(group, name, n, g)
         whole = members(made.data, DEFAULT_PRIORS)
@@ -212,6 +223,25 @@ def short_line(cause: str, n: int, spread: int) -> tuple[Floats, Floats]:
     return np.reshape(holds, shape).mean(axis=0), np.median(np.reshape(halves, shape), axis=0)
 
 
+def if_drifting_line(n: int, spread: int) -> tuple[Floats, Floats]:
+    """Of drifts: coverage by the interval that is told beside it, and its median half-width."""
+    place, shape = list(CAUSES).index("drift"), (RUNS, len(LATER_DAYS))
+    holds, halves = [], []
+    for i in range(RUNS):
+        made = draw_short(
+            "drift", n, spread, np.random.default_rng([20261129, place, n, spread, i])
+        )
+        data, days = made.data, made.data.columns["elapsed_days"]
+        told = if_it_drifts(data.values, data.sigmas, days[:n], days[n:], priors=DEFAULT_PRIORS)
+        found = predict(data, DEFAULT_PRIORS)
+        for t, mixture in enumerate(told):
+            value = float(found.values[t])
+            error = value - float(made.truth[t]) + made.errors[t]
+            holds.append(abs(error) <= half_width_about(mixture, value, LINE_SIGMA**2))
+            halves.append(half_width_about(mixture, value))
+    return np.reshape(holds, shape).mean(axis=0), np.median(np.reshape(halves, shape), axis=0)
+
+
 def short_table() -> list[str]:
     """Lines of the campaigns of one and two days."""
     shares = short_shares()
@@ -225,9 +255,30 @@ def short_table() -> list[str]:
                 whole += shares[cause] * holds
                 cells = [f"{h:.2f} / {w:.1f}" for h, w in zip(holds, halves, strict=True)]
                 lines.append(f"| {cause} | {spread} | {n} | " + " | ".join(cells) + " |")
+            beside = zip(*if_drifting_line(n, spread), strict=True)
+            cells = [f"{h:.2f} / {w:.1f}" for h, w in beside]
+            lines.append(f"| drift, told beside it | {spread} | {n} | " + " | ".join(cells) + " |")
             cells = [f"{h:.3f}" for h in whole]
             lines.append(f"| together | {spread} | {n} | " + " | ".join(cells) + " |")
     return lines
+
+
+def write_page(text: list[str]) -> None:
+    """The page of the reference, with what is told above its tables."""
+    low, high = STRENGTH
+    PAGE.write_text(
+        HEAD.format(
+            low=low,
+            high=high,
+            runs=RUNS,
+            clean=CLEAN_TIMES * RUNS,
+            reference=REFERENCE_BASE,
+            base=DEFAULT_PRIORS.share(BASE),
+        )
+        + "\n".join(text)
+        + "\n",
+        encoding="utf-8",
+    )
 
 
 def run() -> list[str]:
@@ -278,13 +329,5 @@ def run() -> list[str]:
         "",
         *short_table(),
     ]
-    low, high = STRENGTH
-    PAGE.write_text(
-        HEAD.format(
-            low=low, high=high, runs=RUNS, reference=REFERENCE_BASE, base=DEFAULT_PRIORS.share(BASE)
-        )
-        + "\n".join(text)
-        + "\n",
-        encoding="utf-8",
-    )
+    write_page(text)
     return text

@@ -3,7 +3,8 @@
 Every line of runs at N = 20 of ``operating_characteristics`` and the lines that no catalogue has,
 with seeds of this bench, searched under several rules: the specification's own (a gate of .05 at
 every depth, rivals worse by 4 BIC), then one change after the other to the rule that is used, then
-smaller margins. SURVEYAPP_BENCH_RUNS is the number of records a line.
+smaller margins. SURVEYAPP_BENCH_RUNS is the number of records a line, SURVEYAPP_BENCH_STORE a
+folder in which finished lines are kept.
 """
 
 from __future__ import annotations
@@ -11,8 +12,10 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 
 from bench._records import Truth, problems
+from bench._stored import stored
 from bench.operating_characteristics import REFERENCE
 from surveyapp.diagnosis.case import Case, Levels
 from surveyapp.diagnosis.loop import search
@@ -38,6 +41,16 @@ def named(case: Case) -> dict[str, frozenset[str]]:
     }
 
 
+def line(place: int, truth: Truth) -> list[list[int]]:
+    """Of each rule: records that are rightly and that are wrongly named."""
+    expected = frozenset(truth.effect.split("+")) - {""}
+    made, _ = problems(truth, RUNS, SEED + place)
+    found = [named(case) for case in made]
+    right = [sum(bool(expected) and expected <= names[rule] for names in found) for rule in RULES]
+    wrong = [sum(bool(names[rule] - expected) for names in found) for rule in RULES]
+    return [right, wrong]
+
+
 def lines() -> list[tuple[int, Truth]]:
     """The catalogue at N = 20, and what no catalogue has."""
     return [
@@ -49,23 +62,22 @@ def lines() -> list[tuple[int, Truth]]:
 
 def run() -> list[str]:
     """Evaluate every line, return what is printed."""
-    right, wrong, strange = (dict.fromkeys(RULES, 0) for _ in range(3))
-    known = unknown = 0
+    whole = {True: [0] * len(RULES), False: [0] * len(RULES)}
+    right = [0] * len(RULES)
     for place, truth in lines():
-        expected = frozenset(truth.effect.split("+")) - {""}
-        made, _ = problems(truth, RUNS, SEED + place)
-        for case in made:
-            known, unknown = known + bool(expected), unknown + (not expected)
-            for rule, names in named(case).items():
-                false = bool(names - expected)
-                right[rule] += bool(expected) and expected <= names
-                wrong[rule] += bool(expected) and false
-                strange[rule] += not expected and false
+        key = (truth, place, RUNS, tuple(RULES.items()))
+        one = stored(f"names {truth.name} {truth.size}", key, partial(line, place, truth))
+        own = whole[bool(truth.effect)]
+        for k in range(len(RULES)):
+            right[k] += one[0][k]
+            own[k] += one[1][k]
+    known = RUNS * sum(bool(truth.effect) for _, truth in lines())
+    unknown = RUNS * sum(not truth.effect for _, truth in lines())
     text = [f"| rule | right of {known} | wrong | in no catalogue, of {unknown}: a name |"]
     text.append("|---|---|---|---|")
     text += [
-        f"| {rule} | {right[rule] / known:.3f} | {wrong[rule] / known:.3f} "
-        f"| {strange[rule] / unknown:.3f} |"
-        for rule in RULES
+        f"| {rule} | {right[k] / known:.3f} | {whole[True][k] / known:.3f} "
+        f"| {whole[False][k] / unknown:.3f} |"
+        for k, rule in enumerate(RULES)
     ]
     return text

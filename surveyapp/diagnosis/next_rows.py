@@ -63,7 +63,7 @@ def rows_advice(case: Case, rng: np.random.Generator) -> Outlook | None:
     if planner is None:
         return None
     nu0 = 0.0 if case.sigma is None else NU0
-    kept = _kept(case, planner, nu0)
+    kept = weighed_members(case, planner, nu0)
     seed = int(rng.integers(2**31))
     stands: tuple[float, float] | None = None
     best: dict[str, ActionResult] = {}
@@ -95,8 +95,8 @@ def _order(item: ActionResult) -> tuple[float, float]:
     return -int(item.information / SAME_INFORMATION), item.interval95
 
 
-def _kept(case: Case, planner: Planner, nu0: float) -> list[Kept]:
-    """The members that count after the record."""
+def weighed_members(case: Case, planner: Planner, nu0: float) -> list[Kept]:
+    """The members that count after the record, each with its weight."""
     names: list[tuple[str, Effect, Point, Floats, float]] = []
     columns: list[Floats] = []
     candidates = [c for c in single_effects(case, None) if c.points and c.effect is not None]

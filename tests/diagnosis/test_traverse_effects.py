@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bench._traverses import ARC, Undeclared, folder_text, simulated
 from surveyapp import api
 from surveyapp.cli.main import main
 from surveyapp.core.network import adjust
@@ -24,7 +25,6 @@ from surveyapp.diagnosis.subjects.traverse import (
 from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.traverse import Network, Status
 from surveyapp.errors import SurveyError
-from tests.diagnosis.simulated_traverses import ARC, Undeclared, folder_text, simulated
 
 DRAWS = 1000
 SIDES = np.array([110.0, 40, 150, 60, 25, 130, 80, 170, 35, 90, 145, 55, 120, 75])

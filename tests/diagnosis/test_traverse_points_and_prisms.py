@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from bench._traverses import Undeclared, simulated
 from surveyapp.core.network.model import compile_network
 from surveyapp.core.network.observation_equations import linearised
 from surveyapp.core.network.solving import solve_network
@@ -16,7 +17,6 @@ from surveyapp.diagnosis.subjects.traverse import traverse
 from surveyapp.diagnosis.subjects.traverse_columns import observation_columns
 from surveyapp.domain.observations import Observation, ObservationKind
 from surveyapp.domain.traverse import Network, Status
-from tests.diagnosis.simulated_traverses import Undeclared, simulated
 
 K = ObservationKind
 SIDES = np.array([110.0, 40, 150, 60, 25, 130, 80, 170, 35, 90, 145, 55, 120, 75])

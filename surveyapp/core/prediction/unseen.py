@@ -2,10 +2,10 @@
 
 Inside their range determinations say that a cause does little; beyond it a member without that
 cause claims that it does nothing at all. To such members, the base too, the second moment of the
-coefficient is added that the determinations allow, times the distance from the edge of the range:
-as if every instrument had an effect of the size that the archive has taught, which these
-determinations have not shown. Many of them over a wide range allow little. It changes no evidence,
-only the interval; nothing in it is chosen.
+coefficient is added that the determinations allow, times the distance from the edge of the range
+(hardly any of it within 2 K, all of it from 6 K on): as if every instrument had an effect of the
+size that the archive has taught, which these determinations have not shown. Many of them over a
+wide range allow little. It changes no evidence, only the interval.
 """
 
 from __future__ import annotations
@@ -19,6 +19,9 @@ from surveyapp.core.prediction.kernels import COVARIATE_UNITS, TEMPERATURE_UNIT_
 from surveyapp.domain.priors import AMPLITUDES, Priors
 from surveyapp_models.arrays import Floats
 
+EDGE = 3.0 / 8.0
+"""Distance from the range, in units of a cause, that may still be inside of it: air tells the
+temperature of a gyro to some 3 K, and the extremes of a few determinations are no boundary."""
 TEMPERATURE = frozenset({"temperature", "curve"})
 COLUMNS = {
     "temperature_c": (TEMPERATURE, TEMPERATURE_UNIT_K),
@@ -69,11 +72,16 @@ def unseen(
         if all(priors.share(cause) <= 0.0 for cause in causes):
             continue
         low, high = float(values[:n].min()), float(values[:n].max())
-        far = targets @ (values - np.clip(values, low, high)) / unit
+        far = targets @ _outside((values - np.clip(values, low, high)) / unit)
         if np.any(far != 0.0):
             moment = _moment(values[:n] / unit, y, d, variance)
             found.append(Unseen(causes, moment * far[:, None] * far[None, :]))
     return found
+
+
+def _outside(far: Floats) -> Floats:
+    """Distances from the range, counted as surely as they lie outside of it."""
+    return np.asarray(far * -np.expm1(-((far / EDGE) ** 2)))
 
 
 def _moment(x: Floats, y: Floats, d: Floats, variance: float) -> float:
