@@ -26,6 +26,9 @@ CORRELATIONS: tuple[float, ...] = (-0.8, -0.5, 0.3, 0.5, 0.7, 0.85, 0.95)
 """Correlation of neighbours of the autoregressive process."""
 SHARES = (0.5, 2.0, 8.0, 1e4)
 """Variance of the autoregressive process relative to the white noise; the last is pure AR(1)."""
+SIGNALS = np.geomspace(0.05, 30.0, 12)
+"""Mean square that a column of an effect adds to an observation relative to the white noise: where
+an effect can be seen at all, to where it cannot be missed."""
 LARGE = 100
 """From this size on the grids are thinned to every second value."""
 NEGLIGIBLE = 0.005
@@ -194,7 +197,13 @@ class NoiseFit:
 
 
 def best_noises(
-    problem: Case, J: Floats, residual: Floats, *, scale: float, floor: float
+    problem: Case,
+    J: Floats,
+    residual: Floats,
+    *,
+    scale: float,
+    floor: float,
+    rows: np.ndarray | None = None,
 ) -> tuple[NoiseFit, ...]:
     """Every kind of noise for the residuals of a design, by its marginal likelihood.
 
@@ -215,6 +224,8 @@ def best_noises(
         Unit in which the likelihood is counted [SI].
     floor : float
         Smallest white variance [SI^2].
+    rows : ndarray of int, shape (n,), optional
+        Observations that the design and the residuals are of, whole channels; all of them.
 
     Returns
     -------
@@ -222,7 +233,8 @@ def best_noises(
     """
     models = noise_models(problem)
     basis, triangle, norms = _independent(J)
-    whiteners = np.stack([m.whitener for m in models])
+    part = slice(None) if rows is None else np.ix_(rows, rows)
+    whiteners = np.stack([m.whitener[part] for m in models])
     seen = whiteners @ residual
     q, r = np.linalg.qr(whiteners @ basis)
     along = np.einsum("gnp,gn->gp", q, seen)
@@ -259,40 +271,49 @@ def best_noises(
     return tuple(result)
 
 
-def white_gains(problem: Case, J: Floats, *, draws: int) -> dict[NoiseKind, Floats]:
-    """The gain of each kind of noise in records of white noise about a design, shape (draws,).
+def effect_gain(J: Floats, effect: Floats, residual: Floats, *, each: int, floor: float) -> float:
+    """What ``best_noises`` finds of an effect whose coefficients are drawn, in place of noise.
 
-    What ``best_noises`` finds where there is nothing to find; the draws come from the design.
+    An effect of unknown size and a noise of unknown size are compared alike: the coefficients are
+    normal, independent and of one variance, which is averaged over a grid.
 
     Parameters
     ----------
-    problem : Case
     J : ndarray, shape (n, p)
-    draws : int
+        Design beside which both stand (weighted).
+    effect : ndarray, shape (n, k)
+        Columns of the effect (weighted).
+    residual : ndarray, shape (n,)
+        Of the design alone.
+    each : int
+        Observations of a channel: the grid is of the mean square that a column adds to each.
+    floor : float
+        Smallest white variance [SI^2].
+
+    Returns
+    -------
+    float
+        Decrease of -2 log marginal likelihood against white noise.
     """
-    models = noise_models(problem)
     basis, _, _ = _independent(J)
-    seed = hashlib.sha256(np.ascontiguousarray(basis).tobytes()).digest()[:8]
-    rng = np.random.default_rng(int.from_bytes(seed, "big"))
-    n, dof = basis.shape[0], basis.shape[0] - basis.shape[1]
-    noise = rng.standard_normal((n, draws))
-    noise -= basis @ (basis.T @ noise)
-    plain = dof * np.log(np.einsum("nd,nd->d", noise, noise) / dof)
-    minus = np.empty((len(models), draws))
-    for g, model in enumerate(models):
-        q, r = np.linalg.qr(model.whitener @ basis)
-        seen = model.whitener @ noise
-        along = q.T @ seen
-        left = np.einsum("nd,nd->d", seen, seen) - np.einsum("pd,pd->d", along, along)
-        logs = model.log_determinant + 2.0 * float(np.log(np.abs(np.diag(r))).sum())
-        minus[g] = dof * np.log(left / dof) + logs
-    kinds = np.array([m.kind for m in models])
-    found: dict[NoiseKind, Floats] = {}
-    for kind in dict.fromkeys(m.kind for m in models):
-        own = minus[kinds == kind]
-        least = own.min(axis=0)
-        found[kind] = plain - least + 2.0 * np.log(np.exp(-0.5 * (own - least)).mean(axis=0))
-    return found
+    left = effect - basis @ (basis.T @ effect)
+    sizes = np.sum(left**2, axis=0)
+    seen = sizes > 1e-12 * np.sum(effect**2, axis=0)
+    if not seen.any():
+        return 0.0
+    u, s, _ = np.linalg.svd(
+        left[:, seen] * np.sqrt(each / float(np.mean(sizes[seen]))), full_matrices=False
+    )
+    along = (u.T @ residual) ** 2
+    variances = 1.0 + SIGNALS[:, None] * s**2
+    dof = residual.size - basis.shape[1]
+    total = float(residual @ residual)
+    squares = np.append(total, total - np.sum((1.0 - 1.0 / variances) * along, axis=1))
+    white = np.maximum(squares / dof, floor)
+    minus = dof * np.log(white) + squares / white
+    minus[1:] += np.log(variances).sum(axis=1)
+    least = float(minus[1:].min())
+    return float(minus[0] - least + 2.0 * np.log(np.exp(-0.5 * (minus[1:] - least)).mean()))
 
 
 def _independent(J: Floats) -> tuple[Floats, Floats, Floats]:

@@ -1,33 +1,23 @@
 """Noise that wanders against an effect, where channels were observed side by side.
 
 A walk follows a trend nearly as well as the trend itself, and beside few rows BIC can hardly tell
-them. What the effect leaves can: about the right effect the channels are white, about a wrong one
-the walk still walks. So two numbers decide: by how much BIC the noise instead of the effect is
-worse, and how often white noise about the effect looks no whiter than the rest. The worse the noise
-instead, the less white the rest need be.
+them: it charges the effect for parameters and the noise for next to none. So both are weighed
+alike, by their marginal likelihood with their size unknown, and what decides is the odds.
 """
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from surveyapp.diagnosis.case import Case
-from surveyapp.diagnosis.fits import Fit, with_noise
-from surveyapp.diagnosis.stochastic import white_gains
+from surveyapp.diagnosis.fits import Fit
+from surveyapp.diagnosis.stochastic import best_noises, effect_gain
 
-DRAWS = 1000
-"""Records of white noise."""
-STANDS = ((0.0, 0.45), (12.0, 0.15), (20.0, 0.02), (40.0, 0.0))
-"""An effect stands where the noise instead is worse by that much BIC and its rest is at least as
-white as this share of white records: what the share keeps of the right names. By simulation of
-ramps and walks of three gyros at 12, 18 and 30 stops (docs/explanation/sensors.md): the most right
-names of slow ramps with at most .10 of the walks named at 18 and 30 stops and .15 at 12."""
-MANY = ((18.0, 1.0), (30.0, 0.33))
-"""Stops, and the part of these shares that is asked for: the longer a walk walks, the less white is
-what a wrong effect leaves, and the less need the right one lose."""
-STATIONARY = ((0.0, 0.05), (20.0, 0.02), (40.0, 0.0))
-"""The same of noise that comes back (AR(1)): it follows a drift badly, and where it does it is a
-walk; a level of its own costs right names and keeps off no wrong ones."""
+ODDS = 2.0
+"""An effect stands against noise of a kind instead of it where it is so many times likelier. By
+simulation of ramps and walks of three gyros (bench ``rate_walk``, docs/explanation/sensors.md)."""
 
 
 def stands(problem: Case, fit: Fit, rival: Fit) -> bool:
@@ -41,36 +31,32 @@ def stands(problem: Case, fit: Fit, rival: Fit) -> bool:
     rival : Fit
         With noise instead.
     """
-    if rival.noise is None:
-        return False
-    table = STANDS if rival.noise.kind == "random_walk" else STATIONARY
-    needed = [share for least, share in table if rival.bic >= fit.bic + least]
-    if not needed:
-        return False
-    share = needed[-1] * asked_of(problem)
-    return share == 0.0 or whiteness(problem, fit, rival.noise.kind) >= share
+    return rival.noise is not None and log_odds(problem, fit, rival) >= math.log(ODDS)
 
 
-def asked_of(problem: Case) -> float:
-    """Part of the shares that is asked for with the stops of a record."""
-    if problem.series is None:
-        return 1.0
-    stops = np.unique(problem.position[np.isfinite(problem.series)]).size
-    sizes, parts = np.log(np.array(MANY)).T
-    return float(np.exp(np.interp(np.log(max(stops, 1)), sizes, parts)))
+def log_odds(problem: Case, fit: Fit, rival: Fit) -> float:
+    """Logarithm of the odds of an effect against noise instead, each of unknown size.
 
-
-def whiteness(problem: Case, fit: Fit, kind: str) -> float:
-    """Share of white records about a fit in which noise of a kind gains as much as in this one."""
-    gained = [
-        fit.bic - f.bic
-        for f in with_noise(problem, fit)
-        if f.noise is not None and f.noise.kind == kind
-    ]
-    if not gained:
-        return 1.0
-    null = next(v for k, v in white_gains(problem, fit.design, draws=DRAWS).items() if k == kind)
-    return float((1.0 + (null >= max(gained)).sum()) / (DRAWS + 1.0))
+    Members that only the rival has stand beside both.
+    """
+    if rival.noise is None or problem.series is None:
+        return 0.0
+    channels = np.isfinite(problem.series)
+    base, residual, kind = rival.design, rival.residual, rival.noise.kind
+    effect = fit.design - base @ np.linalg.lstsq(base, fit.design, rcond=None)[0]
+    # what wanders through the channels only is judged there: their white noise is their own
+    if not np.any(np.abs(effect[~channels]) > 1e-9 * np.abs(effect).max()):
+        rows = np.flatnonzero(channels)
+    else:
+        rows = np.arange(channels.size)
+    each = int(channels.sum()) // max(np.unique(problem.series[channels]).size, 1)
+    floor = max(problem.noise_floor, 1e-6 * problem.scale) ** 2
+    base, residual, effect = base[rows], residual[rows], effect[rows]
+    gain = effect_gain(base, effect, residual, each=each, floor=floor)
+    found = best_noises(
+        problem, base, residual, scale=problem.scale, floor=problem.noise_floor**2, rows=rows
+    )
+    return 0.5 * (gain - next(noise.gain for noise in found if noise.kind == kind))
 
 
 def refuted(problem: Case, fit: Fit, rival: Fit) -> bool:

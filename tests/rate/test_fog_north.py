@@ -139,15 +139,20 @@ def test_the_approximate_north_decides_between_the_two_roots() -> None:
     assert abs(wrap_pi(other.north - north)) > 3.0
 
 
-def test_a_north_far_from_the_stated_one_is_told(tmp_path: Path) -> None:
-    """At 91 degrees off the other root is the nearer one: nothing else would tell it."""
-    rows = positions(math.radians(123.0), math.radians(35.0), None)
+def written(path: Path, rows: list[Position]) -> None:
+    """The rows as a log."""
     lines = ["time_s,gyr_x_rad_s,horizontal_circle_deg,vertical_circle_deg,face"] + [
         f"{60 * k},{p.rate!r},{math.degrees(p.alidade)!r},{math.degrees(p.vertical or 0.0)!r},"
         + ("R" if p.plunged else "L")
         for k, p in enumerate(rows)
     ]
-    (tmp_path / "n.csv").write_text("\n".join(lines) + "\n")
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def test_a_north_far_from_the_stated_one_is_told(tmp_path: Path) -> None:
+    """At 91 degrees off the other root is the nearer one: nothing else would tell it."""
+    rows = positions(math.radians(123.0), math.radians(35.0), None)
+    written(tmp_path / "n.csv", rows)
 
     def codes(stated: float) -> list[str]:
         options = {"latitude": 35.0, "approximate_north_deg": stated, "rate_sigma_deg_h": 0.05}
@@ -156,3 +161,51 @@ def test_a_north_far_from_the_stated_one_is_told(tmp_path: Path) -> None:
 
     assert "approximate_north_far" in codes(214.0)
     assert "approximate_north_far" not in codes(120.0)
+
+
+CARD = """id = "fog-ts"
+title = "gyro on a total station"
+source = "its own calibration"
+kind = "automatic"
+"""
+PROJECT = """format = 1
+name = "a gyro on a total station"
+angle_unit = "deg"
+[[instrument]]
+id = "fog-ts"
+card = "fog-ts.toml"
+constant = {{ arcsec = 0.0, sigma_arcsec = 1.0 }}
+[[station]]
+name = "A"
+[[station]]
+name = "B"
+[[orientation]]
+id = "fog-1"
+station = "A"
+target = "B"
+instrument = "fog-ts"
+method = "automatic"
+book = "fog-1.csv"
+sigma_arcsec = {sigma}
+"""
+
+
+def test_the_north_found_is_a_session_of_an_automatic_gyro(tmp_path: Path) -> None:
+    """Circle reading and sigma of `north` in a book: azimuth of the line by the circle's zero."""
+    north = math.radians(123.0)
+    written(tmp_path / "n.csv", positions(north, math.radians(35.0), np.random.default_rng(8)))
+    options = {"latitude": 35.0, "approximate_north_deg": 120.0, "rate_sigma_deg_h": 0.05}
+    found = api.north(tmp_path / "n.csv", method="fog-station", options=options).to_dict()
+    reading, sigma = found["gyro_north"]["deg"], found["gyro_north"]["sigma_arcsec"]
+    book = f"seq,kind,value\n1,backsight,200.0\n2,north,{reading!r}\n3,backsight,200.0\n"
+    for name, text in (
+        ("fog-ts.toml", CARD),
+        ("project.toml", PROJECT.format(sigma=sigma)),
+        ("fog-1.csv", book),
+    ):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    line = api.orient(tmp_path).to_dict()["lines"][0]["true_azimuth"]
+    assert line["reference"] == "ASTRONOMIC"
+    assert line["deg"] == pytest.approx(200.0 - reading, abs=1e-9)
+    assert line["sigma_arcsec"] == pytest.approx(math.hypot(sigma, 1.0), rel=0.01)
+    assert abs(line["deg"] - 77.0) * 3600.0 < 4.0 * sigma

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from bench.rate import as_read
 from bench.rate_coverage import (
     coverage_of,
     fog_station,
@@ -16,6 +17,9 @@ from bench.rate_coverage import (
 )
 from bench.rate_rank import counts
 from surveyapp.core.sensors.rate.hand_forces import LEVELS, fit_forces
+from surveyapp.core.sensors.rate.multi_position_log import held_stops
+from surveyapp.core.simulate.rate.log import SimulatedLog
+from surveyapp_models.arrays import Floats
 
 
 @pytest.mark.statistical
@@ -87,6 +91,31 @@ def test_of_two_spheres_through_a_circle_of_stops_the_one_near_zero_is_taken(
         for form in LEVELS:
             found = fit_forces(sign * forces, level=form, gravity=9.80665)
             assert abs(found.bias[2]) < 0.8, form
+
+
+def test_a_turn_about_the_vertical_ends_a_stop_and_a_bump_does_not() -> None:
+    """Gravity is where it was after both; two stops were one, whose rate was that of the turn."""
+    rng = np.random.default_rng(5)
+    hz, rest = 50.0, 200
+    up = np.array([3.0, -2.0, 9.1])
+    turn = 1.5 * np.sin(np.linspace(0.0, np.pi, 100)) ** 2  # half of two seconds: 1.5 rad
+    bump = 2.0 * np.sin(np.linspace(0.0, 2.0 * np.pi, 20))  # there and back
+    rates, forces = [], []
+    for motion in (turn, bump, None):
+        rates.append(np.zeros((rest, 3)))
+        forces.append(np.tile(up, (rest, 1)))
+        if motion is not None:
+            rates.append(motion[:, None] * up / np.linalg.norm(up))
+            forces.append(np.tile(up, (motion.size, 1)) + rng.normal(0.0, 1.0, (motion.size, 3)))
+    rate, force = np.concatenate(rates), np.concatenate(forces)
+    rate = rate + rng.normal(0.0, 1e-3, rate.shape)
+    force = force + rng.normal(0.0, 0.01, force.shape)
+    columns: dict[str, Floats] = {"time_s": np.arange(rate.shape[0]) / hz}
+    columns |= {f"gyr_{a}_rad_s": rate[:, i] for i, a in enumerate("xyz")}
+    columns |= {f"acc_{a}_m_s2": force[:, i] for i, a in enumerate("xyz")}
+    found = held_stops(as_read(SimulatedLog(columns)))
+    assert [stop.start < 300 for stop in found] == [True, False]
+    assert max(float(np.abs(stop.rate).max()) for stop in found) < 0.01
 
 
 @pytest.mark.statistical

@@ -1,4 +1,4 @@
-"""How white a rest is, beside three gyros that are simulated without the program's simulator."""
+"""Odds of an effect against noise that wanders, of gyros simulated without the simulator."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ import pytest
 
 from surveyapp.diagnosis.candidates import SHAPE_ODDS, all_candidates
 from surveyapp.diagnosis.case import Case
-from surveyapp.diagnosis.fits import Fit, Member, fit_members
+from surveyapp.diagnosis.fits import Fit, Member, fit_members, with_noise
+from surveyapp.diagnosis.stochastic import SIGNALS, effect_gain
 from surveyapp.diagnosis.subjects.rate import RateStop, rate_case
-from surveyapp.diagnosis.wandering import asked_of, whiteness
+from surveyapp.diagnosis.wandering import ODDS, log_odds
 from surveyapp_models.arrays import Floats
 
 STOPS = 16
@@ -31,17 +32,59 @@ def with_ramp(case: Case) -> Fit:
     return fit_members(case, [Member(ramp, 0)])
 
 
-def test_whiteness_is_uniform_in_white_records_and_small_in_walks() -> None:
-    """A p value: of 80 white records .05, .3, .6 of them fall below within 3.5 sigma."""
+def test_an_effect_of_unknown_size_is_weighed_as_the_covariance_that_it_is() -> None:
+    """Against the restricted likelihood of the whole covariance, written out (Harville 1974)."""
+    rng = np.random.default_rng(4)
+    n, each = 21, 7
+    base, effect = rng.normal(size=(n, 3)), rng.normal(size=(n, 2))
+    y = rng.normal(size=n) + 2.0 * effect[:, 0]
+    q, _ = np.linalg.qr(base)
+    out = np.eye(n) - q @ q.T
+    residual, seen = out @ y, out @ effect
+    scale = each / np.mean(np.sum(seen**2, axis=0))
+    contrasts = np.linalg.svd(out)[0][:, : n - 3]  # of which the base knows nothing
+    z = contrasts.T @ y
+
+    def minus(covariance: Floats) -> float:
+        total = float(z @ np.linalg.solve(covariance, z))
+        return float((n - 3) * np.log(total) + np.linalg.slogdet(covariance)[1])
+
+    about = contrasts.T @ effect
+    each_size = [
+        minus(np.eye(n - 3) + size * scale * about @ about.T) - minus(np.eye(n - 3))
+        for size in SIGNALS
+    ]
+    expected = 2.0 * np.log(np.mean(np.exp(-0.5 * np.array(each_size))))
+    found = effect_gain(base, effect, residual, each=each, floor=1e-18)
+    assert found == pytest.approx(expected, rel=1e-9)
+    both = effect_gain(base, np.hstack([base, effect]), residual, each=each, floor=1e-18)
+    assert both == pytest.approx(found, rel=1e-9)  # what the base has is not counted again
+
+
+def test_odds_tell_drifts_from_walks() -> None:
+    """Records of three gyros, sizes unknown: few walks are worth two to one, most drifts are."""
     rng = np.random.default_rng(11)
-    cases = [rests(1e-4 * rng.normal(size=(STOPS, 3))) for _ in range(80)]
-    found = np.array([whiteness(case, with_ramp(case), "random_walk") for case in cases])
-    for level in (0.05, 0.3, 0.6):
-        spread = 3.5 * np.sqrt(level * (1.0 - level) / found.size)
-        assert abs(float(np.mean(found <= level)) - level) <= spread
-    walks = [rests(1e-4 * np.cumsum(rng.normal(size=(STOPS, 3)), axis=0)) for _ in range(10)]
-    # a walk as large as the noise of a stop, and no noise: never white
-    assert max(whiteness(case, with_ramp(case), "random_walk") for case in walks) < 0.05
+    minutes = 0.1 * (np.arange(STOPS) - 0.5 * STOPS)[:, None]
+
+    def share(outputs: list[Floats]) -> float:
+        odds = []
+        for output in outputs:
+            case = rests(output)
+            walk = next(
+                f
+                for f in with_noise(case, fit_members(case, []))
+                if f.noise is not None and f.noise.kind == "random_walk"
+            )
+            odds.append(log_odds(case, with_ramp(case), walk))
+        return float(np.mean(np.array(odds) >= np.log(ODDS)))
+
+    def white() -> Floats:
+        return 1e-4 * rng.normal(size=(STOPS, 3))
+
+    drifts = [white() + 4e-4 * minutes * rng.choice([-1.0, 1.0], 3) for _ in range(40)]
+    walks = [white() + 1e-4 * np.cumsum(rng.normal(size=(STOPS, 3)), axis=0) for _ in range(40)]
+    assert share(drifts) >= 0.8  # .96 of 400
+    assert share(walks) <= 0.2  # .05 of 400: nine and more of 40 have p = 2e-4
 
 
 def test_a_shape_is_charged_beforehand_and_a_named_effect_is_not() -> None:
@@ -53,19 +96,3 @@ def test_a_shape_is_charged_beforehand_and_a_named_effect_is_not() -> None:
     n, p = case.size, fit.parameters
     plain = n * np.log(fit.sum_of_squares / n / case.scale**2) + p * np.log(n)
     assert fit.bic == pytest.approx(plain + SHAPE_ODDS)
-
-
-def test_fewer_white_records_are_given_away_where_there_are_many_stops() -> None:
-    """Eighteen stops and fewer: the whole share; from thirty on a third; between, in between."""
-    found = [
-        asked_of(
-            rate_case(
-                [RateStop(output=np.zeros(3), elapsed_s=6.0 * k) for k in range(count)],
-                identity="unit",
-            )
-        )
-        for count in (12, 18, 24, 30, 50)
-    ]
-    assert found[0] == found[1] == pytest.approx(1.0)
-    assert found[3] == found[4] == pytest.approx(0.33)
-    assert 0.5 < found[2] < 0.65

@@ -96,24 +96,9 @@ def fog_case(turns: Sequence[FogTurn], *, identity: str, extra: tuple[Effect, ..
             )
         )
     turns = sorted(turns, key=lambda t: t.elapsed_s)
-    rate = np.array([t.rate for t in turns])
     output = np.array([t.output for t in turns])
-    columns: dict[str, Floats] = {
-        "axis": np.zeros(len(turns)),
-        "stop": np.arange(1.0, len(turns) + 1.0),
-        "elapsed_s": np.array([t.elapsed_s - turns[0].elapsed_s for t in turns]),
-        "pass": np.array([float(t.pass_id) for t in turns]),
-        "table_rate": rate,
-    }
-    warmth = [t.temperature_c for t in turns if t.temperature_c is not None]
-    if len(warmth) == len(turns) and np.ptp(warmth) > 0.0:
-        columns["temperature_c"] = np.array(warmth)
-    # the gyro's own rate: the table's by the sine of the elevation, which the base model finds
-    design = base(columns)
-    count = design.shape[1] // 2
-    slope = np.linalg.lstsq(design, output, rcond=None)[0][count:]
-    own = np.abs(design[:, count:] @ slope)
-    columns |= {"half_size_x": 0.5 * own, "half_size_y": 0.0 * own, "half_size_z": 0.0 * own}
+    columns = _columns(turns, output)
+    count = base(columns).shape[1] // 2
     subject = DiagnosedSubject(
         id="rate",
         title=said("a gyro on a total station"),
@@ -136,7 +121,35 @@ def fog_case(turns: Sequence[FogTurn], *, identity: str, extra: tuple[Effect, ..
         for t in turns
     )
     named = {"row": dict(zip(rows_of(columns).tolist(), labels, strict=True))}
+    number = {key: float(k) for k, key in enumerate(sorted(sets))}
     record = Record(
-        output, columns, identity=identity, labels=labels, grid_labels=named, extra=extra
+        output,
+        columns,
+        identity=identity,
+        labels=labels,
+        grid_labels=named,
+        groups=np.array([number[t.pass_id, t.set_id] for t in turns]),
+        extra=extra,
     )
     return case_of(subject, record)
+
+
+def _columns(turns: Sequence[FogTurn], output: Floats) -> dict[str, Floats]:
+    """What is known of each way, and the size of the gyro's own rate in it."""
+    rate = np.array([t.rate for t in turns])
+    columns: dict[str, Floats] = {
+        "axis": np.zeros(len(turns)),
+        "stop": np.arange(1.0, len(turns) + 1.0),
+        "elapsed_s": np.array([t.elapsed_s - turns[0].elapsed_s for t in turns]),
+        "pass": np.array([float(t.pass_id) for t in turns]),
+        "table_rate": rate,
+    }
+    warmth = [t.temperature_c for t in turns if t.temperature_c is not None]
+    if len(warmth) == len(turns) and np.ptp(warmth) > 0.0:
+        columns["temperature_c"] = np.array(warmth)
+    # the gyro's own rate: the table's by the sine of the elevation, which the base model finds
+    design = base(columns)
+    count = design.shape[1] // 2
+    slope = np.linalg.lstsq(design, output, rcond=None)[0][count:]
+    own = np.abs(design[:, count:] @ slope)
+    return columns | {"half_size_x": 0.5 * own, "half_size_y": 0.0 * own, "half_size_z": 0.0 * own}

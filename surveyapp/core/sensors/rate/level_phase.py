@@ -14,9 +14,11 @@ from surveyapp_models.arrays import Floats
 BLOCKS = 20
 """Of a phase that is looked at for turns."""
 TURNED_SIGMAS = 5.0
-"""Of the difference of two block means: by chance one of some ten thousand phases."""
+"""Of the difference of two block means. By simulation (bench level_phase): of 2000 phases at rest
+none of 600 rows and more is called turned, .0015 of 100 rows, whose blocks tell their noise ill."""
 TURNED_LEAST = 0.01
-"""A twentieth of a degree [m/s2]: less is no levelling."""
+"""[m/s2], .06 degrees: a turn of .07 is told nine times of ten where the noise allows it (the same
+bench); .5 degrees with 600 rows of .03 m/s2."""
 
 
 def still_ends(forces: Floats) -> tuple[slice, slice]:

@@ -73,6 +73,8 @@ LEAST_STOP_S = 1.0
 LEAST_STOPS = 5
 """Stops below which no model is determined: one more than bias and scale need."""
 GUARD_S = 0.1
+SAME_ATTITUDE = 0.02
+"""A unit that was bumped lies as before to so much [rad]."""
 FEW_DOF = 3
 
 
@@ -101,9 +103,10 @@ def held_stops(log: SensorLog) -> list[HeldStop]:
         if b - a < 2:
             continue
         mean = force[a:b].mean(axis=0)
-        span = float(np.median(np.linalg.norm(force, axis=1)))
-        if found and float(np.linalg.norm(mean - found[-1].force)) < 0.02 * span:
-            last_one = found.pop()  # bumped, not turned
+        if found and _only_bumped(
+            found[-1], HeldStop(a, b, mean, rate[a:b].mean(axis=0), 0.0), log
+        ):
+            last_one = found.pop()
             a = last_one.start
             mean = np.average(
                 [last_one.force, mean], axis=0, weights=[last_one.stop - last_one.start, b - a]
@@ -111,6 +114,20 @@ def held_stops(log: SensorLog) -> list[HeldStop]:
         middle = float(log.columns["time_s"][(a + b) // 2])
         found.append(HeldStop(a, b, mean, rate[a:b].mean(axis=0), middle))
     return found
+
+
+def _only_bumped(before: HeldStop, after: HeldStop, log: SensorLog) -> bool:
+    """Whether a unit was not turned between two rests: neither gravity nor the gyros show it.
+
+    A turn about the vertical leaves gravity where it was.
+    """
+    size = float(np.linalg.norm(before.force))
+    if float(np.linalg.norm(after.force - before.force)) >= SAME_ATTITUDE * size:
+        return False
+    rate = np.column_stack([log.columns[c][before.stop : after.start] for c in GYROS])
+    resting = 0.5 * (before.rate + after.rate)
+    turned = (rate - resting).sum(axis=0) / (log.rate_hz or 100.0)
+    return float(np.linalg.norm(turned)) < SAME_ATTITUDE
 
 
 def _too_few(log: SensorLog, stops: int) -> Problem:
