@@ -23,15 +23,15 @@ def run_table(runs: Sequence[RunShown]) -> Table:
     rows: list[tuple[str, ...]] = [
         (
             shown.run.id,
-            shown.programme.title,
             texts.RUN_STEPS.format(done=shown.done, count=shown.of)
             if shown.programme.typed
             else texts.RUN_RECORDED,
+            shown.programme.title,
         )
         for shown in runs
     ]
-    rows += [(texts.RUN_NEW, programme.title, "") for programme in PROGRAMMES]
-    return Table((texts.COL_RUN, texts.COL_PROGRAMME, texts.COL_DONE_STEPS), tuple(rows))
+    rows += [(texts.RUN_NEW, "", programme.title) for programme in PROGRAMMES]
+    return Table((texts.COL_RUN, texts.COL_DONE_STEPS, texts.COL_PROGRAMME), tuple(rows))
 
 
 def run_details(runs: Sequence[RunShown], row: int) -> tuple[Block, ...]:
