@@ -90,7 +90,20 @@ def _noise(rng: np.random.Generator, rows: int) -> dict[str, np.ndarray]:
     return {"gyr_z_rad_s": 1e-3 * rng.standard_normal(rows) + 1e-4}
 
 
-KINDS = {"compass": _vectors, "tilt": _tilts, "noise": _noise}
+def _drives(rng: np.random.Generator, rows: int) -> dict[str, np.ndarray]:
+    """A minute over and over: rest, driving off, a way, braking, rest; it shakes on its way."""
+    phase = np.arange(rows) / RATE_HZ % 60.0
+    pushed = 0.4 * (((phase >= 30.0) & (phase < 35.0)) * 1.0 - ((phase >= 50.0) & (phase < 55.0)))
+    moving = (phase >= 30.0) & (phase < 55.0)
+    force = np.array([0.0, 0.0, 9.81]) + 0.02 * rng.standard_normal((rows, 3))
+    force += 0.15 * moving[:, None] * rng.standard_normal((rows, 3))
+    force[:, 1] += pushed
+    rate = 1e-3 * (1.0 + moving[:, None]) * rng.standard_normal((rows, 3)) + 1e-4
+    made = {f"acc_{a}_m_s2": force[:, i] for i, a in enumerate("xyz")}
+    return made | {f"gyr_{a}_rad_s": rate[:, i] for i, a in enumerate("xyz")}
+
+
+KINDS = {"compass": _vectors, "tilt": _tilts, "noise": _noise, "drive": _drives}
 
 
 def write_log(path: Path, kind: str, rows: int) -> None:
@@ -118,6 +131,8 @@ def _commands(folder: Path) -> Iterator[tuple[str, str, str, dict[str, object]]]
     yield "filter kalman -o", "noise", "filter_log", {"name": "kalman", "out": out}
     yield "filter sage-husa", "noise", "filter_log", {"name": "sage-husa"}
     yield "spectrum", "noise", "spectrum", {"column": "gyr_z_rad_s"}
+    yield "motion", "drive", "motion", {}
+    yield "motion --path", "drive", "motion", {"options": {"path": True}}
     yield "diagnose compass", "compass", "diagnose_log", {}
 
 
