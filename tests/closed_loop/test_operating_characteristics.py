@@ -34,7 +34,6 @@ def test_pure_noise_raises_an_alarm_as_often_as_stated(size: int, rounding: floa
 
 
 LINES = [
-    (Truth("drift 4", 20, "midpoint_drift", drift=4.0), 1.0, 0.96),
     (Truth("drift 1", 20, "midpoint_drift", drift=1.0), 1.0, 0.54),
     (Truth("step 25", 20, "midpoint_step", step=25.0), 1.0, 1.0),
     (Truth("step 12", 20, "midpoint_step", step=12.0), 1.0, 0.62),

@@ -15,10 +15,18 @@ from surveyapp.core.sensors.rate.six_position_log import (
 )
 from surveyapp.core.sensors.rate.table_axis import axis_rate
 from surveyapp.core.sensors.rate.table_log import motion_of
+from surveyapp.core.sensors.rate.temperature_log import calibrate_temperature
+from surveyapp.core.sensors.rate.temperature_nodes import TemperatureOptions
 from surveyapp.core.sensors.rate.turning import TableMotion
 from surveyapp.core.simulate.rate.log import SimulatedLog
 from surveyapp.core.simulate.rate.recipes import LATITUDE, example_unit
-from surveyapp.core.simulate.rate.table_programmes import DEG_H, TableRun, six_position_log
+from surveyapp.core.simulate.rate.table_programmes import (
+    DEG_H,
+    ImuOnTable,
+    TableRun,
+    six_position_log,
+    temperature_log,
+)
 from surveyapp.diagnosis.engine import diagnose
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.workflows.rate_case import case_of_log
@@ -29,11 +37,11 @@ from tests.rate.logs import as_read
 AZIMUTH = 2.39
 
 
-def leaning(tilt_deg: float, *, positions: tuple[str, ...] = POSITIONS) -> SimulatedLog:
-    """Six positions without noise on a table that leans both ways."""
+def unit(tilt_deg: float) -> ImuOnTable:
+    """A unit without noise on a table that leans both ways."""
     made = example_unit({}, TableRun(turns=2.0, interval_s=0.25, pause_s=1.0))
     tilt = math.radians(tilt_deg)
-    unit = replace(
+    return replace(
         made,
         gyro=replace(made.gyro, noise=0.0),
         accelerometer=replace(made.accelerometer, noise=0.0),
@@ -41,7 +49,10 @@ def leaning(tilt_deg: float, *, positions: tuple[str, ...] = POSITIONS) -> Simul
         warm_up_s=10.0,
         static_s=5.0,
     )
-    return six_position_log(unit, np.random.default_rng(1), positions=positions)
+
+
+def leaning(tilt_deg: float, *, positions: tuple[str, ...] = POSITIONS) -> SimulatedLog:
+    return six_position_log(unit(tilt_deg), np.random.default_rng(1), positions=positions)
 
 
 @pytest.mark.parametrize("tilt_deg", [0.0, 0.3, 5.0, 20.0])
@@ -63,13 +74,29 @@ def test_the_rate_along_a_leaning_axis(tilt_deg: float) -> None:
 
 
 def test_one_position_of_a_pair_on_a_leaning_table() -> None:
-    """At two degrees the earth rate along the axis differs by .27 deg/h from the vertical one."""
+    """At two degrees the earth rate along the axis differs by .13 deg/h from the vertical one."""
     kept = tuple(p for p in POSITIONS if p != "x-")
     found = calibrate_six_positions(
         as_read(leaning(2.0, positions=kept)), SixPositionOptions(latitude=LATITUDE)
     )
     bias = found.value("bias_x")
     assert bias == pytest.approx(5.0, abs=0.005)
+
+
+def test_the_biases_of_a_chamber_on_a_leaning_table() -> None:
+    """One position per direction: a third of the .13 deg/h along each axis stood in every bias."""
+    made = unit(2.0)
+    log = temperature_log(
+        made,
+        np.random.default_rng(1),
+        nodes_c=(5.0, 20.0, 30.0),
+        at=lambda _: (made.gyro, made.accelerometer),
+    )
+    found = calibrate_temperature(as_read(log), TemperatureOptions(latitude=LATITUDE))
+    for node in found.extra["nodes"]:
+        values = {p["name"]: p["value"] for p in node["parameters"]}
+        biases = [values[f"bias_{a}"] for a in "xyz"]
+        assert biases == pytest.approx([5.0, -3.0, 2.0], abs=0.005)
 
 
 def test_without_a_latitude_gravity_is_not_blamed_for_the_earth_rate() -> None:

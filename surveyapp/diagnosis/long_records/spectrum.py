@@ -24,7 +24,9 @@ LOWEST = 13
 LEAST_BACKGROUND = 2 * LOWEST
 """Frequencies that a background needs."""
 IMAGE = 0.15
-"""Correlation of the noise at two frequencies from which on they are no two witnesses."""
+"""Correlation of the noise at two frequencies from which on they are no two witnesses. In the
+pauses of a total station's log .05 to 1 give the same alarms and families (``bench
+rate_line_constants``)."""
 STRIDE = 6
 """The running median is taken at every sixth frequency: a tenth of its window."""
 

@@ -93,7 +93,9 @@ class Records(Container):
         align = self.table.align or "l" * len(self.table.head)
         right = [align[i] == "r" for i in places]
         for i in places:
-            table.add_column(_cell(self.table.head[i], right=right[i]))
+            # a width found when idle leaves rows that were painted before it as narrow as the head
+            width = _width(self.table, i)
+            table.add_column(_cell(self.table.head[i], right=right[i]), width=width)
         for number, cells in enumerate(self.table.rows):
             strong = number in self.table.strong
             table.add_row(*(_cell(cells[i], right=right[i], strong=strong) for i in places))
@@ -126,12 +128,17 @@ def columns_in(table: Table, room: int) -> int:
     if room <= 0:
         return len(table.head)
     left = room - SCROLL_BAR
-    for place, head in enumerate(table.head):
-        cells = (display_width(row[place]) for row in table.rows)
-        left -= max(display_width(head), *cells, 0) + CELL_SIDES
+    for place in range(len(table.head)):
+        left -= _width(table, place) + CELL_SIDES
         if left < 0:
             return max(place, 1)
     return len(table.head)
+
+
+def _width(table: Table, place: int) -> int:
+    """Of a column, its head and every cell."""
+    cells = (display_width(row[place]) for row in table.rows)
+    return max(display_width(table.head[place]), *cells, 0)
 
 
 def _cell(text: str, *, right: bool, strong: bool = False) -> Text:
