@@ -11,6 +11,7 @@ from textual.widgets import DataTable, Input, OptionList, Static, TabbedContent
 
 from surveyapp import api
 from surveyapp.domain.advance import PartDone
+from surveyapp.errors import SurveyError
 from surveyapp.observation.sensors import tasks
 from surveyapp.observation.sensors.desk import card_path
 from surveyapp.observation.sensors.options import told_options
