@@ -118,7 +118,6 @@ if TYPE_CHECKING:
     from surveyapp.domain.north import NorthResult
     from surveyapp.domain.penetration_result import Prediction
     from surveyapp.domain.programme import Programme, ProgrammeResult, ProgrammeState
-    from surveyapp.domain.project import ResultWarning
     from surveyapp.domain.records import Listing
     from surveyapp.domain.results import (
         AngleResult,
@@ -128,6 +127,7 @@ if TYPE_CHECKING:
         SessionResult,
     )
     from surveyapp.domain.shaft_result import ShaftResult
+    from surveyapp.domain.warning import ResultWarning
     from surveyapp.io.simulated import SimulatedFiles
     from surveyapp.report.written import ReportResult, SheetsResult
     from surveyapp.workflows.choosing import Diagnosable

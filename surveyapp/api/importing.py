@@ -11,7 +11,7 @@ from surveyapp.api.project import SOFTWARE, Folder, open_project
 from surveyapp.domain.fieldfile import ImportResult
 from surveyapp.domain.filing import ExportResult
 from surveyapp.domain.subject import Subject
-from surveyapp.domain.told import told_about
+from surveyapp.domain.warning import told_about
 from surveyapp.errors import Problem, SurveyError, nearest_names
 
 

@@ -269,7 +269,7 @@ def export_zip(folder: Folder, output: Folder, *, allow_outside: bool = False) -
     SurveyError
         If the folder is no project folder, or a file cannot be read or is another than the pinned.
     """
-    from surveyapp.domain.project import ResultWarning
+    from surveyapp.domain.warning import ResultWarning
     from surveyapp.io.exporters.archive import archive, logs_outside
 
     data, count = archive(Path(folder), allow_outside=allow_outside)

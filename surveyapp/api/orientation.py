@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Union
 
 from surveyapp.api.project import SOFTWARE, Folder, open_project, opened, require
 from surveyapp.domain.advance import Advance, silent
-from surveyapp.domain.project import Project, ResultWarning
+from surveyapp.domain.project import Project
 from surveyapp.domain.records import Listing
 from surveyapp.domain.results import OrientationResult
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import joined, said
 

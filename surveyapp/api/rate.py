@@ -11,7 +11,7 @@ from surveyapp.api.sensors import LogOptions, open_sensor_log
 from surveyapp.domain.line_spectrum import LineSpectrum
 from surveyapp.domain.motion import Motion
 from surveyapp.domain.north import NorthResult
-from surveyapp.domain.told import told_about
+from surveyapp.domain.warning import told_about
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.languages import said
 

@@ -14,7 +14,7 @@ from surveyapp.domain.advance import stage
 from surveyapp.domain.calibration import Calibration
 from surveyapp.domain.noise import AllanResult, FilterResult
 from surveyapp.domain.subject import Subject
-from surveyapp.domain.told import told_about
+from surveyapp.domain.warning import told_about
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 

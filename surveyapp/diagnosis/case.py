@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.diagnosis.action import Action, Planner
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.subject import Subject
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats

@@ -84,11 +84,6 @@ class Level:
         return tuple(sorted((*self.fits, *self.noises), key=lambda fit: fit.bic))
 
     @property
-    def best_score(self) -> float:
-        """Smallest score of all sets."""
-        return min(fit.score for fit in (*self.fits, *self.noises))
-
-    @property
     def stochastic(self) -> bool:
         """Whether correlated noise alone beats every deterministic set by the margin."""
         pure = [fit.score for fit in self.noises if not fit.members]

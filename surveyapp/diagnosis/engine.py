@@ -48,7 +48,7 @@ from surveyapp.diagnosis.run_value import (
     rms,
     value_of,
 )
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import joined, said, term
 
 

@@ -13,7 +13,7 @@ from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.fits import fit_members
 from surveyapp.diagnosis.loop import Search, is_event
 from surveyapp.diagnosis.run_value import datum_values, value_of
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 from surveyapp_models.angles import wrap_pi
 

@@ -30,8 +30,8 @@ from surveyapp.core.sensors.rate.table_log import Turned, label, motion_of
 from surveyapp.core.sensors.rate.temperature_log import CHAMBER, node_numbers
 from surveyapp.core.sensors.rate.turn_axes import axes_problems
 from surveyapp.diagnosis.subjects.rate import RateStop, RateTurn
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2, SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 from surveyapp_models.arrays import Floats

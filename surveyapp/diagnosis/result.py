@@ -14,7 +14,7 @@ from surveyapp.diagnosis.battery import BatteryTest
 from surveyapp.diagnosis.long_records.lines import SpectralLine
 from surveyapp.diagnosis.outlook import ActionResult, HeldOut
 from surveyapp.domain.instrument import AdoptedEffect
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import joined, said
 from surveyapp_models.angles import wrap_two_pi
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from surveyapp.diagnosis.action import Action
 from surveyapp.diagnosis.case import Case
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC

@@ -13,8 +13,8 @@ from typing import Literal
 
 from surveyapp.domain.network_tests import GlobalTest, LeftOut, Removal, Snooping, Suspect
 from surveyapp.domain.observations import ANGULAR, ObservationKind
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.records import Cell, Recorded, rows_of
+from surveyapp.domain.warning import ResultWarning
 from surveyapp_models.angles import RHO_ARCSEC, wrap_two_pi
 
 __all__ = [

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from surveyapp.domain.adjustment import Ellipse
 from surveyapp.domain.observations import Observation
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 
 
 @dataclass(frozen=True, slots=True)

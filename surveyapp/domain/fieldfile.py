@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 
 Face = Literal["L", "R", ""]
 State = Literal["added", "same", "conflict"]

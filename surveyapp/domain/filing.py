@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.results import finite
+from surveyapp.domain.warning import ResultWarning
 
 Part = Literal["input", "software", "card", "rule_book", "result"]
 Status = Literal["good", "limit", "failed"]

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 
 SPECTRUM_SCHEMA: Final = "surveyapp.spectrum/1"
 

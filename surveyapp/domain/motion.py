@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final, Literal
 
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 
 MOTION_SCHEMA: Final = "surveyapp.motion/1"
 State = Literal["stationary", "steady", "accelerating", "braking", "turning"]

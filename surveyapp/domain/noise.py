@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 
 ALLAN_SCHEMA: Final = "surveyapp.allan/1"
 FILTER_SCHEMA: Final = "surveyapp.filter/1"

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Final, Literal
 
 from surveyapp.domain.calibration import SensorParameter
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 
 NORTH_SCHEMA: Final = "surveyapp.north/1"
 Reference = Literal["ASTRONOMIC", "MAGNETIC", "GRID"]

@@ -13,7 +13,7 @@ from typing import Any, Literal
 from surveyapp.domain.angle_result import finite
 from surveyapp.domain.penetration import STEP_TITLES, ProcedureStep
 from surveyapp.domain.placement import PlacementPlan
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 
 Verdict = Literal["consistent", "not_separable", "explained"]
 

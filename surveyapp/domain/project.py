@@ -6,7 +6,7 @@ Read from a folder by ``surveyapp.io.project``; nothing here touches a file.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from datetime import date
 from typing import Any, Literal
 
@@ -20,9 +20,8 @@ from surveyapp.domain.rulebook import RuleBook
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.session_sensors import LogLevelling, PreOrientation
 from surveyapp.domain.shaft import ShaftTables
-from surveyapp.domain.subject import Subject
 from surveyapp.domain.traverse_book import Traverse
-from surveyapp.languages import Said, term
+from surveyapp.domain.warning import ResultWarning
 from surveyapp_models.angles import ARCSEC, AngleUnit
 
 Method = Literal["tracking", "amplitude", "transit", "automatic"]
@@ -206,36 +205,6 @@ class Centring:
     instrument_m: float = 0.001
     target_m: float = 0.001
     known: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class ResultWarning:
-    """Something a reader of the result must know; data, not a log line.
-
-    Parameters
-    ----------
-    code, text : str
-    subject : Subject or None
-        What it is about; None: the project or the file as a whole.
-    """
-
-    code: str
-    text: str
-    subject: Subject | None = None
-
-    def __post_init__(self) -> None:
-        """Make a plain text one of the catalogue."""
-        if not isinstance(self.text, Said):
-            object.__setattr__(self, "text", term(self.text))
-
-    def about(self, subject: Subject) -> ResultWarning:
-        """The same warning about this subject, where it does not say what it is about."""
-        return self if self.subject is not None else replace(self, subject=subject)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Keys of the JSON."""
-        subject = None if self.subject is None else self.subject.to_dict()
-        return {"code": self.code, "text": self.text, "subject": subject}
 
 
 @dataclass(frozen=True, slots=True)

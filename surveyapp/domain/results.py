@@ -14,7 +14,6 @@ from typing import Any, Literal
 from surveyapp.domain.angle_result import AngleResult, Reference, finite, to_arcsec, to_degrees
 from surveyapp.domain.combined_result import CombinedPart, CombinedResult
 from surveyapp.domain.constant_result import ConstantResult, Determination, LineConstant
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.records import Cell, Recorded, rows_of
 from surveyapp.domain.session_result import (
     PointResult,
@@ -23,6 +22,7 @@ from surveyapp.domain.session_result import (
     TargetResult,
 )
 from surveyapp.domain.subject import Subject
+from surveyapp.domain.warning import ResultWarning
 
 __all__ = [
     "Reference",

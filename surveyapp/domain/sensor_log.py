@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.domain.columns import PIECE, Room, every_kth, in_memory, let_go, pieces
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 
 Array = NDArray[np.float64]

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from surveyapp.domain.angle_result import AngleResult, finite, to_arcsec, to_degrees
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.session_sensors import LogLevelling, PreOrientation
+from surveyapp.domain.warning import ResultWarning
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Literal
 from surveyapp.errors import Problem
 
 if TYPE_CHECKING:
-    from surveyapp.domain.project import ResultWarning
+    from surveyapp.domain.warning import ResultWarning
 
 Place = Literal["surface", "underground"]
 

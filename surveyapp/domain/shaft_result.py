@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from surveyapp.domain.angle_result import finite, to_arcsec, to_degrees
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.shaft import CHECK_IDS, PlumbingCheck
+from surveyapp.domain.warning import ResultWarning
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from enum import StrEnum
 from typing import Any
 
 from surveyapp.domain.observations import CorrelatedBlock, Observation, ObservationKind
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.languages import said
 

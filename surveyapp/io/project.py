@@ -14,8 +14,9 @@ from typing import Final
 
 from surveyapp.core.network.collector import paused_collection
 from surveyapp.domain.closing import Filing
-from surveyapp.domain.project import Centring, Project, ResultWarning
+from surveyapp.domain.project import Centring, Project
 from surveyapp.domain.rulebook import RuleBook
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.cards import is_path
 from surveyapp.io.files import decode, read_inside, shown, shown_path

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import SurveyError
 from surveyapp.io.files import read_inside, shown
 from surveyapp.io.guarded import MAX_LOG_BYTES, open_regular, place_inside

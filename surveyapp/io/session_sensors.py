@@ -18,13 +18,14 @@ from surveyapp.core.sensors.card_fits import range_doubts, resting_doubts
 from surveyapp.core.sensors.compensation import compensate_compass, compensate_tilt
 from surveyapp.core.sensors.declination import model_declination, unstated_sigma
 from surveyapp.core.swing.levelling import ASIDE
-from surveyapp.domain.project import OrientationSession, Project, ResultWarning, Station
+from surveyapp.domain.project import OrientationSession, Project, Station
 from surveyapp.domain.readings import FieldBook, Reading, ReadingKind
 from surveyapp.domain.sensor_card import SensorCard
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import TRIPLES, SensorLog
 from surveyapp.domain.session_sensors import BlockTilt, LogLevelling, PreOrientation
 from surveyapp.domain.subject import Subject
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.project_files import ProjectFiles, inside
 from surveyapp.io.sensor_cards import read_sensor_card

@@ -20,9 +20,9 @@ from surveyapp.core.sensors.rate.fog_station_log import GYRO, turned_sets
 from surveyapp.core.sensors.rate.fog_station_log import OPTIONAL as FOG_COLUMNS
 from surveyapp.domain.advance import PartDone
 from surveyapp.domain.instrument import AdoptedEffect
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import SurveyError
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.languages import said

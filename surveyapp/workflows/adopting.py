@@ -17,8 +17,9 @@ from surveyapp.core.orientation.session_digest import sessions_digest
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.result import Adoption, Diagnosis
 from surveyapp.domain.instrument import AdoptedEffect
-from surveyapp.domain.project import Project, ResultWarning
+from surveyapp.domain.project import Project
 from surveyapp.domain.sensor_entry import SensorLogEntry
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.filing.journal import write_together
 from surveyapp.io.filing.ledger import append_entries

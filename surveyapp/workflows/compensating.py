@@ -22,10 +22,10 @@ from surveyapp.core.sensors.compensation import (
 )
 from surveyapp.core.sensors.declination import told_unstated, unstated_sigma
 from surveyapp.domain.advance import PartDone, stage
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_card import SensorCard
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.sensor_cards import read_sensor_card
 from surveyapp.io.sensor_logs.blocks import room_for

@@ -21,9 +21,10 @@ from surveyapp.core.orientation.unfinished import waiting_sides, without_unfinis
 from surveyapp.core.orientation.whole_project import Orientation, orient_project
 from surveyapp.domain.advance import Advance, silent
 from surveyapp.domain.observations import ObservationKind
-from surveyapp.domain.project import Project, ResultWarning
+from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
 from surveyapp.domain.traverse import GyroConstant, Network, OrientedLine
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.workflows.underground import breakthrough_evidence, shaft_evidence
 
 

@@ -15,8 +15,9 @@ from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.engine import diagnose as run_engine
 from surveyapp.diagnosis.plain_words import words_of
 from surveyapp.diagnosis.result import Diagnosis
-from surveyapp.domain.project import Project, ResultWarning
+from surveyapp.domain.project import Project
 from surveyapp.domain.sensor_entry import SensorLogEntry
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.reading import LogFile
 from surveyapp.languages import either, said

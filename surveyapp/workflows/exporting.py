@@ -10,8 +10,9 @@ from surveyapp.core.network import adjust
 from surveyapp.domain.adjustment import AdjustmentResult
 from surveyapp.domain.exported import ExportedPoint, ExportedSurvey
 from surveyapp.domain.observations import ANGULAR, Observation, ObservationKind
-from surveyapp.domain.project import Project, ResultWarning
+from surveyapp.domain.project import Project
 from surveyapp.domain.traverse import Network
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import SurveyError
 from surveyapp.languages import said
 

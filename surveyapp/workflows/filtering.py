@@ -22,7 +22,7 @@ from surveyapp.core.sensors.filters import (
 from surveyapp.domain.advance import PartDone, stage
 from surveyapp.domain.columns import pieces
 from surveyapp.domain.noise import AllanChannel, FilterResult
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.sensor_logs.blocks import room_for
 from surveyapp.io.sensor_logs.reading import LogFile

@@ -13,8 +13,8 @@ from surveyapp.core.sensors.noise_coefficients import coefficients_of
 from surveyapp.core.sensors.noise_units import named_coefficients
 from surveyapp.domain.advance import PartDone, stage
 from surveyapp.domain.noise import AllanChannel, AllanResult
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SENSOR_COLUMNS, TEXT_COLUMNS, SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.sensor_logs.blocks import room_for
 from surveyapp.io.sensor_logs.reading import LogFile, Need

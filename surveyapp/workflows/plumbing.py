@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from surveyapp.core.shafts.orientation import orient_shaft
-from surveyapp.domain.project import Project, ResultWarning
+from surveyapp.domain.project import Project
 from surveyapp.domain.shaft_result import ShaftOrientation, ShaftResult
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 
 

@@ -22,7 +22,7 @@ from surveyapp.diagnosis.subjects.campaign import campaign
 from surveyapp.diagnosis.subjects.choice import determinations, is_run, run_problem
 from surveyapp.domain.instrument import Instrument
 from surveyapp.domain.priors import BASE, UNITS, Priors
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import counted, joined, listed, said, sentence, some, term
 from surveyapp.languages.names import named

@@ -20,11 +20,12 @@ from surveyapp.core.penetration.refusals import (
 )
 from surveyapp.core.penetration.rows import RowKind
 from surveyapp.domain.penetration import Heading, Penetration
-from surveyapp.domain.project import Project, ResultWarning, Station
+from surveyapp.domain.project import Project, Station
 from surveyapp.domain.results import OrientationResult
 from surveyapp.domain.rulebook import RuleBook
 from surveyapp.domain.shaft_result import ShaftOrientation
 from surveyapp.domain.traverse_book import Traverse
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.penetration.measured import header_sigmas, measured_rows
 from surveyapp.io.tables import Findings

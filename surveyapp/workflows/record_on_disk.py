@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
-from surveyapp.domain.project import Project, ResultWarning
+from surveyapp.domain.project import Project
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import SurveyError
 from surveyapp.io.files import read_inside
 from surveyapp.io.guarded import is_regular

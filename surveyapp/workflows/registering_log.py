@@ -14,9 +14,9 @@ import numpy as np
 
 from surveyapp.domain.advance import PartDone
 from surveyapp.domain.log_preview import LogPreview, PreviewedColumn
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_entry import SENSOR_KINDS
 from surveyapp.domain.sensor_log import NUMBER_COLUMNS, SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.files import decode, shown_path
 from surveyapp.io.filing.lock import ProjectLock

@@ -17,9 +17,9 @@ from surveyapp.diagnosis.long_records.interference import (
 )
 from surveyapp.domain.advance import PartDone
 from surveyapp.domain.line_spectrum import LineSpectrum, MagneticBudget
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import NUMBER_COLUMNS, SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.languages import said

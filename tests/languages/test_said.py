@@ -9,7 +9,7 @@ from dataclasses import asdict
 
 import pytest
 
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import (
     LANGUAGES,
     Said,

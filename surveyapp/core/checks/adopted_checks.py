@@ -16,8 +16,9 @@ from surveyapp.core.orientation.adopted_course import course_of, unexplained
 from surveyapp.core.orientation.campaign_columns import LABELLED
 from surveyapp.core.orientation.session_digest import sessions_digest
 from surveyapp.domain.instrument import AdoptedEffect, Instrument
-from surveyapp.domain.project import OrientationSession, Project, ResultWarning
+from surveyapp.domain.project import OrientationSession, Project
 from surveyapp.domain.subject import Subject
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.languages import listed, said
 from surveyapp_models.effects import of_subject

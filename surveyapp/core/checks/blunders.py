@@ -14,9 +14,10 @@ from surveyapp.core.geodesy import Grid
 from surveyapp.core.orientation.lines import LineGeometry
 from surveyapp.core.swing.sights import SightSet
 from surveyapp.domain.mine_grid import StatedConvergence
-from surveyapp.domain.project import OrientationSession, Project, ResultWarning, Station
+from surveyapp.domain.project import OrientationSession, Project, Station
 from surveyapp.domain.results import LineResult
 from surveyapp.domain.subject import Subject
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, wrap_pi

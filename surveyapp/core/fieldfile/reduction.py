@@ -17,7 +17,7 @@ from typing import Final
 from surveyapp.core.fieldfile.face_pairs import unlike
 from surveyapp.core.fieldfile.rounds import Round, group
 from surveyapp.domain.fieldfile import FieldFile, Pointing, ReducedSet, ReducedSight
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import joined, said, some
 from surveyapp_models.angles import wrap_pi, wrap_two_pi
 

@@ -31,8 +31,8 @@ from surveyapp.domain.adjustment import (
     Snooping,
     Suspect,
 )
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network, Status
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 

@@ -14,8 +14,8 @@ from surveyapp.core.network.model import Model, compile_network
 from surveyapp.core.network.observation_equations import linearised, misclosures
 from surveyapp.core.network.solving import solve_network
 from surveyapp.domain.adjustment import AdjustedObservation, LeftOut
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import joined, said
 from surveyapp_models.arrays import Floats
 

@@ -12,8 +12,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from surveyapp.domain.observations import Observation, ObservationKind
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network, Status
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 
 K = ObservationKind

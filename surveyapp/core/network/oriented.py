@@ -14,9 +14,9 @@ from dataclasses import replace
 from surveyapp.core.orientation.deflection_field import DeflectionField
 from surveyapp.core.orientation.lines import OrientedLine as Line
 from surveyapp.core.orientation.side_errors import SideErrors, side_errors
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.results import LineResult
 from surveyapp.domain.traverse import GyroConstant, OrientedLine
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 
 NOTHING = 1e-12

@@ -19,9 +19,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from surveyapp.domain.observations import CorrelatedBlock, Observation, ObservationKind
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network
 from surveyapp.domain.traverse_book import Traverse
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 from surveyapp_models.angles import wrap_pi
 from surveyapp_models.arrays import Floats

@@ -17,8 +17,8 @@ from surveyapp.core.network.gaussnewton import Converged, NotConverged, iterate,
 from surveyapp.core.network.model import Model
 from surveyapp.core.network.undetermined import refuse_undetermined
 from surveyapp.domain.observations import ObservationKind
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network, Status
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import joined, said
 from surveyapp_models.arrays import Floats

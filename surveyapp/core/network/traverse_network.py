@@ -17,11 +17,12 @@ from surveyapp.core.network.setups import as_blocks, setup_blocks
 from surveyapp.core.network.stated_sigmas import estimated_part, row_sigma, side_lengths
 from surveyapp.core.network.touched import touched
 from surveyapp.domain.observations import CorrelatedBlock, Observation, ObservationKind
-from surveyapp.domain.project import Project, ResultWarning, Station
+from surveyapp.domain.project import Project, Station
 from surveyapp.domain.station_line import StationLine
 from surveyapp.domain.subject import Subject
 from surveyapp.domain.traverse import GyroConstant, Network, NetworkPoint, OrientedLine, Status
 from surveyapp.domain.traverse_book import Traverse, TraverseRow
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.languages import said
 

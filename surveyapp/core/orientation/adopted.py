@@ -30,9 +30,9 @@ from surveyapp.core.orientation.circumstances import (
 from surveyapp.core.swing.session import ReducedSession, TargetReduction
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import AdoptedEffect, Instrument
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.station_line import StationLine
 from surveyapp.domain.subject import Subject
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import joined, listed, said
 from surveyapp_models.angles import RHO_ARCSEC
 from surveyapp_models.arrays import Floats

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from surveyapp.domain.instrument import AdoptedEffect
-from surveyapp.domain.project import OrientationSession, ResultWarning
+from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.subject import Subject
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 from surveyapp_models.effects.effect import Effect
 from surveyapp_models.effects.recurrent import recurrent_course

@@ -13,8 +13,9 @@ from typing import Final
 from surveyapp.core.orientation.deflection_field import NAME as DEFLECTION
 from surveyapp.core.orientation.known_azimuth import NAME as KNOWN
 from surveyapp.core.orientation.lines import OrientedLine
-from surveyapp.domain.project import Deflection, Project, ResultWarning
+from surveyapp.domain.project import Deflection, Project
 from surveyapp.domain.subject import Subject
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 from surveyapp_models.angles import RHO_ARCSEC
 

@@ -11,14 +11,9 @@ from surveyapp.core.orientation.sequence import SessionOrder
 from surveyapp.core.statistics.repeated import RunScatter
 from surveyapp.core.swing.automatic import stated_rounds
 from surveyapp.core.swing.session import ReducedSession
-from surveyapp.domain.project import (
-    Centring,
-    OrientationSession,
-    Project,
-    ResultWarning,
-    grid_bearing,
-)
+from surveyapp.domain.project import Centring, OrientationSession, Project, grid_bearing
 from surveyapp.domain.subject import Subject
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 from surveyapp_models.angles import RHO_ARCSEC, wrap_pi
 

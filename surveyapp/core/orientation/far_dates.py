@@ -12,8 +12,8 @@ from surveyapp.core.prediction.drifting import drift_share, half_width_about, if
 from surveyapp.core.statistics.repeated import SHARED
 from surveyapp.core.uncertain import Uncertain
 from surveyapp.domain.priors import Priors
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.subject import Subject
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 from surveyapp_models.angles import RHO_ARCSEC
 from surveyapp_models.arrays import Floats

@@ -21,8 +21,8 @@ from surveyapp.core.statistics.repeated import SHARED, weighted_mean
 from surveyapp.core.uncertain import Source, Uncertain, combine
 from surveyapp.domain.constant_choice import LINE, ConstantChoice
 from surveyapp.domain.instrument import Instrument
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.station_line import StationLine
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import counted, said
 

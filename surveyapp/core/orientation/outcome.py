@@ -11,7 +11,6 @@ from surveyapp.core.orientation.lines import angle_result
 from surveyapp.core.orientation.sequence import session_moments
 from surveyapp.core.orientation.whole_project import Orientation
 from surveyapp.core.swing.session import ReducedSession, TargetReduction
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.results import (
     Check,
     ConstantResult,
@@ -23,6 +22,7 @@ from surveyapp.domain.results import (
     TargetResult,
 )
 from surveyapp.domain.subject import Subject
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import joined, said
 
 

@@ -29,7 +29,7 @@ from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp.core.statistics.repeated import SHARED, RunScatter
 from surveyapp.core.uncertain import Source, Spread, Uncertain
 from surveyapp.domain.priors import DEFAULT_PRIORS, Priors
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 from surveyapp_models.angles import wrap_pi
 from surveyapp_models.arrays import Floats

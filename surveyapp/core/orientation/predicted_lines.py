@@ -14,9 +14,9 @@ from surveyapp.core.statistics.repeated import RunScatter, run_scatter, weights_
 from surveyapp.core.swing.session import ReducedSession
 from surveyapp.core.uncertain import Uncertain, aligned
 from surveyapp.domain.priors import DEFAULT_PRIORS
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.station_line import StationLine
 from surveyapp.domain.subject import Subject
+from surveyapp.domain.warning import ResultWarning
 
 Key = tuple[str, str, str]
 """Station, target and instrument of a line."""

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from surveyapp.core.orientation.circumstances import Circumstances
 from surveyapp.core.orientation.instrument_constant import InstrumentConstant
 from surveyapp.core.uncertain import Uncertain
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.station_line import StationLine
 from surveyapp.domain.subject import Subject
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import counted, joined, listed, said
 from surveyapp_models.angles import RHO_ARCSEC
 

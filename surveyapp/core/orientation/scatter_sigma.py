@@ -14,8 +14,9 @@ from dataclasses import replace
 from surveyapp.core.orientation.repeated_runs import OWN_SCATTER, Groups
 from surveyapp.core.swing.session import ReducedSession
 from surveyapp.core.uncertain import Source, Uncertain, aligned
-from surveyapp.domain.project import Project, ResultWarning
+from surveyapp.domain.project import Project
 from surveyapp.domain.subject import Subject
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 from surveyapp_models.angles import RHO_ARCSEC
 

@@ -16,8 +16,9 @@ from surveyapp.core.orientation.sequence import SessionOrder
 from surveyapp.core.statistics.repeated import RunScatter
 from surveyapp.core.swing.session import ReducedSession
 from surveyapp.core.uncertain import Uncertain
-from surveyapp.domain.project import Project, ResultWarning, Station, grid_distance_m
+from surveyapp.domain.project import Project, Station, grid_distance_m
 from surveyapp.domain.subject import Subject
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 

@@ -15,9 +15,10 @@ from typing import Final
 from surveyapp.core.swing.clamped import LEAST_OF_SCALE, check_rows, number_rows, triples_of
 from surveyapp.core.swing.run_points import MIN_POINTS
 from surveyapp.core.swing.session import collect_sights, known_target, sight_targets
-from surveyapp.domain.project import OrientationSession, Project, ResultWarning, Station
+from surveyapp.domain.project import OrientationSession, Project, Station
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.domain.subject import Subject
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import SurveyError
 from surveyapp.languages import said
 

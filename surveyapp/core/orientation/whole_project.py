@@ -68,13 +68,9 @@ from surveyapp.core.swing.session import (
 )
 from surveyapp.core.swing.sights import SightSet, tripod_twist, zenith_angle
 from surveyapp.domain.advance import Advance, silent
-from surveyapp.domain.project import (
-    OrientationSession,
-    Project,
-    ResultWarning,
-    Station,
-)
+from surveyapp.domain.project import OrientationSession, Project, Station
 from surveyapp.domain.subject import Subject
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 

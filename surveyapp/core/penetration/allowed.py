@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from surveyapp.core.tolerance import limits_for
 from surveyapp.domain.penetration import Penetration, StatedTolerance
 from surveyapp.domain.penetration_result import MissSigma, Tolerance
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.rulebook import Limit, RuleBook
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import joined, said, term
 
 DEFAULT_FACTOR = 2.0

@@ -25,8 +25,8 @@ from surveyapp.domain.penetration_result import (
     MissSigma,
     Prediction,
 )
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.rulebook import RuleBook
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 from surveyapp_models.angles import TWO_PI
 from surveyapp_models.arrays import Floats

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from surveyapp.core.penetration.mine import heading_of_side
 from surveyapp.core.penetration.route import REACHED_M, ahead_and_beside
 from surveyapp.domain.penetration import Heading, Penetration
-from surveyapp.domain.project import ResultWarning, Station
+from surveyapp.domain.project import Station
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, nearest_names
 from surveyapp.languages import said
 

@@ -14,8 +14,8 @@ import numpy as np
 
 from surveyapp.domain.columns import PIECE, Room, in_memory, let_go
 from surveyapp.domain.instrument import AdoptedEffect
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import Array, SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 from surveyapp_models.effects import of_subject
 

@@ -14,9 +14,9 @@ from surveyapp.core.sensors.compass_axes import check_axes
 from surveyapp.core.sensors.compensation import BODY, beyond_tilt, corrected_field
 from surveyapp.core.sensors.swing import refuse_swapped
 from surveyapp.domain.columns import pieces
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_card import SensorCard
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import counted, said
 

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.domain.columns import pieces
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import Array, SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import counted
 

@@ -20,8 +20,8 @@ from surveyapp.core.sensors.compass_models import BETTER, FORESEEN, TENTHS, bloc
 from surveyapp.core.sensors.heading_gate import HEADINGS
 from surveyapp.core.sensors.linear import alternate_blocks, correlation_inflation
 from surveyapp.domain.calibration import Calibration, CalibrationModel, SensorParameter
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp_models.arrays import Floats
 from surveyapp_models.compass.heading import level_field
 from surveyapp_models.rate.quaternions import from_rotation_vector, to_matrix

@@ -14,8 +14,8 @@ from typing import Final
 
 import numpy as np
 
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import TRIPLES, SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 from surveyapp_models.arrays import Floats

@@ -13,8 +13,8 @@ from typing import Final
 
 import numpy as np
 
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 

@@ -17,8 +17,8 @@ from surveyapp.domain.calibration import (
     Misfit,
     SensorParameter,
 )
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 from surveyapp_models.arrays import Floats

@@ -26,7 +26,6 @@ from surveyapp.core.shafts.plane import (
 )
 from surveyapp.core.shafts.points import plumbed_points
 from surveyapp.core.shafts.swings import SwingRest, period_s, pooled_sigma, swing_rest
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.shaft import Shaft, ShaftRow, ShaftRowKind
 from surveyapp.domain.shaft_result import (
     DepthCheck,
@@ -39,6 +38,7 @@ from surveyapp.domain.shaft_result import (
     TriangleCheck,
     WireRest,
 )
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.languages import said
 from surveyapp_models.angles import wrap_pi, wrap_two_pi

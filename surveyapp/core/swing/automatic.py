@@ -16,9 +16,10 @@ from surveyapp.core.swing.gyrofit import unwrap
 from surveyapp.core.swing.reduction import Reduction, need_points, reading_sigma, unit_scatter
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import InstrumentCard
-from surveyapp.domain.project import OrientationSession, ResultWarning
+from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import Reading, ReadingKind
 from surveyapp.domain.results import PointResult
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, wrap_two_pi

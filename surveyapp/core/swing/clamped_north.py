@@ -31,9 +31,10 @@ from surveyapp.core.swing.tape_zero import (
 )
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import InstrumentCard
-from surveyapp.domain.project import OrientationSession, ResultWarning
+from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.domain.results import PointResult
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import listed, said
 from surveyapp_models.arrays import Floats
 

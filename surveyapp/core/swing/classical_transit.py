@@ -16,7 +16,8 @@ from surveyapp.core.swing.reduction import Reduction, point_results
 from surveyapp.core.swing.tape_zero import reduce_tape_zero
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import InstrumentCard
-from surveyapp.domain.project import OrientationSession, ResultWarning
+from surveyapp.domain.project import OrientationSession
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 from surveyapp_models.gyro.coefficients import transit_coefficient_ratio
 from surveyapp_models.gyro.estimates import Estimate

@@ -14,8 +14,9 @@ import math
 from surveyapp.core.swing.reduction import Reduction
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import InstrumentCard
-from surveyapp.domain.project import OrientationSession, ResultWarning
+from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import ReadingKind
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 from surveyapp_models.angles import wrap_pi
 

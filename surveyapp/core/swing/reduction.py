@@ -14,9 +14,10 @@ from surveyapp.core.book.resolution import rounding_sigma
 from surveyapp.core.swing.goodness import FitTest
 from surveyapp.core.swing.tape_zero import MIN_POINTS_FOR_RESIDUALS, TapeZero, TapeZeroCoefficient
 from surveyapp.core.uncertain import Source, Uncertain
-from surveyapp.domain.project import OrientationSession, ResultWarning
+from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import Reading
 from surveyapp.domain.results import PointResult
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 from surveyapp_models.arrays import Floats

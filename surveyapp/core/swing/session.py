@@ -25,8 +25,9 @@ from surveyapp.core.swing.sights import (
 from surveyapp.core.swing.tracking import reduce_tracking
 from surveyapp.core.uncertain import Source, Uncertain
 from surveyapp.domain.instrument import InstrumentCard
-from surveyapp.domain.project import OrientationSession, ResultWarning, Station, grid_distance_m
+from surveyapp.domain.project import OrientationSession, Station, grid_distance_m
 from surveyapp.domain.readings import ReadingKind
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.languages import either, said
 from surveyapp_models.angles import wrap_two_pi

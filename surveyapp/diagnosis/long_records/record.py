@@ -31,7 +31,7 @@ from surveyapp.diagnosis.long_records.lines import (
 from surveyapp.diagnosis.long_records.whiteness import Whiteness, whiteness
 from surveyapp.diagnosis.loop import Search
 from surveyapp.diagnosis.result import CandidateResult, CandidateVerdict, Diagnosis
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 from surveyapp_models.arrays import Floats

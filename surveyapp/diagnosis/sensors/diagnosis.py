@@ -31,7 +31,7 @@ from surveyapp.diagnosis.sensors.loop import LoopFit, LoopResult, fit_model, run
 from surveyapp.diagnosis.sensors.records import SensorRecord
 from surveyapp.diagnosis.sensors.windows import block_means
 from surveyapp.domain.instrument import AdoptedEffect
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import joined, said
 from surveyapp.languages.names import named
 

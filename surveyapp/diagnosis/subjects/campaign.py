@@ -16,8 +16,8 @@ from surveyapp.core.orientation.campaign_columns import (
 from surveyapp.core.orientation.circumstances import Circumstances, columns_of, numbered
 from surveyapp.diagnosis.action import POSITION, Action, last_rows
 from surveyapp.diagnosis.case import Case
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.subject import Subject
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 from surveyapp_models.arrays import Floats

@@ -10,8 +10,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from surveyapp.domain.observations import CorrelatedBlock, Observation, ObservationKind
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 
 _KINDS = frozenset({ObservationKind.DISTANCE, ObservationKind.SLOPE_DISTANCE})

@@ -9,7 +9,7 @@ import numpy as np
 
 from surveyapp.diagnosis.candidates import SHAPE_ODDS
 from surveyapp.diagnosis.case import Case, Levels
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 from surveyapp_models.angles import circular_mean, wrap_pi_array

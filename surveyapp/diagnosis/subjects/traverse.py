@@ -27,8 +27,8 @@ from surveyapp.diagnosis.subjects.pointings import one_a_pointing
 from surveyapp.diagnosis.subjects.traverse_actions import Adjusted, planner_of
 from surveyapp.diagnosis.subjects.traverse_columns import gyro_sides, observation_columns
 from surveyapp.domain.observations import ObservationKind
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 from surveyapp_models.arrays import Floats

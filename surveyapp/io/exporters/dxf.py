@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterator
 
 from surveyapp.domain.exported import ExportedPoint, ExportedSurvey, Written
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 
 LAYERS = (("STATIONS", 7), ("NAMES", 7), ("SIDES", 8), ("ELLIPSES", 1), ("GYRO", 5))

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from xml.sax.saxutils import escape
 
 from surveyapp.domain.exported import ExportedPoint, ExportedSurvey, Written
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 

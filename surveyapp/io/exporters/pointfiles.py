@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from surveyapp.domain.exported import ExportedPoint, ExportedSurvey, Written
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 

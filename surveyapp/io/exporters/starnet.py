@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from surveyapp.domain.exported import ExportedSurvey, Written
 from surveyapp.domain.observations import Observation, ObservationKind
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 from surveyapp_models.angles import RHO_ARCSEC, AngleUnit, format_angle, wrap_two_pi
 

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.domain.observations import CorrelatedBlock, Observation, ObservationKind
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import Network
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import SurveyError
 from surveyapp.io.importers.gkf_document import DEFAULTS, KINDS, MM, NEVER_MM, Cluster, GkfDocument
 from surveyapp.io.importers.gkf_points import declared_only, network_point, without_idle

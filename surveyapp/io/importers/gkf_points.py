@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from surveyapp.core.network.touched import touched
 from surveyapp.domain.observations import CorrelatedBlock, Observation
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse import NetworkPoint, Status
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import SurveyError, nearest_names
 from surveyapp.io.importers.gkf_document import GkfDocument, PointEntry
 from surveyapp.languages import joined, said, some

@@ -13,8 +13,9 @@ from pathlib import Path
 from typing import Final
 
 from surveyapp.domain.fieldfile import ImportResult
-from surveyapp.domain.project import Project, ResultWarning
+from surveyapp.domain.project import Project
 from surveyapp.domain.readings import COLUMNS
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import shown
 from surveyapp.io.guarded import is_reserved, name_hint

@@ -10,7 +10,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
 
 from surveyapp.domain.fieldfile import ImportedStation, KnownPoint, State
-from surveyapp.domain.project import Project, ResultWarning, Station
+from surveyapp.domain.project import Project, Station
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.languages import said
 

@@ -18,7 +18,8 @@ from surveyapp.core.fieldfile.precision import (
 from surveyapp.core.fieldfile.reduction import reduce_file
 from surveyapp.core.network.collector import paused_collection
 from surveyapp.domain.fieldfile import FieldFile, ImportResult, KnownPoint, ReducedSet
-from surveyapp.domain.project import Project, ResultWarning
+from surveyapp.domain.project import Project
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import shown
 from surveyapp.io.guarded import UNSAFE_LETTERS, can_name_file, file_name_of, name_hint

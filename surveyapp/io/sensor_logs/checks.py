@@ -15,8 +15,8 @@ import numpy as np
 
 from surveyapp.core.sensors.clipping import ends_of_range
 from surveyapp.domain.columns import PIECE, pieces, sampled
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import NUMBER_COLUMNS, SENSOR_COLUMNS, TRIPLES, Array, Gap
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem
 from surveyapp.languages import counted, either, said
 

@@ -15,7 +15,6 @@ import numpy as np
 
 from surveyapp.domain.advance import PartDone
 from surveyapp.domain.columns import pieces
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import (
     NUMBER_COLUMNS,
     SENSOR_COLUMNS,
@@ -24,6 +23,7 @@ from surveyapp.domain.sensor_log import (
     Gap,
     SensorLog,
 )
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.files import decode, shown, shown_path
 from surveyapp.io.sensor_logs import checks

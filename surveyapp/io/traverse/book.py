@@ -11,8 +11,8 @@ from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.traverse_book import Traverse, TraverseRow
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.files import decode
 from surveyapp.io.project_files import PROJECT_FILE, ProjectFiles, inside

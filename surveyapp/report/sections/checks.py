@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.results import Check
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import joined, said, term
 from surveyapp.report.blocks import Block, ForWidth, Heading, Paragraph, Table
 from surveyapp.report.numbers import four_digits

@@ -13,8 +13,8 @@ from surveyapp.domain.line_spectrum import LineSpectrum
 from surveyapp.domain.motion import Motion
 from surveyapp.domain.noise import FilterResult
 from surveyapp.domain.north import NorthResult
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_entry import SensorLogEntry
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import joined, said, said_each, term
 from surveyapp.languages.names import by_id, named
 from surveyapp.report.blocks import Block, Heading, KeyValues, Paragraph, Table

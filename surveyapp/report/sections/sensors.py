@@ -10,7 +10,7 @@ from itertools import chain
 from surveyapp.core.sensors.charts.results import slopes
 from surveyapp.domain.calibration import Calibration, SensorParameter
 from surveyapp.domain.noise import AllanChannel, AllanResult
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import joined, said, said_each, term
 from surveyapp.languages.names import by_id, ids, named
 from surveyapp.report.blocks import Block, Figure, Heading, KeyValues, Paragraph, Table, Tone

@@ -7,7 +7,7 @@ from datetime import date
 from typing import Final
 
 from surveyapp.domain.calibration import Calibration
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 from surveyapp.workflows.calibrating.request import CalibrationRequest
 

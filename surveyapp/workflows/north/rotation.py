@@ -19,8 +19,8 @@ from surveyapp.core.sensors.rate.rotation import (
     find_heading,
 )
 from surveyapp.domain.north import NorthResult, Reference
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_cards import read_sensor_card
 from surveyapp.io.sensor_logs.reading import Need

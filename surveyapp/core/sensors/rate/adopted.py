@@ -19,8 +19,8 @@ import numpy as np
 from surveyapp.core.statistics.distributions import NORMAL_95, student_quantile
 from surveyapp.domain.calibration import SensorParameter
 from surveyapp.domain.instrument import AdoptedEffect
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import STANDARD_GRAVITY_M_S2, SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC
 from surveyapp_models.arrays import Floats

@@ -9,8 +9,8 @@ from typing import Any
 
 from surveyapp.core.statistics.distributions import chi_square_tail
 from surveyapp.domain.calibration import SensorParameter
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_card import SensorCard
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 
 LEVEL = 0.05

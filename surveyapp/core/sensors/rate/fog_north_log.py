@@ -11,8 +11,8 @@ from surveyapp.core.sensors.rate.fog_north import FogNorth, Position, solve_nort
 from surveyapp.core.sensors.rate.parameters import DEG_H
 from surveyapp.domain.calibration import SensorParameter, with_reasons
 from surveyapp.domain.north import NorthDirection, NorthResult
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, wrap_pi

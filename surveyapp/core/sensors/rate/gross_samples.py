@@ -12,8 +12,8 @@ import numpy as np
 
 from surveyapp.core.sensors.rate.table_log import Turned
 from surveyapp.core.sensors.rate.turning import about_turns
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 

@@ -26,8 +26,8 @@ from surveyapp.core.sensors.rate.strapdown import skew
 from surveyapp.core.statistics.distributions import student_quantile
 from surveyapp.domain.calibration import SensorParameter, with_reasons
 from surveyapp.domain.north import NorthDirection, NorthResult
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC

@@ -11,8 +11,8 @@ import numpy as np
 
 from surveyapp.core.sensors.rate.indexing_checks import saturated, turning_problems
 from surveyapp.core.sensors.rate.indexing_values import Stop
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import counted, said
 from surveyapp_models.arrays import Floats

@@ -6,8 +6,8 @@ import numpy as np
 
 from surveyapp.core.sensors.rate.motion_pieces import ACCELEROMETERS, PIECE_ROWS, stacked
 from surveyapp.core.sensors.rate.still import Mask
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem
 from surveyapp.languages import said
 from surveyapp_models.arrays import Floats

@@ -36,8 +36,8 @@ from surveyapp.core.sensors.rate.zero_velocity import (
 )
 from surveyapp.domain.columns import let_go
 from surveyapp.domain.motion import Motion, MotionSegment, Path, Snapped
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import counted, said
 from surveyapp_models.arrays import Floats

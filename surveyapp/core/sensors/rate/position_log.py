@@ -24,8 +24,8 @@ from surveyapp.core.sensors.rate.table_log import (
     usable,
 )
 from surveyapp.core.sensors.rate.turning import Steady, TableMotion
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem
 from surveyapp.languages import either, said
 from surveyapp_models.arrays import Floats

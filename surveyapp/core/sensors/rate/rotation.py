@@ -21,8 +21,8 @@ from surveyapp.core.sensors.rate.parameters import DEG_H
 from surveyapp.core.statistics.distributions import NORMAL_95, student_tail
 from surveyapp.domain.calibration import SensorParameter
 from surveyapp.domain.north import NorthDirection, NorthResult, Reference
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import either, said
 from surveyapp_models.angles import ARCSEC

@@ -20,8 +20,8 @@ from surveyapp.core.sensors.rate.turning import (
     table_motion,
 )
 from surveyapp.core.statistics.distributions import chi_square_tail
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem
 from surveyapp.languages import said
 from surveyapp_models.arrays import Floats

@@ -55,8 +55,8 @@ from surveyapp.domain.calibration import (
     HeldOut,
     Misfit,
 )
-from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 from surveyapp.languages.names import by_id

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Final
 
 from surveyapp.domain.fieldfile import FieldFile, KnownPoint, Pointing, SkippedLine
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import shown
 from surveyapp.io.importers.fieldfiles.damage import Damage

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Final
 
 from surveyapp.domain.fieldfile import SkippedLine
-from surveyapp.domain.project import ResultWarning
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.importers.fieldfiles.columns import (
     CellError,
