@@ -25,15 +25,37 @@ def sensor_sections(found: Computed) -> tuple[Extra, ...]:
     from surveyapp.report.sections.sensors import title_of
 
     extras = []
+    used = _used(found)
     for entry in found.project.sensor_logs:
         try:
-            body, verdict = _body(found.project.path, entry)
+            body, verdict = used.get(entry.id) or _body(found.project.path, entry)
         except SurveyError as error:
             body = tuple(Paragraph(problem.text, "warning") for problem in error.problems)
             verdict = said("cannot be used: see its section")
         blocks = (Heading(title_of(entry.id)), *_note(entry), *body, *adopted_blocks(entry))
         extras.append(Extra(said("sensor log {identity}", identity=entry.id), blocks, verdict))
     return tuple(extras)
+
+
+def _used(found: Computed) -> dict[str, tuple[tuple[Block, ...], str]]:
+    """Logs that a session applies a card to: what they gave stands with the session.
+
+    Such a log is no record for a calibration: it has no reference and need not vary.
+    """
+    from surveyapp.report.blocks import Paragraph
+
+    told: dict[str, tuple[tuple[Block, ...], str]] = {}
+    for session in found.project.sessions:
+        for used in (session.levelling, session.pre_orientation):
+            if used is not None:
+                text = said(
+                    "used by session {session} with card {card}; its result stands there",
+                    session=session.id,
+                    card=used.card,
+                )
+                before = told.get(used.log, ((), ""))
+                told[used.log] = ((*before[0], Paragraph(text)), said("used by a session"))
+    return told
 
 
 def _note(entry: SensorLogEntry) -> tuple[Block, ...]:

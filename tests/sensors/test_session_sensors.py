@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from surveyapp import api
+from surveyapp.api.sensor_record import sensor_sections
 from surveyapp.core.sensors.declination import model_declination
 from surveyapp.errors import SurveyError
 from tests.sensors.test_levelling import project
@@ -218,3 +219,10 @@ def test_a_compass_tilted_beyond_its_card_gives_no_heading(tmp_path: Path) -> No
         assert found is not None
         assert (found.heading is not None) is sure
         assert bool(found.refusals) is not sure
+
+
+def test_logs_of_a_session_are_not_calibrated_in_the_record(tmp_path: Path) -> None:
+    """A level log has no reference: each was called unfit on the first page."""
+    made = sensor_sections(api.compute(session(tmp_path / "r")))
+    assert [extra.verdict for extra in made] == ["used by a session"] * 2
+    assert "card t.toml" in str(made[0].blocks)
