@@ -11,6 +11,7 @@ from textual.widgets import DataTable, Input, OptionList, Static, TabbedContent
 
 from surveyapp import api
 from surveyapp.domain.advance import PartDone
+from surveyapp.errors import SurveyError
 from surveyapp.observation.sensors import tasks
 from surveyapp.observation.sensors.desk import card_path
 from surveyapp.observation.sensors.options import told_options
@@ -241,3 +242,11 @@ def test_numbers_and_words_of_options_keep_their_kind() -> None:
     assert dict(told.own) == {"latitude": 47.5, "method": "indexing", "track": True}
     assert told.log.scale == {"c": 0.1}
     assert told.log.rate_hz == 100.0
+
+
+def test_a_word_alone_or_with_true_is_a_flag() -> None:
+    for line in ("path snap", "path=true snap=TRUE"):
+        assert dict(told_options("motion", line).own) == {"path": True, "snap": True}
+    assert dict(told_options("motion", "path=false").own) == {"path": False}
+    with pytest.raises(SurveyError, match="neither true nor false"):
+        told_options("motion", "path=perhaps")

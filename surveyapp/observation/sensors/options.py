@@ -132,8 +132,8 @@ def told_options(task: str, text: str) -> ToldOptions:
             parts[prefix][name] = value
         elif name_of_option in ("rate_hz", "header_rows") and sign:
             rows[name_of_option] = _number(key, value, problems)
-        elif known.get(name_of_option) == _FLAG and not sign:
-            own[name_of_option] = True
+        elif known.get(name_of_option) == _FLAG and (value or not sign):
+            own[name_of_option] = _flag(key, value or "true", problems)
         elif name_of_option in known and sign and value:
             number = known[name_of_option] == _NUMBER
             own[name_of_option] = _number(key, value, problems) if number else value
@@ -163,6 +163,20 @@ def _number(name: str, text: str, problems: list[Problem]) -> float:
             Problem("this is no number", said("options, {name}", name=name), text, "a number")
         )
         return math.nan
+
+
+def _flag(name: str, text: str, problems: list[Problem]) -> bool:
+    """A word alone is true, as an option of the command line is that takes no value."""
+    if text.lower() not in ("true", "false"):
+        problems.append(
+            Problem(
+                "this is neither true nor false",
+                said("options, {name}", name=name),
+                text,
+                "true, false",
+            )
+        )
+    return text.lower() == "true"
 
 
 def _unknown(word: str, name: str, task: str) -> Problem:

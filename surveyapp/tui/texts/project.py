@@ -18,7 +18,7 @@ TAB_CHECKS: Final = "4 Checks"
 TAB_WARNINGS: Final = "5 Warnings"
 NO_SESSIONS: Final = (
     "This project has no orientation session yet: n makes one, i reads a field file of a total "
-    "station or of an automatic gyro."
+    "station or of an automatic gyro; l shows the logs and cards of its sensors."
 )
 BEING_OBSERVED: Final = "This session is still being observed: Enter goes on with it."
 NO_LINES: Final = "No line is oriented yet: a line needs sights of a target and gyro north."

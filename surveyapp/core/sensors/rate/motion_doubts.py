@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from surveyapp.core.sensors.rate.motion_pieces import ACCELEROMETERS
+from surveyapp.core.sensors.rate.motion_pieces import ACCELEROMETERS, PIECE_ROWS, stacked
 from surveyapp.core.sensors.rate.still import Mask
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem
 from surveyapp.languages import said
+from surveyapp_models.arrays import Floats
 
 ODOMETER = "odometer_m"
 FALLS_M = 0.5
@@ -40,6 +41,15 @@ def odometer_problems(log: SensorLog) -> list[Problem]:
     ]
 
 
+def _mean_of(log: SensorLog, rows: Mask) -> Floats:
+    """Mean force of the marked rows, (3,), piece by piece."""
+    total = np.zeros(3)
+    for begin in range(0, rows.size, PIECE_ROWS):
+        part = slice(begin, begin + PIECE_ROWS)
+        total = total + stacked(log, ACCELEROMETERS, part)[rows[part]].sum(axis=0)
+    return np.asarray(total / np.count_nonzero(rows))
+
+
 def record_doubts(log: SensorLog, still: Mask, *, snapping: bool) -> list[ResultWarning]:
     """What may be wrong although a result comes out.
 
@@ -52,7 +62,7 @@ def record_doubts(log: SensorLog, still: Mask, *, snapping: bool) -> list[Result
     """
     found = []
     rows = still if still.any() else np.ones(still.size, dtype=bool)
-    felt = np.array([float(np.mean(log.columns[c][rows])) for c in ACCELEROMETERS])
+    felt = _mean_of(log, rows)
     size = float(np.linalg.norm(felt))
     if abs(felt[2]) < UPRIGHT * size:
         along = "xyz"[int(np.argmax(np.abs(felt)))]

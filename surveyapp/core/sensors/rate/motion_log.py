@@ -14,7 +14,9 @@ from surveyapp.core.sensors.rate.motion_doubts import odometer_problems, record_
 from surveyapp.core.sensors.rate.motion_pieces import (
     ACCELEROMETERS,
     GYROS,
+    PIECE_ROWS,
     States,
+    stacked,
     states_of,
 )
 from surveyapp.core.sensors.rate.motion_states import Thresholds
@@ -32,6 +34,7 @@ from surveyapp.core.sensors.rate.zero_velocity import (
     Samples,
     inertial_path,
 )
+from surveyapp.domain.columns import let_go
 from surveyapp.domain.motion import Motion, MotionSegment, Path, Snapped
 from surveyapp.domain.project import ResultWarning
 from surveyapp.domain.sensor_log import SensorLog
@@ -124,8 +127,14 @@ def judge_motion(log: SensorLog, options: MotionOptions) -> Motion:
 
 def _unseen(time: Floats, still: Mask, interval: float) -> ResultWarning | None:
     """That a path runs over a gap in which the unit may have moved: it is not known there."""
-    gaps = np.diff(time)
-    rows = np.flatnonzero((gaps > max(LONGEST_GAP_S, 1.5 * interval)) & ~(still[:-1] & still[1:]))
+    longest = max(LONGEST_GAP_S, 1.5 * interval)
+    found = []
+    for begin in range(0, time.size - 1, PIECE_ROWS):
+        part = slice(begin, begin + PIECE_ROWS + 1)
+        wide, rests = np.diff(time[part]) > longest, still[part]
+        found.append(begin + np.flatnonzero(wide & ~(rests[:-1] & rests[1:])))
+        let_go(time)
+    rows = np.concatenate(found)
     if rows.size == 0:
         return None
     first = int(rows[0])
@@ -168,11 +177,7 @@ class _Record:
 
         def rows(first: int, last: int, /) -> tuple[Floats, Floats]:
             part = slice(begun + first, begun + last)
-            force, rate = (
-                np.column_stack([self.log.columns[c][part] for c in names])
-                for names in (ACCELEROMETERS, GYROS)
-            )
-            return force, rate
+            return stacked(self.log, ACCELEROMETERS, part), stacked(self.log, GYROS, part)
 
         return rows
 

@@ -31,6 +31,7 @@ from surveyapp.core.sensors.rate.still import (
     rest_noise,
     statistic,
 )
+from surveyapp.domain.columns import let_go
 from surveyapp.domain.motion import MotionSegment
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp_models.arrays import Floats
@@ -90,12 +91,20 @@ class _Piece:
 
     def vectors(self, log: SensorLog, names: Sequence[str]) -> Floats:
         """Columns side by side, shape (k, 3)."""
-        return np.column_stack([log.columns[c][self.first : self.last] for c in names])
+        return stacked(log, names, slice(self.first, self.last))
 
     @property
     def inner(self) -> slice:
         """Its own rows among those that are judged."""
         return slice(self.begin - self.first, self.end - self.first)
+
+
+def stacked(log: SensorLog, names: Sequence[str], rows: slice) -> Floats:
+    """Rows of columns side by side, (k, 3); a column that lies in a file is let go of."""
+    found = np.column_stack([log.columns[c][rows] for c in names])
+    for name in names:
+        let_go(log.columns[name])
+    return found
 
 
 def _pieces(size: int, overlap: int, rows: int) -> list[_Piece]:
@@ -154,6 +163,7 @@ def states_of(
         time = log.columns["time_s"][piece.first : piece.last]
         found = segments_of(time, rest, forward, turn, limits=own)
         segments = _joined(segments, found, *_times(log, piece))
+        let_go(log.columns["time_s"])
         still[piece.begin : piece.end] = rest[piece.inner]
         both += int(np.count_nonzero(rest[piece.inner] & other[piece.inner]))
         other_count += int(np.count_nonzero(other[piece.inner]))
