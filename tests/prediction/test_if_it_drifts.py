@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -118,3 +119,48 @@ def test_it_is_told_of_lines_far_from_the_determinations(
             constant, facts, wanted, DEFAULT_PRIORS.without(frozenset({"drift", "bend"}))
         )
         assert without.drifting == (None,)
+
+
+def test_a_line_without_a_date_leaves_the_days_to_the_others() -> None:
+    """The far line is as if it stood alone, but for the steps that may lie between the two."""
+    constant, dated = determined([0.0, 20.0, 40.0, 60.0, 80.0, 100.0])
+    facts = {key: replace(item, order=float(k)) for k, (key, item) in enumerate(dated.items())}
+    told = {"elapsed_days": 7000.0, "temperature_c": 10.0}
+    far = Wanted(StationLine("A", "B"), ((1.0, Circumstances.of(told, order=7.0)),))
+    near = Circumstances.of({"temperature_c": 10.0}, order=8.0)
+    undated = Wanted(StationLine("C", "D"), ((1.0, near),))
+    [alone] = predict_constants(constant, facts, [far]).lines
+    found = predict_constants(constant, facts, [far, undated])
+    assert found.lines[0].sigma == pytest.approx(alone.sigma, rel=0.1)
+    [note] = [w for w in found.warnings if w.code == "covariate_missing"]
+    assert "line C-D: elapsed_days not told" in note.text
+
+
+@pytest.mark.parametrize(("dated", "codes"), [(6, []), (5, ["no_dates"]), (0, ["no_dates"])])
+def test_the_order_in_place_of_dates_is_told(dated: int, codes: list[str]) -> None:
+    constant, facts = determined([0.0, 20.0, 40.0, 60.0, 80.0, 100.0])
+    known = {
+        key: replace(item, order=float(k)) if k < dated else item.undated(float(k))
+        for k, (key, item) in enumerate(facts.items())
+    }
+    visit = Circumstances.of({"elapsed_days": 110.0, "temperature_c": 10.0}, order=7.0)
+    wanted = [Wanted(StationLine("A", "B"), ((1.0, visit),))]
+    found = predict_constants(constant, known, wanted)
+    notes = [w for w in found.warnings if w.code == "no_dates"]
+    assert [w.code for w in notes] == codes
+    assert all(f"{6 - dated} of 6" in w.text for w in notes)
+
+
+@pytest.mark.parametrize(("without", "said"), [(0, ""), (2, "the mean"), (3, "too many")])
+def test_temperatures_missing_at_determinations_are_told(without: int, said: str) -> None:
+    constant, facts = determined([0.0, 20.0, 40.0, 60.0, 80.0, 100.0])
+    known = {}
+    for k, (key, item) in enumerate(facts.items()):
+        told = {"elapsed_days": item.number("elapsed_days")}
+        warm = told | ({} if k < without else {"temperature_c": 10.0 + k})
+        known[key] = Circumstances.of(warm)
+    visit = Circumstances.of({"elapsed_days": 110.0, "temperature_c": 12.0})
+    found = predict_constants(constant, known, [Wanted(StationLine("A", "B"), ((1.0, visit),))])
+    notes = [w.text for w in found.warnings if w.code == "covariate_missing"]
+    assert len(notes) == (without > 0)
+    assert all(said in text and f"{without} of 6" in text for text in notes)

@@ -21,7 +21,7 @@ from surveyapp.core.orientation.instrument_constant import (
     Calibration,
     InstrumentConstant,
 )
-from surveyapp.core.orientation.prediction_notes import Wanted, one_block, told_of
+from surveyapp.core.orientation.prediction_notes import Wanted, counted_in, one_block, told_of
 from surveyapp.core.orientation.set_ups import one_a_set_up
 from surveyapp.core.prediction.average import Determinations, Predicted, predict
 from surveyapp.core.prediction.kernels import COLUMNS_READ, telling
@@ -118,7 +118,7 @@ def predict_constants(
     )
     priors = priors.without(named)
     every = [visit for line in wanted for _, visit in line.visits]
-    alike = frozenset(telling(columns_of([*known, *every])))
+    alike = frozenset(telling(columns_of([*known, *every], time=counted_in(known))))
     average: Uncertain | None = None
     lines: list[Uncertain] = []
     warnings: list[ResultWarning] = []
@@ -233,7 +233,8 @@ def _columns(
 
     A number that some determinations lack is their mean there; what most of them lack is left out.
     """
-    every = columns_of([*known, *visits])
+    time = counted_in(known)
+    every = columns_of([*known, *visits], time=time)
     columns = {name: values for name, values in every.items() if name in COLUMNS_READ}
     n = len(known)
     kept: dict[str, Floats] = {}
@@ -254,6 +255,25 @@ def _columns(
                 n=n,
             )
             warnings.append(ResultWarning("covariate_missing", text))
+        elif BY_NAME[name].mean_fills and not missing.all():
+            text = said(
+                "instrument {instrument}: {name} is missing at {int} of {n} determinations, too "
+                "many for the mean of the others to stand for it: the prediction does without it",
+                instrument=instrument,
+                name=name,
+                int=int(missing.sum()),
+                n=n,
+            )
+            warnings.append(ResultWarning("covariate_missing", text))
+    if time == "order" and "elapsed_days" in kept and visits:
+        text = said(
+            "instrument {instrument}: {int} of {n} determinations have no date: the stated order "
+            "stands for time, and how many days a line is from them is not known",
+            instrument=instrument,
+            int=sum(item.number("elapsed_days") is None for item in known),
+            n=n,
+        )
+        warnings.append(ResultWarning("no_dates", text))
     if "elapsed_days" not in kept:
         kept["elapsed_days"] = np.concatenate([np.arange(n), np.full(len(visits), float(n))])
         text = said(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 from surveyapp.core.orientation.circumstances import Circumstances
 from surveyapp.core.orientation.instrument_constant import InstrumentConstant
@@ -41,10 +42,11 @@ def told_of(
 ) -> list[ResultWarning]:
     """What the reader of a predicted constant must know."""
     warnings = []
+    time = counted_in(known)
     for line in wanted:
         subject = Subject.line(line.line.station, line.line.target, instrument)
         missing = sorted(
-            name for name in gaps if any(_lacks(visit, name) for _, visit in line.visits)
+            name for name in gaps if any(_lacks(visit, name, time) for _, visit in line.visits)
         )
         if missing:
             text = said(
@@ -105,8 +107,19 @@ def too_few(constant: InstrumentConstant) -> list[ResultWarning]:
     return [ResultWarning("few_determinations", text, Subject.of("instrument", instrument.id))]
 
 
-def _lacks(visit: Circumstances, name: str) -> bool:
-    return visit.time is None if name == "elapsed_days" else name not in visit.told
+def counted_in(known: Sequence[Circumstances]) -> Literal["days", "order"]:
+    """What the time of a prediction counts: days where every determination has one.
+
+    The lines have no say in it: one of them without a date must not take the days from the others.
+    """
+    dated = all(item.number("elapsed_days") is not None for item in known)
+    return "days" if dated else "order"
+
+
+def _lacks(visit: Circumstances, name: str, time: str) -> bool:
+    if name == "elapsed_days" and time == "order":
+        return visit.order is None
+    return name not in visit.told
 
 
 def _beyond(line: Wanted, known: Sequence[Circumstances]) -> list[str]:

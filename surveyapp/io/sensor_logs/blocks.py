@@ -304,6 +304,8 @@ def _number(cell: str, place: tuple[int, str], wrong: Wrong) -> float:
         hint = "numbers take a decimal point" if "," in text else ""
         if _CLOCK.search(text):
             hint = "times are seconds, as a number; `rate_hz` replaces them"
+            if place[1].endswith("_deg"):
+                hint = "angles are decimal degrees"
         wrong.add(
             place[0],
             said("{place} is no number", place=place[1]),
