@@ -7,7 +7,7 @@ never calibrated, of its repeated azimuths of one line.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -35,6 +35,7 @@ from surveyapp.domain.instrument import AdoptedEffect, InstrumentCard
 from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.readings import ReadingKind
 from surveyapp.domain.subject import Subject
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.languages import said
 from surveyapp_models.angles import wrap_pi
@@ -300,15 +301,34 @@ def campaign_problem(
             )
         cut = sessions.index(confirm_from)
         _check_parts(cut, len(items), confirm_from)
-    first = campaign(
-        items[:cut], instrument=instrument, reference_temperature_c=reference, extra=extra
+    named = _value_told(orientation, instrument)
+    first, *later = (
+        named(campaign(part, instrument=instrument, reference_temperature_c=reference, extra=extra))
+        for part in (items[:cut], items[cut:])
+        if part
     )
-    if cut == len(items):
-        return first, None
-    second = campaign(
-        items[cut:], instrument=instrument, reference_temperature_c=reference, extra=extra
-    )
-    return first, second
+    return first, next(iter(later), None)
+
+
+def _value_told(orientation: Orientation, instrument: str) -> Callable[[Case], Case]:
+    """What names the value of a campaign that has repeated azimuths in place of constants."""
+    constant = next(c for c in orientation.constants if c.instrument.id == instrument)
+
+    def named(case: Case) -> Case:
+        if constant.calibrations:
+            return case
+        text = said(
+            "{instrument} has no determination of its constant: repeated gyro azimuths of one line "
+            "are compared, and the value is their mean with its sign turned",
+            instrument=instrument,
+        )
+        return replace(
+            case,
+            value_name=said("minus the gyro azimuth of the line"),
+            warnings=(*case.warnings, ResultWarning("azimuths_for_constants", text)),
+        )
+
+    return named
 
 
 def _check_parts(cut: int, count: int, confirm_from: str) -> None:
