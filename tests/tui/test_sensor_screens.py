@@ -250,3 +250,22 @@ def test_a_word_alone_or_with_true_is_a_flag() -> None:
     assert dict(told_options("motion", "path=false").own) == {"path": False}
     with pytest.raises(SurveyError, match="neither true nor false"):
         told_options("motion", "path=perhaps")
+
+
+@pytest.mark.parametrize(
+    ("kind", "programme", "task"),
+    [("vehicle", None, "motion"), ("indexing", "one-stop", "north")],
+)
+async def test_enter_asks_of_a_log_what_its_entry_is_for(
+    tmp_path: Path, kind: str, programme: str | None, task: str
+) -> None:
+    folder = tmp_path / kind
+    api.simulate(kind, folder, programme=programme, seed=2)
+    app = app_on(folder)
+    async with app.run_test(size=SMALL) as pilot:
+        screen = await open_log(pilot)
+        screen.query_one("#options", Input).focus()
+        await pilot.press("enter")
+        await settle(pilot)
+        assert screen.found is not None, shown(screen)
+        assert screen.found.task == task

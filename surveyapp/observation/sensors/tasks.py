@@ -79,6 +79,15 @@ def examine(
     return replace(TASKS[task](folder, entry, told, progress), options=options)
 
 
+def first_task(entry: SensorLogEntry) -> str:
+    """What the record makes of a log, too: north or motion where the entry says so."""
+    from surveyapp.workflows.motion import PROGRAMME
+
+    if entry.options.get("method"):
+        return "north"
+    return "motion" if entry.programme == PROGRAMME else "calibrate"
+
+
 def _calibrate(
     folder: str, entry: SensorLogEntry, told: ToldOptions, progress: PartDone | None
 ) -> Examined:

@@ -30,6 +30,7 @@ from surveyapp.observation.sensors.tasks import (
     Examined,
     adopt_effects,
     examine,
+    first_task,
 )
 from surveyapp.report.text import blocks_text
 from surveyapp.tui import texts
@@ -103,7 +104,7 @@ class SensorLogScreen(Screen[None]):
         super().__init__()
         self.folder = folder
         self.entry = entry
-        self.chosen_task = "calibrate"
+        self.chosen_task = first_task(entry)
         self.found = found
         self.place = 0
         self.job: Worker[None] | None = None
