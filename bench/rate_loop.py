@@ -1,7 +1,8 @@
 """The loop on hand-held stops: detected, rightly named, wrongly named at 12, 18 and 30 stops.
 
 The table of docs/explanation/sensors.md; ``SURVEYAPP_BENCH_RUNS`` records a cell (200), and
-``SURVEYAPP_BENCH_STORE`` a folder in which finished parts are kept.
+``SURVEYAPP_BENCH_STORE`` a folder in which finished parts are kept; ``SURVEYAPP_BENCH_ODDS`` other
+odds than the rule's, to see what keeping walks from names costs.
 
 Noise .05 deg/s a sample at 50 Hz and .006 deg/s from stop to stop; a walk of a given size a
 stop on every gyro, and a step of all gyros at once, which are in no catalogue.
@@ -20,12 +21,14 @@ from bench._stored import stored
 from bench.rate import as_read
 from surveyapp.core.simulate.rate.recipes import hand_run
 from surveyapp.core.simulate.rate.vehicle import hand_held_log
+from surveyapp.diagnosis import wandering
 from surveyapp.diagnosis.engine import diagnose
 from surveyapp.diagnosis.rate_stops import stops_of
 from surveyapp.diagnosis.result import Diagnosis
 from surveyapp.diagnosis.subjects.rate import rate_case
 
 RUNS = int(os.environ.get("SURVEYAPP_BENCH_RUNS", "200"))
+ODDS = float(os.environ.get("SURVEYAPP_BENCH_ODDS", str(wandering.ODDS)))
 STOPS = (12, 18, 30)
 PART = 50
 """Records of a stored part."""
@@ -84,7 +87,7 @@ def cell(name: str, stops: int, runs: int) -> tuple[float, float, float]:
         last = min(first + PART, runs)
         part = stored(
             f"rate_loop {name} {stops} {first}",
-            last,
+            (last, ODDS),
             lambda first=first, last=last: counts(name, stops, first, last),  # type: ignore[misc]
         )
         total += part
@@ -94,6 +97,7 @@ def cell(name: str, stops: int, runs: int) -> tuple[float, float, float]:
 
 def run() -> Iterator[str]:
     """Every cell."""
+    wandering.ODDS = ODDS
     yield f"{RUNS} records a cell: detected / rightly / wrongly named at {STOPS} stops"
     for name in CELLS:
         told = ["/".join(f"{share:.2f}" for share in cell(name, stops, RUNS)) for stops in STOPS]
