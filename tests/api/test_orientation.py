@@ -240,6 +240,7 @@ def test_known_constant_alone_and_as_a_check(tmp_path: Path) -> None:
         "arcsec": pytest.approx(-9.7),
         "sigma_arcsec": pytest.approx(3.0),
         "choice": "known",
+        "if_drifting_interval95_arcsec": None,
     }
     toml += session("cal", "A", "B", more=[CAL])
     books = {"run": azimuths("90-00-00"), "cal": azimuths("0-01-00")}

@@ -79,8 +79,12 @@ def test_stretches_are_the_plain_recursion() -> None:
         [leg.state == "stationary" for leg in run.legs for _ in range(int(leg.seconds * 100))]
     )
     still = still[500:]
-    moving = np.sqrt(np.var(np.diff(force[~still], axis=0), axis=0).max() / 2.0 * DT)
-    noises = noise(1e-3, math.radians(0.01)), noise(max(1e-3, moving), math.radians(0.01))
+    shaken = [
+        float(np.sqrt(np.var(np.diff(each[~still], axis=0), axis=0).max() / 2.0 * DT))
+        for each in (force, rate)
+    ]
+    least = 1e-3, math.radians(0.01)
+    noises = noise(*least), noise(max(least[0], shaken[0]), max(least[1], shaken[1]))
     places, covariance, beyond = one_by_one(force, rate, still, noises)
     found = inertial_path(in_memory(force, rate), still, interval_s=DT)
     sigma = math.sqrt(float(covariance[0, 0]))
