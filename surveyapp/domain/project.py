@@ -26,6 +26,7 @@ from surveyapp_models.angles import ARCSEC, AngleUnit
 
 Method = Literal["tracking", "amplitude", "transit", "automatic"]
 Purpose = Literal["calibration", "survey"]
+Day = date
 
 DEFAULT_DEFLECTION_SIGMA = 5.0 * ARCSEC
 """Sigma of an unknown deflection of the vertical, each component (design.md section 2)."""
@@ -196,6 +197,16 @@ class OrientationSession:
     humidity_percent: float | None = None
     hours_since_transport: float | None = None
     override: tuple[tuple[str, object], ...] = ()
+
+    @property
+    def book_day(self) -> Day | None:
+        """Day of the first time in its book."""
+        return next((row.time.date() for row in self.book.live if row.time is not None), None)
+
+    @property
+    def day(self) -> Day | None:
+        """Day of the session: its date, else the first in its book."""
+        return self.book_day if self.date is None else self.date
 
 
 @dataclass(frozen=True, slots=True)

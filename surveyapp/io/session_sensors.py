@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import datetime as dt
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -151,9 +150,7 @@ def _refusals(
     span = None
     if values is not None and np.any(np.isfinite(values[keep])):
         span = (float(np.nanmin(values[keep])), float(np.nanmax(values[keep])))
-    times = [row.time for row in session.book.live if row.time is not None]
-    day: dt.date | None = session.date or (times[0].date() if times else None)
-    day = day or source.entry.calibrated_on
+    day = session.day or source.entry.calibrated_on
     problems = source.card.refusals(on=day, temperature_c=span, where=source.name)
     for key, own in (("instrument", source.entry.instrument), ("serial", source.entry.serial)):
         stated = source.card.extra.get(key)
@@ -343,7 +340,7 @@ def _with_model(
     around: tuple[Project, Findings],
 ) -> PreOrientation:
     project, findings = around
-    day = session.date or next((r.time.date() for r in session.book.live if r.time), None)
+    day = session.day
     if place is None or day is None:
         return aimed
     try:

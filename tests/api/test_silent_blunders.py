@@ -205,3 +205,18 @@ def test_repeated_calibrations_without_a_sigma_have_that_of_their_scatter(tmp_pa
 
 
 NO_DEFLECTION = "deflection = { xi_arcsec = 0.0, eta_arcsec = 0.0, sigma_arcsec = 0.0 }"
+
+
+@pytest.mark.parametrize(
+    ("day", "told"), [("2026-05-22", False), ("2026-05-21", False), ("2031-05-22", True)]
+)
+def test_a_date_beside_other_times_in_the_book(tmp_path: Path, day: str, told: bool) -> None:
+    book = "seq,time,kind,value\n" + "".join(
+        f"{k},2026-05-22T07:0{k}:00+00:00,azimuth,45-00-0{k}\n" for k in (1, 2, 3)
+    )
+    toml = AUTOMATIC + PLACE + line(f"date = {day}")
+    found = api.orient(write(tmp_path, toml, {"s": book})).to_dict()["warnings"]
+    dates = [item for item in found if item["code"] == "session_date_differs"]
+    assert len(dates) == told
+    if told:
+        assert (dates[0]["subject"]["kind"], dates[0]["subject"]["id"]) == ("session", "s")

@@ -41,14 +41,6 @@ def session_temperatures_c(session: OrientationSession) -> tuple[float, ...]:
     )
 
 
-def session_day(session: OrientationSession) -> dt.date | None:
-    """Day of a session: its date, else the first time in its book."""
-    if session.date is not None:
-        return session.date
-    times = [row.time for row in session.book.live if row.time is not None]
-    return times[0].date() if times else None
-
-
 def _check(
     rule: str,
     card: InstrumentCard,
@@ -123,7 +115,7 @@ def _due(session: OrientationSession, card: InstrumentCard) -> list[Check]:
     if card.calibration_due is None:
         return []
     due = dt.date.fromisoformat(card.calibration_due)
-    day = session_day(session)
+    day = session.day
     value = None if day is None else float((day - due).days)
     text = said("calibration due {isoformat}", isoformat=due.isoformat())
     text += (

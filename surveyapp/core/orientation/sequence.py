@@ -9,6 +9,9 @@ from dataclasses import dataclass
 from surveyapp.core.orientation.instrument_constant import Phase
 from surveyapp.domain.project import OrientationSession, Project
 from surveyapp.domain.readings import SWING_KINDS
+from surveyapp.domain.subject import Subject
+from surveyapp.domain.warning import ResultWarning
+from surveyapp.languages import said
 
 
 def session_moments(project: Project, instrument: str) -> dict[str, tuple[float, int]]:
@@ -37,6 +40,24 @@ def session_timestamp(session: OrientationSession) -> float | None:
     rows = session.book.live
     stamps = [row.time.timestamp() for row in rows if row.kind in SWING_KINDS and row.time]
     return sum(stamps) / len(stamps) if stamps else None
+
+
+def date_warnings(session: OrientationSession) -> list[ResultWarning]:
+    """A date of the session beside other times in its book: one of them is a slip.
+
+    A night shift and a clock of another zone make a day.
+    """
+    booked = session.book_day
+    if session.date is None or booked is None or abs((session.date - booked).days) <= 1:
+        return []
+    text = said(
+        "session {id}: its date is {date}, but its book begins on {booked}: the order of sessions "
+        "and drifts take the book, due dates take the date; correct the one that is wrong",
+        id=session.id,
+        date=session.date.isoformat(),
+        booked=booked.isoformat(),
+    )
+    return [ResultWarning("session_date_differs", text, Subject.session(session.id))]
 
 
 @dataclass(frozen=True, slots=True)

@@ -52,6 +52,7 @@ from surveyapp.core.orientation.pooled_zeros import with_pooled_tape_zeros
 from surveyapp.core.orientation.predicted_lines import predicted_lines
 from surveyapp.core.orientation.repeated_runs import run_groups, scatter_of
 from surveyapp.core.orientation.scatter_sigma import with_scatter_sigma, without_answered
+from surveyapp.core.orientation.sequence import date_warnings
 from surveyapp.core.orientation.survey_lines import SurveyedLines
 from surveyapp.core.statistics.repeated import RunScatter
 from surveyapp.core.swing.goodness import Judge
@@ -287,6 +288,7 @@ def _reduce_one(
     card = setting.project.instrument(session.instrument).card
     latitude = setting.positions[session.station].latitude
     warnings = _latitude_warnings(session, latitude, card.valid.latitude_max)
+    warnings += date_warnings(session)
     reduction = reduce_swing(
         session,
         card,

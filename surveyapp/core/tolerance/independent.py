@@ -19,7 +19,6 @@ from surveyapp.core.statistics.repeated import weighted_mean
 from surveyapp.core.tolerance.evaluate import Measured
 from surveyapp.core.tolerance.quantities import quantity
 from surveyapp.core.uncertain import Uncertain, aligned, combine
-from surveyapp.domain.project import OrientationSession
 from surveyapp.domain.subject import Subject
 from surveyapp.languages import said
 from surveyapp_models.angles import RHO_ARCSEC, wrap_pi
@@ -60,7 +59,7 @@ def side_orientations(orientation: Orientation) -> dict[frozenset[str], list[Sid
             continue
         for target in item.targets:
             if target.gyro_azimuth is not None:
-                key = (session.station, target.target, session.instrument, _day(session))
+                key = (session.station, target.target, session.instrument, session.day)
                 groups.setdefault(key, []).append(target.gyro_azimuth)
     sides: dict[frozenset[str], list[SideOrientation]] = {}
     for (station, target_name, instrument, day), values in groups.items():
@@ -72,13 +71,6 @@ def side_orientations(orientation: Orientation) -> dict[frozenset[str], list[Sid
             SideOrientation(station, target_name, instrument, day, azimuth, kind)
         )
     return sides
-
-
-def _day(session: OrientationSession) -> date | None:
-    if session.date is not None:
-        return session.date
-    times = [row.time for row in session.book.live if row.time is not None]
-    return times[0].date() if times else None
 
 
 def _carried(gyro: Uncertain, line: OrientedLine) -> tuple[Uncertain, str]:
