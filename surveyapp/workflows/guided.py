@@ -93,6 +93,9 @@ def record_entry(
         raise SurveyError(Problem("nothing is typed in this step", "step", step, known, hint))
     if found.kind == "read":
         read_value(found, value)
+    elif value.strip() not in ("", DONE):
+        hint = "leave the reading empty once it is done; a remark is a note"
+        raise SurveyError(Problem("this step has no reading", found.title, value, "", hint))
     text = value.strip() or DONE
     return _append(folder, identity, step=step, value=text, note=note, moment=moment)
 

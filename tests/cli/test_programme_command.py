@@ -62,6 +62,7 @@ def test_what_is_typed_wrongly_writes_nothing(
     for words in (
         ["enter", folder, "t", "static-1-01", "a", "b"],
         ["enter", folder, "t", "nowhere"],
+        ["enter", folder, "t", "mount", "abc"],
         ["finish", folder, "t"],
         ["start", folder, "tilt-static", "--id", "t"],
         ["start", folder, "tilt"],
