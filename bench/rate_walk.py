@@ -6,6 +6,7 @@ share of records named a drift.
 
 * The rule of ``surveyapp.diagnosis.wandering``: drift and walk of unknown size, odds of two to one,
   and seen at all (5 % of white records are).
+* The same at other odds, beside the walk of all sizes that is mistaken most.
 * What a drift or a walk that is *common* to the gyros would change: a prior share of the variance
   that all have in common, unknown as well. Allowed for the drift alone it names more drifts and
   every common walk; allowed for both it gains nothing.
@@ -23,12 +24,14 @@ import numpy as np
 from surveyapp_models.arrays import Floats
 
 RUNS = 3000
-NOISE = float(np.hypot(0.006, 0.05 / np.sqrt(200.0)))
-"""Of a stop [deg/s]."""
+NOISE = float(np.sqrt(0.006**2 + 0.05**2 / 187.0 + (0.00418 * np.cos(np.radians(35.0))) ** 2 / 3.0))
+"""Of a stop [deg/s]: its own, the mean of its samples, and the earth's level rate, whose direction
+in the body nobody knows."""
 MINUTES = 0.1
 """From stop to stop."""
 WALKS = (0.003, 0.006, 0.01)
 """A stop [deg/s]."""
+EVERY_WALK = (0.0005, 0.001, 0.0015, 0.002, 0.003, 0.004, 0.006, 0.01)
 RAMPS = (0.008, 0.02)
 """[deg/s per minute]"""
 FREE, COMMON = (0.0,), (0.0, 0.5, 0.9, 0.99)
@@ -124,6 +127,28 @@ def named(gyros: Gyros, rule: tuple[Sequence[float], Sequence[float]]) -> dict[s
     return found
 
 
+def worst(gyros: Gyros, odds: float) -> tuple[float, float, float]:
+    """Share of the slow drift that is named at some odds, the walk named most, and its share."""
+    rng = np.random.default_rng([gyros.time.size, 1])
+
+    def judged(signal: Floats) -> tuple[Floats, Floats]:
+        seen = gyros.records(signal, rng)
+        drift = gyros.drifts.evidence(seen, FREE)
+        return drift - gyros.walks.evidence(seen, FREE), drift - gyros.drifts.likelihood(
+            seen, 0.0, 0.0
+        )
+
+    least = float(np.quantile(judged(np.zeros((1, 1, 1)))[1], 0.95))
+
+    def share(signal: Floats) -> float:
+        found, gain = judged(signal)
+        return float(np.mean((found >= np.log(odds)) & (gain > least)))
+
+    mistaken = {size: share(gyros.wander(size, "each", rng)) for size in EVERY_WALK}
+    size = max(mistaken, key=lambda walk: mistaken[walk])
+    return share(gyros.ramp(RAMPS[0], "alike", rng)), size, mistaken[size]
+
+
 def oracle(gyros: Gyros, ramp: float, walk: float, share: float) -> float:
     """Share of drifts named by who knows the sizes and names .15 of the walks.
 
@@ -156,6 +181,10 @@ def run() -> Iterator[str]:
         for name, rule in RULES.items():
             told = ", ".join(f"{what} {share:.2f}" for what, share in named(gyros, rule).items())
             yield f"{stops} stops, {name}: {told}"
+        for odds in (1.0, ODDS):
+            right, size, wrong = worst(gyros, odds)
+            told = f"ramp {RAMPS[0]:g} {right:.2f}, mistaken most: walk {size:g} {wrong:.2f}"
+            yield f"{stops} stops, odds of {odds:g}: {told}"
         for share, who in ((0.0, "a drift for each"), (0.999, "one drift for all")):
             told = ", ".join(
                 f"ramp {r:g} against walk {w:g}: {oracle(gyros, r, w, share):.2f}"
