@@ -263,3 +263,12 @@ class Case:
         parts += [effect.id.encode() for effect in self.effects]
         parts += [np.ascontiguousarray(a, dtype=np.float64).tobytes() for a in arrays]
         return hashlib.sha256(b"\x00".join(parts)).hexdigest()
+
+
+def unit_variance(problem: Case) -> float | None:
+    """Variance of an observation of mean weight where stated sigmas serve, else None [SI^2]."""
+    if not problem.sigma_known or problem.sigma is None:
+        return None
+    if problem.weighted:
+        return float(1.0 / np.mean(1.0 / problem.sigma**2))
+    return float(np.mean(problem.sigma**2))

@@ -15,6 +15,7 @@ import numpy as np
 
 from surveyapp.diagnosis.candidates import Candidate
 from surveyapp.diagnosis.case import Case
+from surveyapp.diagnosis.drawn import drawn_gain, is_drawn
 from surveyapp.diagnosis.fits import (
     Fit,
     Member,
@@ -239,6 +240,10 @@ def _best_addition(
     bics = bic_of(problem, rss, total)
     g = int(np.argmin(bics))
     members = (*anchor.members, Member(candidate, int(item.index[g])))
+    if is_drawn(problem, candidate):
+        gain = drawn_gain(problem, anchor.design, members[-1].columns, anchor.residual)
+        searched = (members[-1].charge - candidate.size) * math.log(problem.size)
+        return anchor.bic - gain + searched + candidate.odds, members
     return float(bics[g]) + odds_against(members), members
 
 

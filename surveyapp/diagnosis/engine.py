@@ -9,12 +9,12 @@ import numpy as np
 from surveyapp.diagnosis.adoption import adoptions, p_values
 from surveyapp.diagnosis.ambiguity import ambiguities
 from surveyapp.diagnosis.battery import run_battery
-from surveyapp.diagnosis.case import Case
+from surveyapp.diagnosis.case import Case, unit_variance
 from surveyapp.diagnosis.checks import check_input
 from surveyapp.diagnosis.compare import MARGIN, Level, base_level, best_with, charged, spans
 from surveyapp.diagnosis.datum import datum_with_rivals
 from surveyapp.diagnosis.events import event_notes
-from surveyapp.diagnosis.fits import Fit, unit_variance
+from surveyapp.diagnosis.fits import Fit
 from surveyapp.diagnosis.held_out import confirm_rms, forecast, leave_one_out
 from surveyapp.diagnosis.later_visits import held_out_prediction, is_campaign
 from surveyapp.diagnosis.ledger import ledger_entry

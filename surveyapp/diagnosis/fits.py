@@ -7,14 +7,16 @@ for and the likelihood. It does not choose anything.
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from surveyapp.diagnosis.candidates import Candidate
-from surveyapp.diagnosis.case import Case
+from surveyapp.diagnosis.case import Case, unit_variance
 from surveyapp.diagnosis.course_error import beside, information_beside, larger_than_noise
+from surveyapp.diagnosis.drawn import drawn_gain, is_drawn
 from surveyapp.diagnosis.stochastic import EXTRA_PARAMETERS, NoiseFit, best_noises
 from surveyapp.diagnosis.swing import fit_swing, starting_values, tangent, triangular
 from surveyapp_models.arrays import Floats
@@ -129,15 +131,6 @@ def information(problem: Case, residual: Floats, parameters: float) -> float:
     return float(bic_of(problem, np.array(residual @ residual), parameters))
 
 
-def unit_variance(problem: Case) -> float | None:
-    """Variance of an observation of mean weight where stated sigmas serve, else None [SI^2]."""
-    if not problem.sigma_known or problem.sigma is None:
-        return None
-    if problem.weighted:
-        return float(1.0 / np.mean(1.0 / problem.sigma**2))
-    return float(np.mean(problem.sigma**2))
-
-
 def bic_of(problem: Case, rss: Floats, parameters: float | Floats) -> Floats:
     """BIC of sums of squares [SI^2]."""
     n = problem.size
@@ -176,6 +169,7 @@ def fit_members(problem: Case, members: Iterable[Member], start: Floats | None =
         linear = triangular(r, q.T @ y) if X.shape[0] >= X.shape[1] else np.zeros(X.shape[1])
         residual = y - X @ linear
         bic = information(problem, residual, parameters) + odds_against(every)
+        bic += drawn_charge(problem, every, X, linear=linear, residual=residual)
         return Fit(every, linear, None, X, residual, parameters, bic, bic)
     effect = None if law is None else law.candidate.effect
     point = {} if law is None else law.point
@@ -191,6 +185,27 @@ def fit_members(problem: Case, members: Iterable[Member], start: Floats | None =
     bic = information(problem, residual, parameters) + odds_against(every)
     fit = Fit(every, linear, theta, np.hstack([X, D]), residual, parameters, bic, bic)
     return _beside_courses(problem, fit)
+
+
+def drawn_charge(
+    problem: Case, members: Iterable[Member], X: Floats, *, linear: Floats, residual: Floats
+) -> float:
+    """What members whose coefficients are drawn cost beyond a parameter for each of these [BIC]."""
+    charge, at = 0.0, problem.base.shape[1]
+    least = float(bic_of(problem, np.array(residual @ residual), 0.0))
+    for member in members:
+        own = slice(at, at + member.candidate.size)
+        at = own.stop
+        if not is_drawn(problem, member.candidate):
+            continue
+        others = np.delete(X, own, axis=1)
+        without = residual + X[:, own] @ linear[own]
+        q, _ = np.linalg.qr(others)
+        without = without - q @ (q.T @ without)
+        worse = float(bic_of(problem, np.array(without @ without), 0.0)) - least
+        gain = drawn_gain(problem, others, X[:, own], without)
+        charge += worse - gain - member.candidate.size * math.log(problem.size)
+    return charge
 
 
 def _beside_courses(problem: Case, fit: Fit) -> Fit:

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from surveyapp.diagnosis.candidates import Candidate
-from surveyapp.diagnosis.case import Case
+from surveyapp.diagnosis.case import Case, unit_variance
 from surveyapp.diagnosis.compare import may_join, most_parameters, orthonormal_design, slip_bends
-from surveyapp.diagnosis.fits import Fit, scan_exact, scan_law, unit_variance
+from surveyapp.diagnosis.fits import Fit, scan_exact, scan_law
 from surveyapp.diagnosis.nulls import Noise, null_of, ratio, reductions
 from surveyapp.diagnosis.projection import Projected, project
 from surveyapp_models.arrays import Floats

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from surveyapp.diagnosis.candidates import Candidate, swing_columns
-from surveyapp.diagnosis.case import Case
-from surveyapp.diagnosis.fits import Fit, Member, fit_members, independent, unit_variance
+from surveyapp.diagnosis.case import Case, unit_variance
+from surveyapp.diagnosis.fits import Fit, Member, fit_members, independent
 from surveyapp.diagnosis.swing import fit_swing, starting_values
 from surveyapp_models.arrays import Floats
 

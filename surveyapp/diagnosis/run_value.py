@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from surveyapp.diagnosis.candidates import swing_columns
-from surveyapp.diagnosis.case import Case
-from surveyapp.diagnosis.fits import Fit, Member, fit_members, independent, unit_variance
+from surveyapp.diagnosis.case import Case, unit_variance
+from surveyapp.diagnosis.fits import Fit, Member, fit_members, independent
 from surveyapp.diagnosis.stochastic import NoiseKind, NoisePoint
 from surveyapp_models.arrays import Floats
 
