@@ -103,17 +103,19 @@ def _known(name: str, log: SensorLog, problems: list[Problem]) -> _Known:
     if model is not None:
         biases, _ = model.at(log.columns, where=name)
         if biases is not None:
-            return _Known(matrix, biases, card.id, model.model)
+            return _Known(matrix, biases, card.id, model.model, card.warnings)
     span = log.columns.get(OWN)
     low_high = None if span is None else (float(span.min()), float(span.max()))
     problems += card.refusals(on=None, temperature_c=low_high, where=name)
     if model is None:
-        return _Known(matrix, bias, card.id)
+        return _Known(matrix, bias, card.id, told=card.warnings)
     text = (
         "the card holds biases over temperature, and the log no temperature to which they belong: "
         "the biases are those of the card's reference temperature"
     )
-    return _Known(matrix, bias, card.id, told=(ResultWarning("no_temperature", text),))
+    return _Known(
+        matrix, bias, card.id, told=(*card.warnings, ResultWarning("no_temperature", text))
+    )
 
 
 def _declination(
