@@ -55,7 +55,7 @@ anything = "is a note"
 
 def planted(data: dict[str, Any], *free: str) -> tuple[str, list[str]]:
     """The text of a file with a key of its own in every table, and these keys."""
-    keys = []
+    keys: list[str] = []
     for table in list(_tables(data, free)):
         keys.append(f"planted{len(keys)}")
         table[keys[-1]] = 1
