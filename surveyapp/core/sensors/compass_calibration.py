@@ -233,7 +233,14 @@ def _result(
     parameters = _parameters(fit, known, refused=verdict == "refused")
     undetermined = tuple(p.name for p in parameters if p.value is None)
     models = tuple(
-        CalibrationModel(t.fit.model, t.fit.rms, t.held_rms, i == chosen and verdict != "refused")
+        CalibrationModel(
+            t.fit.model,
+            t.fit.rms,
+            t.held_rms,
+            i == chosen and verdict != "refused",
+            "uT",
+            said("distance from the ellipsoid"),
+        )
         for i, t in enumerate(trials)
     )
     cells = coverage_cells(points - fit.offset)
