@@ -137,14 +137,14 @@ def test_two_determinations_take_the_scatter_of_the_archive(tmp_path: Path) -> N
     )
     answer = run("orient", str(project))
     assert answer.code == 2
-    assert "no scatter" in answer.err
+    assert "scatter_arcsec is no number" in answer.err
 
 
 @pytest.mark.parametrize(
     ("text", "told"),
     [
         ("format = 2", "no priors file"),
-        ("[[[", "no TOML"),
+        ("[[[", "no valid TOML"),
         (
             'format = 1\nkind = "priors of the instrument constant"\n[shares]\nbase = 0.5\n'
             'drft = 0.5\n[sizes]\n"0.7" = 2',

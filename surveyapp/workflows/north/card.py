@@ -65,14 +65,15 @@ def known_of(name: str, log: SensorLog, problems: list[Problem]) -> Known:
     if model is not None:
         biases, _ = model.at(log.columns, where=name)
         if biases is not None:
-            return Known(matrix, biases, *forces, card.id, model.model)
+            return Known(matrix, biases, *forces, card.id, model.model, card.warnings)
     span = log.columns.get(OWN)
     low_high = None if span is None else (float(span.min()), float(span.max()))
     problems += card.refusals(on=None, temperature_c=low_high, where=name)
     if model is None:
-        return Known(matrix, bias, *forces, card.id)
+        return Known(matrix, bias, *forces, card.id, told=card.warnings)
     text = (
         "the card holds biases over temperature, and the log no temperature to which they belong: "
         "the biases are those of the card's reference temperature"
     )
-    return Known(matrix, bias, *forces, card.id, told=(ResultWarning("no_temperature", text),))
+    told = (*card.warnings, ResultWarning("no_temperature", text))
+    return Known(matrix, bias, *forces, card.id, told=told)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -67,7 +68,8 @@ def find(request: NorthRequest) -> NorthResult:
         card=known.card,
     )
     # the biases are found here: what the card says of them is not asked
-    return find_heading(log, options)
+    result = find_heading(log, options)
+    return replace(result, warnings=(*result.warnings, *known.told))
 
 
 def _fixed(file: LogFile) -> SensorLog:
