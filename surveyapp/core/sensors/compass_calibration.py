@@ -7,6 +7,7 @@ predicts held-out blocks significantly better. The gate is the sigma of a level 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
