@@ -75,6 +75,15 @@ def _parts(level: str, vector: Floats) -> tuple[Floats, Floats]:
     return bias, out
 
 
+def expanded(model: ForceModel) -> ForceModel:
+    """The same model with all nine parameters, those that it omits at their nominal value."""
+    if model.level == "misalignment":
+        return model
+    scales = model.vector[3:6] if model.level == "three_scales" else np.full(3, model.vector[3])
+    vector = np.concatenate([model.bias, scales, np.zeros(3)])
+    return replace(model, level="misalignment", vector=vector)
+
+
 def shifted_forces(model: ForceModel, covariance: Floats) -> list[ForceModel]:
     """The model with each parameter off by its standard deviation, in turn.
 
@@ -206,9 +215,7 @@ def covariance_with_omitted(forces: Floats, model: ForceModel, *, gravity: float
     """
     if model.level == "misalignment":
         return model.covariance
-    scales = model.vector[3:6] if model.level == "three_scales" else np.full(3, model.vector[3])
-    vector = np.concatenate([model.bias, scales, np.zeros(3)])
-    rest, jacobian = _misfit(forces, "misalignment", vector, gravity)
+    rest, jacobian = _misfit(forces, "misalignment", expanded(model).vector, gravity)
     noise = math.sqrt(max(float(rest @ rest) / max(model.dof, 1), 1e-20))
     prior = np.zeros((6, 9))
     prior[:3, 3:6] = np.eye(3) * (NORMAL_95 / SCALE_TOLERANCE)

@@ -15,6 +15,7 @@ from surveyapp.core.sensors.rate.hand_forces import (
     PARAMETERS,
     ForceModel,
     covariance_with_omitted,
+    expanded,
     fit_forces,
     left_out,
     shifted_forces,
@@ -165,7 +166,9 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
     if problems:
         raise SurveyError(problems)
     bias, sigma_bias = _bias(stops, chosen, options)
-    gyro = _fitted(stops, chosen, turns) if len(turns) >= LEAST_TURNS else None
+    gyro = None
+    if len(turns) >= LEAST_TURNS:
+        gyro = _fitted(stops, chosen, turns, gravity=options.gravity)
     parameters = (
         *needed(force_parameters(chosen, covariance), len(stops), "stops"),
         *needed(rate_parameters(gyro, bias, sigma_bias), len(turns), "turns"),
@@ -207,29 +210,40 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
     )
 
 
-def _fitted(stops: Sequence[HeldStop], model: ForceModel, turns: Sequence[Turn]) -> RateModel:
-    """The gyros from their turns, with the accelerometers' own uncertainty."""
+def _fitted(
+    stops: Sequence[HeldStop], model: ForceModel, turns: Sequence[Turn], *, gravity: float
+) -> RateModel:
+    """The gyros from their turns, with the accelerometers' own uncertainty.
+
+    What their model omits bends the frame of the gyros as what it has does.
+    """
     gyro = fit_rates(turns)
     if model.dof < 1:
         return gyro
     forces = np.array([s.force for s in stops])
-    covariance = _with_tolerances(model)
+    whole = expanded(model)
+    covariance = _with_tolerances(
+        covariance_with_omitted(forces, model, gravity=gravity), PARAMETERS[model.level]
+    )
     shifted = []
-    for other in shifted_forces(model, covariance):
+    for other in shifted_forces(whole, covariance):
         ups = other.corrected(forces)
         shifted.append(ups / np.linalg.norm(ups, axis=1)[:, None])
     spread = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
     return with_frame(gyro, turns, shifted, covariance / np.outer(spread, spread))
 
 
-def _with_tolerances(model: ForceModel) -> Floats:
-    """Covariance of the accelerometers, which are never worse than their makers leave them."""
+def _with_tolerances(covariance: Floats, count: int) -> Floats:
+    """Covariance of the accelerometers, which are never worse than their makers leave them.
+
+    ``count``: parameters of the model; what it omits has its tolerance in ``covariance`` already.
+    """
     kinds = [ZERO_TOLERANCE] * 3 + [SCALE_TOLERANCE] * 3 + [CROSS_TOLERANCE] * 3
-    if model.level == "bias_scale":
-        kinds = kinds[:4]
-    sigma = np.array(kinds[: model.vector.size]) / NORMAL_95
-    unit = np.linalg.inv(model.covariance / np.outer(sigma, sigma) + 1e-12 * np.eye(sigma.size))
-    return np.asarray(np.linalg.inv(unit + np.eye(sigma.size)) * np.outer(sigma, sigma))
+    sigma = np.array(kinds) / NORMAL_95
+    held = np.zeros(sigma.size)
+    held[: {4: 3}.get(count, count)] = 1.0
+    unit = np.linalg.inv(covariance / np.outer(sigma, sigma) + 1e-12 * np.eye(sigma.size))
+    return np.asarray(np.linalg.inv(unit + np.diag(held)) * np.outer(sigma, sigma))
 
 
 def _directions(gyro: RateModel, turns: Sequence[Turn], pulled: Sequence[Turn]) -> dict[str, Any]:
