@@ -68,21 +68,7 @@ def write_priors(path: Path, text: str) -> None:
         ) from error
 
 
-def parse_priors(data: bytes, where: str) -> Priors:
-    """Priors of a file.
-
-    Raises
-    ------
-    SurveyError
-        With everything that is wrong with it.
-    """
-    findings = Findings()
-    priors = _priors(data, where, findings)
-    findings.raise_if_any()
-    return priors or Priors()
-
-
-def _priors(data: bytes, where: str, findings: Findings) -> Priors | None:
+def parse_priors(data: bytes, where: str, findings: Findings) -> Priors | None:
     """Priors of a file, with what is wrong or odd in the findings; None where it is wrong.
 
     Raises
@@ -148,7 +134,7 @@ def with_priors(instrument: Instrument, table: Table, files: ProjectFiles) -> In
     if data is None:
         return instrument
     try:
-        return replace(instrument, priors=_priors(data, where, files.findings))
+        return replace(instrument, priors=parse_priors(data, where, files.findings))
     except SurveyError as error:
         files.findings.absorb(error)
         return instrument

@@ -16,6 +16,7 @@ from surveyapp.diagnosis.pooling import pool
 from surveyapp.diagnosis.subjects.choice import determinations
 from surveyapp.domain.priors import DEFAULT_PRIORS
 from surveyapp.errors import SurveyError
+from surveyapp.io.findings import Findings
 from surveyapp.io.priors import parse_priors, priors_text
 from surveyapp_models.angles import ARCSEC
 from tests.cli.command import run
@@ -103,9 +104,9 @@ def test_the_archive_tells_by_how_much_the_constant_scatters(archive: Path) -> N
     found = api.diagnose_instrument(archive / "c0", "G1", archive=[archive]).priors
     assert found is not None
     assert found.scatter is not None
-    again = parse_priors(
-        priors_text(found, instrument="G1", serial="", software="test").encode(), "priors.toml"
-    )
+    text = priors_text(found, instrument="G1", serial="", software="test")
+    again = parse_priors(text.encode(), "priors.toml", Findings())
+    assert again is not None
     assert again.scatter == pytest.approx(found.scatter, abs=0.001 * ARCSEC)
     deviations = []
     for seed in range(3):

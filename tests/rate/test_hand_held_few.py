@@ -88,3 +88,29 @@ def test_turns_that_no_arrangement_explains_are_refused(tmp_path: Path) -> None:
         api.calibrate("rate", path, options={"programme": "multi-position"})
     (problem,) = refused.value.problems
     assert problem.what == "the turns of the gyros do not carry gravity along"
+
+
+def test_counts_from_the_middle_of_a_range_are_calibrated_as_any(tmp_path: Path) -> None:
+    """A converter's zero of 8 g is no zero of a unit: makers' tolerances do not hold it."""
+    path, shifted = tmp_path / "held.csv", tmp_path / "counts.csv"
+    held(path, 5, 16)
+    table = np.loadtxt(path, delimiter=",", skiprows=1)
+    table[:, 4:] = 400.0 * (table[:, 4:] + 79.0)
+    header = path.read_text().splitlines()[0]
+    np.savetxt(shifted, table, fmt="%.10g", delimiter=",", header=header, comments="")
+    scale = api.LogOptions(scale={f"acc_{a}_m_s2": 1.0 / 400.0 for a in "xyz"})
+    options = {"programme": "multi-position"}
+    found = api.calibrate("rate", path, options=options)
+    other = api.calibrate("rate", shifted, log=scale, options=options)
+    before = other.before
+    assert before is not None
+    assert before.rms is not None
+    assert before.rms < 1.0
+    plain, counts = ({p.name: p for p in one.parameters} for one in (found, other))
+    for name, one in plain.items():
+        value, shown = one.value, counts[name].value
+        zero = 79.0 if name.startswith("accelerometer_bias") else 0.0
+        assert value is not None
+        assert shown is not None
+        assert one.sigma is not None
+        assert abs(shown - value - zero) < 0.05 * one.sigma

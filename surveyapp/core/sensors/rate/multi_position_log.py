@@ -14,6 +14,7 @@ from surveyapp.core.sensors.rate.hand_forces import (
     LEVELS,
     PARAMETERS,
     ForceModel,
+    converter_zero,
     covariance_with_omitted,
     expanded,
     fit_forces,
@@ -177,20 +178,23 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
     parameters = with_reasons(parameters, why)
     missing = tuple(p.name for p in parameters if p.value is None)
     raw = np.linalg.norm(forces, axis=1) - options.gravity
+    before = math.sqrt(float(np.mean(raw**2)))
+    if np.any(converter_zero(forces, options.gravity)):
+        before = models[0].rms  # counts from the middle of a range: their size says nothing
+    size = said("size of gravity at the stops")
     return Calibration(
         kind="multi-position",
         source=log.id,
         parameters=parameters,
-        before=Misfit(
-            math.sqrt(float(np.mean(raw**2))), "m/s2", said("size of gravity at the stops")
-        ),
-        after=Misfit(chosen.rms, "m/s2", said("size of gravity at the stops")),
+        before=Misfit(before, "m/s2", size),
+        after=Misfit(chosen.rms, "m/s2", size),
         geometry=Geometry("good" if not missing else "restricted", None, missing),
         held_out=HeldOut(
             said("one stop after the other"), held.get("bias_scale"), held.get(chosen.level), "m/s2"
         ),
         models=tuple(
-            CalibrationModel(m.level, m.rms, held[m.level], m.level == chosen.level) for m in models
+            CalibrationModel(m.level, m.rms, held[m.level], m.level == chosen.level, "m/s2", size)
+            for m in models
         ),
         warnings=(
             *log.warnings,
