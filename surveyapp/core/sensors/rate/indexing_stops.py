@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from surveyapp.core.sensors.rate.indexing_checks import saturated, turning_problems
-from surveyapp.core.sensors.rate.indexing_values import Stop
+from surveyapp.core.sensors.rate.indexing_values import Setting, Stop
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
@@ -159,7 +159,7 @@ def _stop(angle: float, rates: Floats, forces: Floats) -> Stop:
     )
 
 
-def with_sigmas(stops: list[Stop], axis: int) -> tuple[list[Stop], float]:
+def with_sigmas(stops: list[Stop], setting: Setting) -> tuple[list[Stop], float]:
     """Stops of one row each get the scatter about the turned means as their sigma.
 
     Returns
@@ -173,7 +173,9 @@ def with_sigmas(stops: list[Stop], axis: int) -> tuple[list[Stop], float]:
     known, dof = [], 1
     for name, floor in (("rate", 1e-9), ("force", 1e-5)):
         values = np.array([getattr(s, name) for s in stops])
-        scatter, dof = _residual_sd(values, [s.angle for s in stops], axis)
+        if name == "rate":
+            values = np.linalg.solve(setting.matrix, values.T).T
+        scatter, dof = _residual_sd(values, [s.angle for s in stops], setting.axis)
         known.append(max(scatter, floor))
     filled = [
         replace(s, rate_sigma=np.full(3, known[0]), force_sigma=np.full(3, known[1])) for s in stops

@@ -174,20 +174,20 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
     parameters = with_reasons(parameters, why)
     missing = tuple(p.name for p in parameters if p.value is None)
     raw = np.linalg.norm(forces, axis=1) - options.gravity
+    size = said("size of gravity at the stops")
     return Calibration(
         kind="multi-position",
         source=log.id,
         parameters=parameters,
-        before=Misfit(
-            math.sqrt(float(np.mean(raw**2))), "m/s2", said("size of gravity at the stops")
-        ),
-        after=Misfit(chosen.rms, "m/s2", said("size of gravity at the stops")),
+        before=Misfit(math.sqrt(float(np.mean(raw**2))), "m/s2", size),
+        after=Misfit(chosen.rms, "m/s2", size),
         geometry=Geometry("good" if not missing else "restricted", None, missing),
         held_out=HeldOut(
             said("one stop after the other"), held.get("bias_scale"), held.get(chosen.level), "m/s2"
         ),
         models=tuple(
-            CalibrationModel(m.level, m.rms, held[m.level], m.level == chosen.level) for m in models
+            CalibrationModel(m.level, m.rms, held[m.level], m.level == chosen.level, "m/s2", size)
+            for m in models
         ),
         warnings=(
             *log.warnings,
