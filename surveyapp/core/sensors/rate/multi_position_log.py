@@ -47,11 +47,12 @@ from surveyapp.core.sensors.rate.needed import (
 from surveyapp.core.sensors.rate.still import (
     FALSE_ALARM,
     WINDOW_S,
+    bias_tolerance,
     bridged,
     gate_of,
     rest_noise,
     runs_of,
-    statistic,
+    statistic_of_rests,
 )
 from surveyapp.core.sensors.rate.turn_axes import axes_problems
 from surveyapp.core.statistics.distributions import NORMAL_95
@@ -95,8 +96,9 @@ def held_stops(log: SensorLog) -> list[HeldStop]:
     hz = log.rate_hz or 100.0
     noise = rest_noise(force, rate, rate_hz=hz)
     window = max(round(WINDOW_S * hz), 3)
-    values = statistic(force, rate, noise, window=window)
-    gate = gate_of(values, window=window, false_alarm=FALSE_ALARM)
+    tolerance = bias_tolerance(rate, noise, rate_hz=hz)
+    values = statistic_of_rests(force, rate, noise, window=window, tolerance=tolerance)
+    gate = gate_of(values, window=window, false_alarm=FALSE_ALARM, own_means=6)
     still = bridged(values <= gate.threshold, rate_hz=hz, least_s=LEAST_STOP_S)
     guard = round(GUARD_S * hz)
     found: list[HeldStop] = []
