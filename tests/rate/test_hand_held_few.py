@@ -132,7 +132,7 @@ def test_counts_from_the_middle_of_a_range_are_calibrated_as_any(tmp_path: Path)
 def test_a_quiet_gyro_whose_bias_follows_gravity_keeps_its_stops(
     tmp_path: Path, noise: float
 ) -> None:
-    """A bias of .02 deg/s in one attitude and -.02 in another is no motion, however small the noise.
+    """A bias of .02 deg/s in one attitude and -.02 in another is no motion, whatever the noise.
 
     With samples of .002 deg/s no stop was left of 18.
     """
