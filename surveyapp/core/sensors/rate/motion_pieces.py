@@ -19,16 +19,17 @@ from surveyapp.core.sensors.rate.motion_states import (
     segments_of,
     thresholds_of,
 )
+from surveyapp.core.sensors.rate.rests import Rests, Run
 from surveyapp.core.sensors.rate.smooth_motion import moving_smoothly
 from surveyapp.core.sensors.rate.still import (
     WINDOW_S,
     Gate,
-    Mask,
     RestNoise,
     bridged,
     motion_gate,
     norm_and_rate,
     rest_noise,
+    runs_of,
     statistic,
 )
 from surveyapp.domain.columns import let_go
@@ -56,7 +57,7 @@ class States:
     Parameters
     ----------
     segments : tuple of MotionSegment
-    still : ndarray of bool, shape (n,)
+    rests : Rests
     noise : RestNoise
         Of the quietest piece.
     gate : Gate
@@ -70,7 +71,7 @@ class States:
     """
 
     segments: tuple[MotionSegment, ...]
-    still: Mask
+    rests: Rests
     noise: RestNoise
     gate: Gate
     limits: Thresholds
@@ -92,6 +93,15 @@ class _Piece:
     def vectors(self, log: SensorLog, names: Sequence[str]) -> Floats:
         """Columns side by side, shape (k, 3)."""
         return stacked(log, names, slice(self.first, self.last))
+
+    def column(self, log: SensorLog, name: str) -> Floats | None:
+        """A column, shape (k,); None where the log has none."""
+        values = log.columns.get(name)
+        if values is None:
+            return None
+        found = np.array(values[self.first : self.last])
+        let_go(values)
+        return found
 
     @property
     def inner(self) -> slice:
@@ -138,7 +148,7 @@ def states_of(
     noises = _carried(noises, _loudness(quietest))
     sample = _sampled(log, pieces, noises, window)
     gate = motion_gate(sample, window=window, false_alarm=false_alarm, factor=factor)
-    still = np.zeros(log.size, dtype=bool)
+    runs: list[Run] = []
     both, other_count = 0, 0
     segments: list[MotionSegment] = []
     limits: Thresholds | None = None
@@ -146,33 +156,34 @@ def states_of(
         force, rate = piece.vectors(log, ACCELEROMETERS), piece.vectors(log, GYROS)
         values = statistic(force, rate, noise, window=window)
         rest = bridged(values <= gate.threshold, rate_hz=1.0 / interval)
-        rolled = log.columns.get("odometer_m")
         rest &= ~moving_smoothly(
             force,
             rate,
             rest,
             noise=noise,
             interval_s=interval,
-            odometer=None if rolled is None else rolled[piece.first : piece.last],
+            odometer=piece.column(log, "odometer_m"),
         )
         other = bridged(
             norm_and_rate(force, rate, noise, false_alarm=false_alarm), rate_hz=1.0 / interval
         )
         forward, turn = forward_and_turn(force, rate, rest, noise, interval_s=interval)
         own = thresholds_of(force, rate, rest, interval_s=interval, false_alarm=false_alarm)
-        time = log.columns["time_s"][piece.first : piece.last]
+        time = piece.column(log, "time_s")
+        assert time is not None
         found = segments_of(time, rest, forward, turn, limits=own)
         segments = _joined(segments, found, *_times(log, piece))
         let_go(log.columns["time_s"])
-        still[piece.begin : piece.end] = rest[piece.inner]
+        runs += [(piece.begin + a, piece.begin + b) for a, b in runs_of(rest[piece.inner])]
         both += int(np.count_nonzero(rest[piece.inner] & other[piece.inner]))
         other_count += int(np.count_nonzero(other[piece.inner]))
         limits = own if limits is None else limits
     assert limits is not None
-    count = int(np.count_nonzero(still))
+    rests = Rests.joined(runs, log.size)
+    count = rests.count
     return States(
         tuple(segments),
-        still,
+        rests,
         quietest,
         gate,
         limits,
@@ -223,7 +234,7 @@ def _sampled(
     parts = []
     for piece, noise in zip(pieces, noises, strict=True):
         force, rate = piece.vectors(log, ACCELEROMETERS), piece.vectors(log, GYROS)
-        parts.append(statistic(force, rate, noise, window=window)[piece.inner][::stride])
+        parts.append(statistic(force, rate, noise, window=window)[piece.inner][::stride].copy())
     return np.concatenate(parts)
 
 
