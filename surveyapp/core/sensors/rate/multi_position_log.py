@@ -52,7 +52,7 @@ from surveyapp.core.sensors.rate.still import (
     gate_of,
     rest_noise,
     runs_of,
-    statistic_of_rests,
+    statistic,
 )
 from surveyapp.core.sensors.rate.turn_axes import axes_problems
 from surveyapp.core.statistics.distributions import NORMAL_95
@@ -97,7 +97,7 @@ def held_stops(log: SensorLog) -> list[HeldStop]:
     noise = rest_noise(force, rate, rate_hz=hz)
     window = max(round(WINDOW_S * hz), 3)
     tolerance = bias_tolerance(rate, noise, rate_hz=hz)
-    values = statistic_of_rests(force, rate, noise, window=window, tolerance=tolerance)
+    values = statistic(force, rate, noise, window=window, tolerance=tolerance)
     gate = gate_of(values, window=window, false_alarm=FALSE_ALARM, own_means=6)
     still = bridged(values <= gate.threshold, rate_hz=hz, least_s=LEAST_STOP_S)
     guard = round(GUARD_S * hz)
