@@ -103,16 +103,29 @@ def _drives(rng: np.random.Generator, rows: int) -> dict[str, np.ndarray]:
     return made | {f"gyr_{a}_rad_s": rate[:, i] for i, a in enumerate("xyz")}
 
 
-KINDS = {"compass": _vectors, "tilt": _tilts, "noise": _noise, "drive": _drives}
+def _ways(rng: np.random.Generator, rows: int) -> dict[str, np.ndarray]:
+    """The same drive with its odometer, which turns 18 degrees to the right on its way."""
+    made = _drives(rng, rows)
+    phase = np.arange(rows) / RATE_HZ % 60.0
+    made["gyr_z_rad_s"] -= 0.0628 * ((phase >= 40.0) & (phase < 45.0))
+    speed = 0.4 * (np.clip(phase - 30.0, 0.0, 5.0) - np.clip(phase - 50.0, 0.0, 5.0))
+    made["odometer_m"] = np.cumsum(speed) / RATE_HZ
+    return made
+
+
+KINDS = {"compass": _vectors, "tilt": _tilts, "noise": _noise, "drive": _drives, "way": _ways}
 
 
 def write_log(path: Path, kind: str, rows: int) -> None:
     """A log of so many rows at 100 Hz; one block of rows at a time."""
-    rng = np.random.default_rng(7)
+    rng, driven = np.random.default_rng(7), 0.0
     with path.open("w", encoding="utf-8") as stream:
         for start in range(0, rows, BLOCK):
             size = min(BLOCK, rows - start)
             columns = KINDS[kind](rng, size)
+            if "odometer_m" in columns:
+                columns["odometer_m"] += driven
+                driven = columns["odometer_m"][-1]
             if start == 0:
                 stream.write(",".join(["time_s", *columns]) + "\n")
             cells = [[f"{t:.2f}" for t in ((start + np.arange(size)) / RATE_HZ).tolist()]]
@@ -133,6 +146,9 @@ def _commands(folder: Path) -> Iterator[tuple[str, str, str, dict[str, object]]]
     yield "spectrum", "noise", "spectrum", {"column": "gyr_z_rad_s"}
     yield "motion", "drive", "motion", {}
     yield "motion --path", "drive", "motion", {"options": {"path": True}}
+    yield "motion, odometer", "way", "motion", {"options": {"path": True}}
+    snapping = {"path": True, "snap": True, "end": "0,0"}
+    yield "motion --snap", "way", "motion", {"options": snapping}
     yield "diagnose compass", "compass", "diagnose_log", {}
 
 

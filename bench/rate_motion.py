@@ -61,12 +61,12 @@ def drive(seed: int, *, grade: float, shake: float) -> tuple[SensorLog, Mask]:
 def exceeding(seed: int, *, grade: float, factor: float, shake: float) -> tuple[float, float]:
     """Share of innovations beyond the bound, and share of the motion that is called rest."""
     log, truth = drive(seed, grade=grade, shake=shake)
-    still = states_of(log, false_alarm=FALSE_ALARM, factor=factor).still
+    rests = states_of(log, false_alarm=FALSE_ALARM, factor=factor).rests
     force, rate = (
         np.column_stack([log.columns[c] for c in names]) for names in (ACCELEROMETERS, GYROS)
     )
-    path = inertial_path(in_memory(force, rate), still, interval_s=1.0 / HZ)
-    return path.exceeding or 0.0, float(np.mean(still[~truth]))
+    path = inertial_path(in_memory(force, rate), rests, interval_s=1.0 / HZ)
+    return path.exceeding or 0.0, float(np.mean(rests.mask()[~truth]))
 
 
 def _correlated(rng: np.random.Generator, n: int) -> Floats:

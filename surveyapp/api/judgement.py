@@ -28,7 +28,8 @@ def check(
 ) -> Verdicts:
     """Apply every limit and test that the project's data can answer.
 
-    The same verdicts stand in the result of ``orient``, on the screens and in the record.
+    The same verdicts and warnings stand in the result of ``orient``, on the screens and in the
+    record.
 
     Parameters
     ----------
@@ -56,8 +57,7 @@ def check(
         project = opened(source)
         made = oriented(project, even_unfinished=bool(project.traverses), advance=advance)
         found = judged(made, software=SOFTWARE)
-    told = tuple(w for w in found.result.warnings if w.code == "session_unfinished")
-    told = (*told, *record_warnings(found.project))
+    told = (*found.result.warnings, *record_warnings(found.project))
     checks = found.result.checks
     if seal is not None:
         from surveyapp.core.checks.filing_checks import seal_check

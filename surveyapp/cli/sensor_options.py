@@ -161,15 +161,28 @@ def print_calibration(result: Calibration) -> None:
         print(paragraph(text))
     if result.models:
         print()
-        rows = [
-            [m.id, shown(m.rms), shown(m.held_out_rms), "chosen" if m.chosen else ""]
-            for m in result.models
-        ]
-        print(table(["model", "rms", "held out", ""], rows))
+        print(_models(result))
     print()
     _print_geometry(result)
     for warning in result.warnings:
         print(paragraph(f"{warning.code}: {warning.text}"))
+
+
+def _models(result: Calibration) -> str:
+    """The models that were compared; of what their residuals are where that is not one thing."""
+    differ = len({m.of for m in result.models}) > 1
+    rows = [
+        [
+            m.id,
+            shown(m.rms),
+            shown(m.held_out_rms),
+            m.unit,
+            *([m.of] if differ else []),
+            "chosen" if m.chosen else "",
+        ]
+        for m in result.models
+    ]
+    return table(["model", "rms", "held out", "unit", *(["of"] if differ else []), ""], rows)
 
 
 def _print_geometry(result: Calibration) -> None:

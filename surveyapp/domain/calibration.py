@@ -166,12 +166,24 @@ class Geometry:
 
 @dataclass(frozen=True, slots=True)
 class CalibrationModel:
-    """One of the models that were compared."""
+    """One of the models that were compared.
+
+    Parameters
+    ----------
+    id : str
+    rms, held_out_rms : float or None
+        Root mean square of the residuals, and of those of rows that had no part in the fit.
+    chosen : bool
+    unit, of : str
+        Of both, and of what they are: not the same for all models of a compass.
+    """
 
     id: str
     rms: float | None
     held_out_rms: float | None
     chosen: bool
+    unit: str
+    of: str
 
     def to_dict(self) -> dict[str, Any]:
         """Keys of the JSON."""
@@ -180,6 +192,8 @@ class CalibrationModel:
             "rms": self.rms,
             "held_out_rms": self.held_out_rms,
             "chosen": self.chosen,
+            "unit": self.unit,
+            "of": self.of,
         }
 
 

@@ -66,6 +66,12 @@ def pieces(values: Floats, size: int = PIECE, *, overlap: int = 0) -> Iterator[F
         let_go(plain)
 
 
+def span(values: Floats) -> float:
+    """Highest value less the lowest, shape (n,); NaN where one is."""
+    ends = [(float(piece.min()), float(piece.max())) for piece in pieces(values)]
+    return float(np.max([high for _, high in ends]) - np.min([low for low, _ in ends]))
+
+
 def sampled(values: Floats, most: int) -> Floats:
     """Every k-th value, at most about so many: a copy where the column is mapped."""
     every = max(values.size // most, 1)

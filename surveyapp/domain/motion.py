@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Final, Literal
 
 from surveyapp.domain.warning import ResultWarning
+from surveyapp_models.arrays import Floats
 
 MOTION_SCHEMA: Final = "surveyapp.motion/1"
 State = Literal["stationary", "steady", "accelerating", "braking", "turning"]
@@ -75,8 +76,9 @@ class Path:
         East, north, up of the end; from the beginning where none is stated.
     sides_m : tuple of float
         Straight distances between successive stops.
-    points : tuple of (distance, east, north, sigma_e, sigma_n, covariance_en)
-        In steps of half a metre [m], the covariance of east and north [m2].
+    points : ndarray, shape (m, 6)
+        Distance, east, north, their sigmas [m], the covariance of east and north [m2]; in steps of
+        half a metre with an odometer.
     length_m : float
     """
 
@@ -84,7 +86,7 @@ class Path:
     closure_m: float | None
     end_m: tuple[float, ...]
     sides_m: tuple[float, ...]
-    points: tuple[tuple[float, float, float, float, float, float], ...]
+    points: Floats
     length_m: float
 
     def to_dict(self) -> dict[str, Any]:
@@ -96,7 +98,7 @@ class Path:
             "end_m": list(self.end_m),
             "sides_m": list(self.sides_m),
             "length_m": self.length_m,
-            "points": [dict(zip(names, p, strict=True)) for p in self.points],
+            "points": [dict(zip(names, p, strict=True)) for p in self.points.tolist()],
         }
 
 

@@ -138,7 +138,7 @@ class Verdicts:
     ----------
     checks : tuple of Check
     warnings : tuple of ResultWarning
-        Sessions that are left out because they are still being observed.
+        Those of the orientation, and a record on the disk that is out of date.
     """
 
     checks: tuple[Check, ...]

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from surveyapp.domain.calibration import SensorParameter
 from surveyapp.domain.sensor_entry import SensorKind
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem
 from surveyapp.languages import said
 
@@ -40,6 +41,8 @@ class SensorCard:
         What a reader must know, such as that the card holds only near level.
     extra : mapping
         Tables of the subject's own, as they stand in the file.
+    warnings : tuple of ResultWarning
+        What its file holds that nobody knows.
     """
 
     id: str
@@ -56,6 +59,7 @@ class SensorCard:
     constants: Mapping[str, float] = field(default_factory=dict)
     notes: Mapping[str, str] = field(default_factory=dict)
     extra: Mapping[str, object] = field(default_factory=dict)
+    warnings: tuple[ResultWarning, ...] = ()
 
     def get(self, name: str) -> float | None:
         """Value of a parameter, None where the card does not have it."""

@@ -22,7 +22,8 @@ from surveyapp.domain.instrument import (
 )
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.files import decode, read_inside, shown
-from surveyapp.io.tables import Findings, Table, as_number, parse_toml
+from surveyapp.io.findings import Findings
+from surveyapp.io.tables import Table, as_number, parse_toml
 from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC
 

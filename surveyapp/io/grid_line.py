@@ -5,8 +5,9 @@ from __future__ import annotations
 from surveyapp.core.geodesy import open_mine_grid
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.decimals import typed_number, typed_words
+from surveyapp.io.findings import Findings
 from surveyapp.io.grid_tables import read_mine_grid
-from surveyapp.io.tables import Findings, Table, parse_toml
+from surveyapp.io.tables import Table, parse_toml
 from surveyapp.io.tomltext import toml_value
 from surveyapp_models.angles import AngleUnit
 

@@ -16,7 +16,8 @@ from surveyapp.domain.project import (
     Station,
 )
 from surveyapp.errors import Problem
-from surveyapp.io.tables import Findings, Table
+from surveyapp.io.findings import Findings
+from surveyapp.io.tables import Table
 from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, RHO_ARCSEC, AngleUnit, wrap_pi
 

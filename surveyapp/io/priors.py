@@ -7,17 +7,18 @@ stands in it by name, so that a person can read what the prediction takes for li
 from __future__ import annotations
 
 import math
-import tomllib
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from surveyapp.domain.instrument import Instrument
 from surveyapp.domain.priors import AMPLITUDES, BASE, UNITS, Priors
-from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.files import decode
+from surveyapp.io.findings import Findings
 from surveyapp.io.outputs import write_output
 from surveyapp.io.project_files import ProjectFiles
-from surveyapp.io.tables import Table
+from surveyapp.io.tables import Table, parse_toml
 from surveyapp.io.tomltext import toml_value
 from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC
@@ -67,81 +68,60 @@ def write_priors(path: Path, text: str) -> None:
         ) from error
 
 
-def parse_priors(data: bytes, where: str) -> Priors:
-    """Priors of a file.
+def parse_priors(data: bytes, where: str, findings: Findings) -> Priors | None:
+    """Priors of a file, with what is wrong or odd in the findings; None where it is wrong.
 
     Raises
     ------
     SurveyError
-        With everything that is wrong with it.
+        If it is no priors file.
     """
-    try:
-        raw = tomllib.loads(data.decode("utf-8-sig"))
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        expected = "a file that diagnose --priors wrote"
-        raise SurveyError(Problem("the priors are no TOML", where, str(error), expected)) from error
-    problems: list[Problem] = []
-    if raw.get("format") != FORMAT or raw.get("kind") != KIND:
-        found = said(
-            "format = {value!r}, kind = {value2!r}", value=raw.get("format"), value2=raw.get("kind")
-        )
+    table = Table(parse_toml(decode(data, where=where), where=where), where, findings)
+    version, kind = table.get("format"), table.get("kind")
+    if version != FORMAT or kind != KIND:
+        found = said("format = {value!r}, kind = {value2!r}", value=version, value2=kind)
         expected = said("format = {format}, kind = {kind!r}", format=FORMAT, kind=KIND)
         raise SurveyError(Problem("this is no priors file", where, found, expected))
-    shares = _shares(raw.get("shares"), UNITS, f"{where}, [shares]", problems)
+    for key in ("instrument", "serial", "software"):  # for a reader; nothing computes with them
+        table.get(key)
+    shares = _shares(table, "shares", UNITS)
     names = tuple(f"{size:g}" for size in AMPLITUDES)
-    sizes = _shares(raw.get("sizes"), names, f"{where}, [sizes]", problems)
-    if not problems and not shares[BASE] > 0.0:
-        problems.append(Problem("the base model has no share", where, "0", "above 0"))
-    scatter = _scatter(raw.get("scatter_arcsec"), where, problems)
-    if problems:
-        raise SurveyError(problems)
-    sessions = raw.get("sessions")
+    sizes = _shares(table, "sizes", names)
+    if shares and not shares[BASE] > 0.0:
+        table.problem("the base model has no share", "0", "above 0")
+        return None
+    scatter = table.number("scatter_arcsec", low=0.0, high=MOST_SCATTER)
+    sessions = table.number("sessions", low=0.0)
+    origin = table.text("origin", multiline=True)
+    table.warn_unknown()
+    if not shares or not sizes:
+        return None
     return Priors(
         shares,
         tuple(sizes[name] for name in names),
-        str(raw.get("origin", "")) or where,
-        sessions if isinstance(sessions, int) else 0,
-        scatter,
+        origin or where,
+        int(sessions or 0),
+        None if scatter is None else scatter * ARCSEC,
     )
 
 
-def _scatter(raw: Any, where: str, problems: list[Problem]) -> float | None:
-    """Scatter of the constant [rad], None where the file does not tell it."""
-    if raw is None:
-        return None
-    number = isinstance(raw, int | float) and not isinstance(raw, bool)
-    if not number or not 0.0 <= float(raw) <= MOST_SCATTER:
-        expected = said("0 to {most_scatter:g} arc-seconds", most_scatter=MOST_SCATTER)
-        problems.append(
-            Problem("this is no scatter", f"{where}, scatter_arcsec", str(raw), expected)
-        )
-        return None
-    return float(raw) * ARCSEC
-
-
-def _shares(
-    raw: Any, names: tuple[str, ...], where: str, problems: list[Problem]
-) -> dict[str, float]:
-    """A table of shares, normalized; what is not named is 0."""
-    if not isinstance(raw, dict):
-        problems.append(Problem("a table is missing", where, "", ", ".join(names)))
+def _shares(table: Table, key: str, names: tuple[str, ...]) -> dict[str, float]:
+    """A table of shares, normalized; what is not named is 0. Empty where it is wrong."""
+    inner = table.table(key)
+    if inner is None:
+        if key not in table:
+            table.problem(said("{key} is missing", key=key), "", ", ".join(names))
         return {}
-    found: dict[str, float] = {}
-    for name, value in raw.items():
-        if name not in names:
-            hint = nearest_names(str(name), names)
-            problems.append(Problem("an unknown name", where, str(name), ", ".join(names), hint))
-        elif isinstance(value, bool) or not isinstance(value, int | float):
-            problems.append(Problem("a share is no number", where, f"{name} = {value!r}", "0 to 1"))
-        elif not 0.0 <= float(value) <= 1.0:
-            told = f"{name} = {value}"
-            problems.append(Problem("a share is out of range", where, told, "0 to 1"))
-        else:
-            found[name] = float(value)
+    values = {name: inner.number(name, low=0.0, high=1.0) for name in names if name in inner}
+    inner.refuse_unknown(*names)
+    found = {name: value for name, value in values.items() if value is not None}
+    if len(found) < len(inner.data):
+        return {}
     total = math.fsum(found.values())
-    if not problems and abs(total - 1.0) > TOLERANCE:
-        problems.append(Problem("the shares do not sum to 1", where, f"{total:.3f}", "1"))
-    return {name: found.get(name, 0.0) / total if total > 0.0 else 0.0 for name in names}
+    if abs(total - 1.0) > TOLERANCE:
+        inner.problem("the shares do not sum to 1", f"{total:.3f}", "1")
+        return {}
+    return {name: found.get(name, 0.0) / total for name in names}
 
 
 def with_priors(instrument: Instrument, table: Table, files: ProjectFiles) -> Instrument:
@@ -154,7 +134,7 @@ def with_priors(instrument: Instrument, table: Table, files: ProjectFiles) -> In
     if data is None:
         return instrument
     try:
-        return replace(instrument, priors=parse_priors(data, where))
+        return replace(instrument, priors=parse_priors(data, where, files.findings))
     except SurveyError as error:
         files.findings.absorb(error)
         return instrument

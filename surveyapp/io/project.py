@@ -22,6 +22,7 @@ from surveyapp.io.cards import is_path
 from surveyapp.io.files import decode, read_inside, shown, shown_path
 from surveyapp.io.filing.journal import unsettled
 from surveyapp.io.filing.seals import changed_after_closing, read_filing
+from surveyapp.io.findings import Findings
 from surveyapp.io.grid_tables import (
     read_mine_grid,
     refuse_two_convergences,
@@ -42,7 +43,7 @@ from surveyapp.io.sensor_logs.tables import read_sensor_logs
 from surveyapp.io.session_books import read_sessions
 from surveyapp.io.session_sensors import with_declinations, with_sensors
 from surveyapp.io.shafts.table import read_shaft_tables
-from surveyapp.io.tables import Findings, Table, parse_toml
+from surveyapp.io.tables import Table, parse_toml
 from surveyapp.io.traverse.book import read_traverses
 from surveyapp.languages import said
 from surveyapp_models.angles import AngleUnit
@@ -104,7 +105,7 @@ def _read(folder: Path, *, repair: bool | None, observing: bool) -> Project:
     top = _Top(Table(data, PROJECT_FILE, findings), files, _header_lines(text))
     project = _read_tables(top, repair)
     findings.raise_if_any()
-    return replace(project, digest=files.digest(), warnings=tuple(findings.warnings))
+    return replace(project, digest=files.digest(), warnings=findings.told())
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,8 +11,9 @@ from typing import Final
 from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import SurveyError
 from surveyapp.io.files import read_inside, shown
+from surveyapp.io.findings import Findings
 from surveyapp.io.guarded import MAX_LOG_BYTES, open_regular, place_inside
-from surveyapp.io.tables import Findings, Table
+from surveyapp.io.tables import Table
 from surveyapp.languages import said
 
 PROJECT_FILE: Final = "project.toml"

@@ -31,8 +31,9 @@ from surveyapp.errors import Problem, nearest_names
 from surveyapp.io.adopted_effects import read_effect
 from surveyapp.io.cards import CARD_KEYS, load_card
 from surveyapp.io.files import shown
+from surveyapp.io.findings import Findings
 from surveyapp.io.grid_tables import read_convergence
-from surveyapp.io.tables import Findings, Table
+from surveyapp.io.tables import Table
 from surveyapp.languages import either, said
 from surveyapp_models.angles import ARCSEC, AngleUnit
 

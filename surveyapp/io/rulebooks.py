@@ -17,7 +17,8 @@ from surveyapp.domain.rulebook import Limit, RuleBook, Sense
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.cards import is_path
 from surveyapp.io.files import decode, read_inside, shown
-from surveyapp.io.tables import Findings, Table, as_number, parse_toml
+from surveyapp.io.findings import Findings
+from surveyapp.io.tables import Table, as_number, parse_toml
 from surveyapp.languages import said
 
 SENSES: Final = ("at most", "at least")
@@ -85,13 +86,7 @@ def read_rule_book(name_or_path: str, *, base: Path) -> RuleBook:
         note=table.text("note", multiline=True) or "",
         station_sigma_m=table.number("station_sigma_m", low=0.0, high=1e3),
     )
-    unread = table.unread()
-    if unread:
-        table.problem(
-            said("{unread} is not known in a rule book", unread=shown(unread[0])),
-            "",
-            "id, title, source, note, station_sigma_m and [[limit]] tables",
-        )
+    table.refuse_unknown()
     findings.raise_if_any()
     return book
 
@@ -128,12 +123,7 @@ def _limit(table: Table) -> Limit:
         when=_formula(table, "when") or "",
         note=table.text("note", multiline=True) or "",
     )
-    for key in table.unread():
-        table.problem(
-            said("{key} is not known in a limit", key=shown(key)),
-            "",
-            "see the installed rule books",
-        )
+    table.refuse_unknown()
     return limit
 
 

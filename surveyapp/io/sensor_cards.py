@@ -6,22 +6,28 @@ that is no sensor card.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Final, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from surveyapp.core.sensors.card_names import CONSTANTS, PARAMETERS
+from surveyapp.core.sensors.rate.card_temperature import MODEL_KEYS, model_of
+from surveyapp.core.sensors.rate.card_temperature import TABLE as MODEL_TABLE
+from surveyapp.core.sensors.rate.compensation import MODELS
 from surveyapp.domain.calibration import SensorParameter
 from surveyapp.domain.sensor_card import SensorCard
 from surveyapp.domain.sensor_entry import SENSOR_KINDS, SensorKind
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.cards import number_pair
 from surveyapp.io.files import read_text, shown_path
-from surveyapp.io.tables import Findings, Table, as_number, parse_toml
+from surveyapp.io.findings import Findings
+from surveyapp.io.tables import Table, as_number, parse_toml
 from surveyapp.io.tomltext import atomic_write, toml_key, toml_value
-from surveyapp.languages import said
+from surveyapp.languages import joined, said
 
 _ASYMMETRY: Final = 1e-9
 
@@ -39,7 +45,7 @@ def read_sensor_card(path: Path, *, where: str | None = None) -> SensorCard:
     table = Table(parse_toml(read_text(path, where=place), where=place), place, findings)
     card = _card(table)
     findings.raise_if_any()
-    return card
+    return replace(card, warnings=findings.told())
 
 
 def _card(table: Table) -> SensorCard:
@@ -55,10 +61,13 @@ def _card(table: Table) -> SensorCard:
     if valid_from is not None and valid_to is not None and valid_to < valid_from:
         table.problem("valid_to lies before valid_from", valid_to.isoformat())
     known = sum(item.sigma is not None for item in parameters)
+    kind = cast("SensorKind", table.choice("kind", SENSOR_KINDS, required=True) or "rate")
+    _check_names(table, "parameter", PARAMETERS.get(kind))
+    _check_names(table, "constants", CONSTANTS.get(kind))
     card = SensorCard(
         id=table.text("id", required=True) or "",
         title=table.text("title", required=True) or "",
-        kind=cast("SensorKind", table.choice("kind", SENSOR_KINDS, required=True) or "rate"),
+        kind=kind,
         source=table.text("source", required=True, multiline=True) or "",
         parameters=parameters,
         calibrated_on=table.date("calibrated_on"),
@@ -71,8 +80,36 @@ def _card(table: Table) -> SensorCard:
         notes=_notes(table),
     )
     extra = {key: table.data[key] for key in table.unread()}
-    object.__setattr__(card, "extra", extra)
-    return card
+    _check_temperature_model(table)
+    table.warn_unknown("instrument", "serial")
+    return replace(card, extra=extra)
+
+
+def _check_names(table: Table, key: str, known: Collection[str] | None) -> None:
+    """Tell names that no calibration writes and no correction reads."""
+    inner = table.table(key)
+    if inner is None or known is None:
+        return
+    for name in inner.data:
+        if name not in known:
+            table.findings.unknown_key(name, where=inner.where, known=known)
+
+
+def _check_temperature_model(table: Table) -> None:
+    """Refuse a temperature model that is not whole: without it the biases would be nominal."""
+    inner = table.table(MODEL_TABLE)
+    if inner is None:
+        return
+    inner.choice("model", MODELS, required=True)
+    for key in MODEL_KEYS:
+        inner.get(key)
+    inner.warn_unknown()
+    if model_of(table.data) is None:
+        inner.problem(
+            "the temperature model is not whole",
+            joined(", ", inner.data),
+            "a model, its nodes, and a bias of every axis at each of them",
+        )
 
 
 def _parameters(table: Table) -> tuple[SensorParameter, ...]:

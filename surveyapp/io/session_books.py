@@ -14,10 +14,11 @@ from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import SurveyError
 from surveyapp.io.fieldbook.reading import interpret, move_tail_aside, split_tail
 from surveyapp.io.files import shown
+from surveyapp.io.findings import Findings
 from surveyapp.io.guarded import place_inside
 from surveyapp.io.project_files import PROJECT_FILE, ProjectFiles, inside
 from surveyapp.io.project_tables import Names, read_session, unique
-from surveyapp.io.tables import Findings, Table
+from surveyapp.io.tables import Table
 from surveyapp.languages import said
 from surveyapp_models.angles import AngleUnit
 

@@ -26,11 +26,12 @@ from surveyapp.domain.session_sensors import BlockTilt, LogLevelling, PreOrienta
 from surveyapp.domain.subject import Subject
 from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
+from surveyapp.io.findings import Findings
 from surveyapp.io.project_files import ProjectFiles, inside
 from surveyapp.io.sensor_cards import read_sensor_card
 from surveyapp.io.sensor_logs.reading import Need, open_log
 from surveyapp.io.sensor_logs.tables import request_of
-from surveyapp.io.tables import Findings, Table
+from surveyapp.io.tables import Table
 from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, AngleUnit
 from surveyapp_models.arrays import Floats
@@ -117,6 +118,7 @@ def _source(
     if not path or not inside(path, table) or files.read(path, table.where) is None:
         return None
     card = read_sensor_card(files.path / path, where=path)
+    files.findings.warnings += card.warnings
     if card.kind != kind:
         table.problem(said("the card is of another kind"), card.kind, kind)
         return None

@@ -12,12 +12,11 @@ import math
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Final
 
-from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.files import has_steering, shown
+from surveyapp.io.findings import Findings
 from surveyapp.languages import joined, said
 from surveyapp_models.angles import TWO_PI, AngleError, AngleUnit, parse_angle
 
@@ -28,29 +27,9 @@ _MOST_VALUES: Final = 600_000
 """Beyond them memory and time of reading are no longer those of a few letters."""
 _MOST_LETTERS: Final = 10_000_000
 """Twice what ten thousand sessions with everything that is told of them need."""
-_MOST_UNKNOWN: Final = 200
 _KEY: Final = re.compile(r"^[^=\n\"'#]*(?==)", re.MULTILINE)
 _DEEPEST: Final = 24
 _DEEP_KEY: Final = re.compile(r"(?<![A-Za-z0-9_-])(?:[A-Za-z0-9_-]+[ \t]*\.[ \t]*){24}")
-
-
-@dataclass(slots=True)
-class Findings:
-    """Everything that was found wrong or odd while reading."""
-
-    problems: list[Problem] = field(default_factory=list)
-    warnings: list[ResultWarning] = field(default_factory=list)
-    unknown: int = 0
-    """Keys that were not known; all but the first are told together."""
-
-    def absorb(self, error: SurveyError) -> None:
-        """Take over the problems of an error."""
-        self.problems.extend(error.problems)
-
-    def raise_if_any(self) -> None:
-        """Raise one error with all problems, if there are any."""
-        if self.problems:
-            raise SurveyError(self.problems)
 
 
 def parse_toml(text: str, *, where: str) -> dict[str, object]:
@@ -301,26 +280,17 @@ class Table:
         known = self._asked.union(also_known)
         for key in self.data:
             if key not in known:
-                self.findings.unknown += 1
-                if self.findings.unknown > _MOST_UNKNOWN:
-                    self._warn_no_further()
-                    return
-                text = said(
-                    "{where}: {key} is not known and was not used. {nearest}",
-                    where=self.where,
-                    key=shown(key),
-                    nearest=nearest_names(key, known),
-                )
-                self.findings.warnings.append(ResultWarning("unknown_key", text))
+                self.findings.unknown_key(key, where=self.where, known=known)
 
-    def _warn_no_further(self) -> None:
-        """Say once that more keys are unknown than anybody reads about."""
-        if self.findings.unknown == _MOST_UNKNOWN + 1:
-            text = said(
-                "{where}: further keys from here on are not known and were not used",
-                where=self.where,
-            )
-            self.findings.warnings.append(ResultWarning("unknown_key", text))
+    def refuse_unknown(self, *also_known: str) -> None:
+        """Note a problem for every key that nobody has asked for.
+
+        For tables in which a key that is not used would change what is judged.
+        """
+        known = self._asked.union(also_known)
+        for key in self.unread():
+            hint = nearest_names(key, known)
+            self.problem(said("{key} is not known", key=shown(key)), hint=hint)
 
 
 def as_number(value: object) -> float | None:

@@ -152,11 +152,11 @@ def compensate_log(
     problems += other_instrument(card, entry, where)
     if problems:
         raise SurveyError(problems)
-    doubts: list[ResultWarning] = []
+    doubts = list(card.warnings)
     if kind == "compass":
-        doubts = compass_doubts(log, card, where=where)
+        doubts += compass_doubts(log, card, where=where)
     elif kind == "tilt":
-        doubts = tilt_doubts(log, card)
+        doubts += tilt_doubts(log, card)
     log = replace(log, warnings=(*log.warnings, *doubts))
     few = log.every(max(log.size // FORCE_ROWS, 1))
     if declination is not None and declination.sigma is None:

@@ -23,6 +23,7 @@ from surveyapp.domain.advance import Advance, silent
 from surveyapp.domain.observations import ObservationKind
 from surveyapp.domain.project import Project
 from surveyapp.domain.results import OrientationResult
+from surveyapp.domain.subject import Subject
 from surveyapp.domain.traverse import GyroConstant, Network, OrientedLine
 from surveyapp.domain.warning import ResultWarning
 from surveyapp.workflows.underground import breakthrough_evidence, shaft_evidence
@@ -66,7 +67,21 @@ class OrientedProject:
         """
         waiting = waiting_sides(self.project, self.orientation.project)
         found = network_of(self.project, traverse, self.sides, self.constants, waiting=waiting)
-        return replace(found, warnings=(*found.warnings, *self.notes))
+        told = (*found.warnings, *self.notes, *self._of_sides(found))
+        return replace(found, warnings=tuple(dict.fromkeys(told)))
+
+    def _of_sides(self, network: Network) -> list[ResultWarning]:
+        """What the orientation tells of the gyro sides of a network and of their instruments."""
+        used = {
+            frozenset((row.at, row.to))
+            for row in network.observations
+            if row.kind is ObservationKind.GYRO
+        }
+        lines = [line.result for line in self.orientation.lines]
+        sides = [line for line in lines if {line.station, line.target} in used]
+        subjects = {line.subject for line in sides}
+        subjects |= {Subject.of("instrument", line.instrument) for line in sides}
+        return [item for item in self.orientation.warnings if item.subject in subjects]
 
 
 @dataclass(frozen=True, slots=True)

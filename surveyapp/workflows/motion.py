@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -15,10 +16,12 @@ from surveyapp.core.sensors.rate.motion_log import (
     judge_motion,
 )
 from surveyapp.domain.advance import PartDone
+from surveyapp.domain.columns import pieces, span
 from surveyapp.domain.motion import Motion
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.sensor_logs.blocks import room_for
 from surveyapp.io.sensor_logs.reading import LogFile, Need
 from surveyapp.languages import said
 from surveyapp.workflows.adopted_effects import read_without_adopted
@@ -75,7 +78,7 @@ def find_motion(
         problems += _odometer_problems(log)
     if problems:
         raise SurveyError(problems)
-    return judge_motion(log, asked)
+    return judge_motion(log, asked, room=partial(room_for, beside=len(log.columns)))
 
 
 def _odometer_problems(log: SensorLog) -> list[Problem]:
@@ -83,19 +86,21 @@ def _odometer_problems(log: SensorLog) -> list[Problem]:
     distance = log.columns.get("odometer_m")
     if distance is None or not distance.size:
         return []
-    if not np.isfinite(distance).all():
+    empty = sum(int(np.count_nonzero(~np.isfinite(piece))) for piece in pieces(distance))
+    if empty:
         what, expected = "odometer_m has rows without a reading", "a number in each row"
         return [
             Problem(
                 what,
                 log.path,
-                said("{rows} rows", rows=np.count_nonzero(np.isnan(distance))),
+                said("{rows} rows", rows=empty),
                 expected,
             )
         ]
-    if np.ptp(distance) > LONGEST_PATH_M:
+    length = span(distance)
+    if length > LONGEST_PATH_M:
         found, expected = (
-            f"{np.ptp(distance):g} m",
+            f"{length:g} m",
             said("{longest_path_m:g} m or less", longest_path_m=LONGEST_PATH_M),
         )
         return [Problem("no vehicle drives as far in one record", log.path, found, expected)]

@@ -27,8 +27,8 @@ from surveyapp.domain.shaft_result import ShaftOrientation
 from surveyapp.domain.traverse_book import Traverse
 from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
+from surveyapp.io.findings import Findings
 from surveyapp.io.penetration.measured import header_sigmas, measured_rows
-from surveyapp.io.tables import Findings
 from surveyapp.languages import said
 from surveyapp.workflows.plumbing import orient_shafts
 
@@ -121,7 +121,7 @@ def ready_mine(
     problems += _plan_problems(plan, gathered.measured, plan_sides)
     gathered.findings.raise_if_any()
     mine = build_mine(plan, stations, constants, gathered.measured)
-    warnings = (*project.warnings, *gathered.findings.warnings, *unknown, *lost, *fed)
+    warnings = (*project.warnings, *gathered.findings.told(), *unknown, *lost, *fed)
     warnings = (*warnings, *carried(plan, stations))
     return ReadyMine(mine, project.rules, defaults, warnings, project.name, project.digest)
 

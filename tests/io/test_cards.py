@@ -8,7 +8,7 @@ import pytest
 from surveyapp.domain.instrument import InstrumentCard
 from surveyapp.errors import SurveyError
 from surveyapp.io.cards import installed_card_ids, load_card, read_card
-from surveyapp.io.tables import Findings
+from surveyapp.io.findings import Findings
 from surveyapp_models.angles import ARCSEC
 
 HERE = Path()
@@ -142,8 +142,8 @@ def test_unknown_card_keys_are_warnings(tmp_path: Path) -> None:
     (tmp_path / "own.toml").write_text(FULL.replace("time_s", "tme_s"), encoding="utf-8")
     findings = Findings()
     assert load_card("own.toml", base=tmp_path, override={}, findings=findings) is not None
-    assert [w.code for w in findings.warnings] == ["unknown_key"]
-    assert "time_s" in findings.warnings[0].text
+    assert [w.code for w in findings.told()] == ["unknown_key"]
+    assert "time_s" in findings.told()[0].text
 
 
 def test_a_missing_own_card_is_a_problem(tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ from surveyapp.diagnosis.pooling import pool
 from surveyapp.diagnosis.subjects.choice import determinations
 from surveyapp.domain.priors import DEFAULT_PRIORS
 from surveyapp.errors import SurveyError
+from surveyapp.io.findings import Findings
 from surveyapp.io.priors import parse_priors, priors_text
 from surveyapp_models.angles import ARCSEC
 from tests.cli.command import run
@@ -103,9 +104,9 @@ def test_the_archive_tells_by_how_much_the_constant_scatters(archive: Path) -> N
     found = api.diagnose_instrument(archive / "c0", "G1", archive=[archive]).priors
     assert found is not None
     assert found.scatter is not None
-    again = parse_priors(
-        priors_text(found, instrument="G1", serial="", software="test").encode(), "priors.toml"
-    )
+    text = priors_text(found, instrument="G1", serial="", software="test")
+    again = parse_priors(text.encode(), "priors.toml", Findings())
+    assert again is not None
     assert again.scatter == pytest.approx(found.scatter, abs=0.001 * ARCSEC)
     deviations = []
     for seed in range(3):
@@ -137,14 +138,14 @@ def test_two_determinations_take_the_scatter_of_the_archive(tmp_path: Path) -> N
     )
     answer = run("orient", str(project))
     assert answer.code == 2
-    assert "no scatter" in answer.err
+    assert "scatter_arcsec is no number" in answer.err
 
 
 @pytest.mark.parametrize(
     ("text", "told"),
     [
         ("format = 2", "no priors file"),
-        ("[[[", "no TOML"),
+        ("[[[", "no valid TOML"),
         (
             'format = 1\nkind = "priors of the instrument constant"\n[shares]\nbase = 0.5\n'
             'drft = 0.5\n[sizes]\n"0.7" = 2',

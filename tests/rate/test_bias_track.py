@@ -10,7 +10,8 @@ import pytest
 
 from surveyapp import api
 from surveyapp.core.sensors.charts.north import north_charts
-from surveyapp.core.sensors.rate.bias_track import StopSet, track_bias
+from surveyapp.core.sensors.rate.bias_track import WALK, StopSet, track_bias
+from surveyapp.core.sensors.rate.indexing import solve_indexing
 from surveyapp.core.sensors.rate.indexing_values import Setting, Stop
 from surveyapp.core.simulate.rate.table_programmes import DEG_H
 from surveyapp.domain.chart import Chart
@@ -157,3 +158,18 @@ def test_a_declination_without_sigma_has_that_of_a_model(tmp_path: Path) -> None
     assert sigmas[2] == pytest.approx(math.hypot(sigmas[1], 0.3, 0.4), rel=1e-6)
     assert {"no_declination_sigma", "initial_heading_exact"} <= codes[0]
     assert not {"no_declination_sigma", "initial_heading_exact"} & (codes[1] | codes[2])
+
+
+def test_the_stops_of_a_set_count_once() -> None:
+    """The first set of a track knows what the set alone knows, and no more."""
+    rng = np.random.default_rng(16)
+    tilted = (0.7, math.radians(20.0), math.radians(-30.0))
+    sets = [index_set(rng, k, tilted, 3.0 * DEG_H) for k in range(2)]
+    tracked = track_bias(sets, Setting(LATITUDE))
+    alone = [solve_indexing(one.stops, Setting(LATITUDE)).roots[0] for one in sets]
+    spread = [math.sqrt(root.covariance[5, 5]) for root in alone]
+    first, second = (math.sqrt(one.indexed.roots[0].covariance[5, 5]) for one in tracked)
+    assert first == pytest.approx(spread[0], rel=1e-9)
+    # two independent values of the bias, the first older by three minutes of its walk
+    older = math.hypot(spread[0], WALK * math.sqrt(180.0 / 3600.0))
+    assert second == pytest.approx(1.0 / math.hypot(1.0 / older, 1.0 / spread[1]), rel=0.03)

@@ -13,7 +13,9 @@ import pytest
 from bench.rate_motion import exceeding, split
 from surveyapp.core.sensors.rate.motion_log import MotionOptions, judge_motion
 from surveyapp.core.sensors.rate.motion_pieces import states_of
-from surveyapp.core.sensors.rate.odometer_path import Driven, reckon, snap
+from surveyapp.core.sensors.rate.odometer_path import Driven, reckon
+from surveyapp.core.sensors.rate.rests import Rests
+from surveyapp.core.sensors.rate.snapping import snap
 from surveyapp.core.sensors.rate.zero_velocity import TOLERATED
 from surveyapp.core.simulate.rate.log import SimulatedLog
 from surveyapp.core.simulate.rate.recipes import simulate_rate
@@ -71,7 +73,7 @@ def test_pieces_say_what_the_whole_record_says() -> None:
     whole = states_of(log, false_alarm=0.01)
     parts = states_of(log, false_alarm=0.01, rows=8300)
     assert (whole.pieces, parts.pieces) == (1, 4)
-    assert np.mean(whole.still == parts.still) >= 0.99
+    assert np.mean(whole.rests.mask() == parts.rests.mask()) >= 0.99
     time = log.columns["time_s"]
 
     def named(segments: tuple[MotionSegment, ...]) -> np.ndarray:
@@ -114,9 +116,7 @@ def straight(*, heading: Floats, cycle: Floats | None = None) -> Driven:
     distance = np.linspace(0.0, 200.0, n)
     still = np.zeros(n, dtype=bool)
     still[0] = True
-    return Driven(
-        distance, heading, np.full(n, np.nan), np.zeros(n) if cycle is None else cycle, still
-    )
+    return Driven(distance, heading, {}, cycle, Rests.of(still))
 
 
 def test_a_linear_drift_is_laid_back_and_a_constant_offset_after_a_power_cycle_too() -> None:
@@ -125,7 +125,7 @@ def test_a_linear_drift_is_laid_back_and_a_constant_offset_after_a_power_cycle_t
     drift = straight(heading=np.linspace(0.0, math.radians(2.0), n))
     free = reckon(drift, start=(0.0, 0.0), heading_walk=0.0, heading_sigma=0.0)
     assert abs(free.place[-1, 0]) == pytest.approx(3.49, abs=0.01)
-    mended, told, _ = snap(drift, power_cycle="current", end=(0.0, 200.0), start=(0.0, 0.0))
+    mended, told = snap(drift, power_cycle="current", end=(0.0, 200.0), start=(0.0, 0.0))
     snapped = reckon(mended, start=(0.0, 0.0), heading_walk=0.0, heading_sigma=0.0)
     assert abs(snapped.place[-1, 0]) < 1e-3
     assert [t.kind for t in told] == ["linear"]
@@ -135,7 +135,7 @@ def test_a_linear_drift_is_laid_back_and_a_constant_offset_after_a_power_cycle_t
     offset = straight(heading=np.full(n, math.radians(1.5)), cycle=cycle)
     free = reckon(offset, start=(0.0, 0.0), heading_walk=0.0, heading_sigma=0.0)
     assert abs(free.place[-1, 0]) == pytest.approx(5.24, abs=0.01)
-    mended, told, _ = snap(offset, power_cycle="current", end=(0.0, 200.0), start=(0.0, 0.0))
+    mended, told = snap(offset, power_cycle="current", end=(0.0, 200.0), start=(0.0, 0.0))
     snapped = reckon(mended, start=(0.0, 0.0), heading_walk=0.0, heading_sigma=0.0)
     assert abs(snapped.place[-1, 0]) < 0.01
     assert [t.kind for t in told] == ["constant"]
@@ -155,11 +155,10 @@ def test_power_switched_within_a_stop_shifts_what_lies_behind_or_before_it(
     still = distance == 60.0
     still[0] = True
     cycle = (np.arange(distance.size) >= 650).astype(np.float64)
-    none = np.full(distance.size, np.nan)
-    drive = Driven(distance, np.zeros(distance.size), none, cycle, still)
+    drive = Driven(distance, np.zeros(distance.size), {}, cycle, Rests.of(still))
     turned = math.radians(1.5)
     end = (60.0 * math.sin(turned), 60.0 + 60.0 * math.cos(turned))
-    mended, told, _ = snap(drive, power_cycle=which, end=end, start=(0.0, 0.0))
+    mended, told = snap(drive, power_cycle=which, end=end, start=(0.0, 0.0))
     assert [(t.kind, t.from_m, t.to_m) for t in told] == [("constant", *map(pytest.approx, span))]
     assert told[0].heading_deg == pytest.approx(1.5, abs=1e-3)
     found = reckon(mended, start=(0.0, 0.0), heading_walk=0.0, heading_sigma=0.0)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from surveyapp.core.sensors.rate.motion_doubts import odometer_problems, record_doubts
+from surveyapp.core.sensors.rate.rests import Rests
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp_models.arrays import Floats
 
@@ -24,12 +25,12 @@ def log(**changed: Floats) -> SensorLog:
     return SensorLog(id="drive", columns=columns, units=units, size=ROWS, rate_hz=100.0)
 
 
-STILL = np.arange(ROWS) < ROWS // 2
+RESTS = Rests(((0, ROWS // 2),), ROWS)
 
 
 def codes(record: SensorLog, *, snapping: bool = False) -> list[str]:
     """Of what is doubted."""
-    return [w.code for w in record_doubts(record, STILL, snapping=snapping)]
+    return [w.code for w in record_doubts(record, RESTS, snapping=snapping)]
 
 
 def test_a_record_in_order_is_not_doubted() -> None:

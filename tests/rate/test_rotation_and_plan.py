@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from surveyapp.api import plan_north_stops
+from surveyapp.core.sensors.rate.card_values import card_matrix
 from surveyapp.core.sensors.rate.rotation import (
     RotationOptions,
-    card_matrix,
     find_heading,
     level_case,
 )

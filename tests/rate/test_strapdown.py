@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from surveyapp.core.sensors.rate import zero_velocity
+from surveyapp.core.sensors.rate.rests import Rests
 from surveyapp.core.sensors.rate.strapdown import Navigation, integrate, noise_of_all
 from surveyapp.core.sensors.rate.zero_velocity import BOUND, EVERY, in_memory, inertial_path
 from surveyapp.core.simulate.rate.vehicle import VehicleRun, usual_drive, vehicle_log
@@ -86,7 +87,7 @@ def test_stretches_are_the_plain_recursion() -> None:
     least = 1e-3, math.radians(0.01)
     noises = noise(*least), noise(max(least[0], shaken[0]), max(least[1], shaken[1]))
     places, covariance, beyond = one_by_one(force, rate, still, noises)
-    found = inertial_path(in_memory(force, rate), still, interval_s=DT)
+    found = inertial_path(in_memory(force, rate), Rests.of(still), interval_s=DT)
     sigma = math.sqrt(float(covariance[0, 0]))
     assert np.abs(places[found.rows] - found.place).max() < 0.01 * sigma
     np.testing.assert_allclose(found.end, places[-1], atol=0.01 * sigma)
@@ -120,7 +121,7 @@ def test_a_long_record_takes_some_microseconds_a_sample(monkeypatch: pytest.Monk
     force = rng.normal(0.0, 0.01, (still.size, 3)) + np.array([0.0, 0.0, 9.8])
     rate = rng.normal(0.0, 1e-3, (still.size, 3))
     begin = time.process_time()
-    found = inertial_path(in_memory(force, rate), still, interval_s=DT)
+    found = inertial_path(in_memory(force, rate), Rests.of(still), interval_s=DT)
     assert time.process_time() - begin < 60_000 * 40e-6
     assert found.rows.size <= 100
     assert found.length - found.along[-1] < 0.05 * found.length

@@ -16,6 +16,7 @@ from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import SurveyError
 from surveyapp_models.arrays import Floats
 from surveyapp_models.compass.heading import level_field, tilted
+from tests.cli.command import run
 
 
 def turned_log(
@@ -175,6 +176,11 @@ def test_without_a_turn_the_model_is_not_chosen(tmp_path: Path) -> None:
     found = api.calibrate("compass", made.folder, sensor="compass")
     assert [m.id for m in found.models if m.chosen] == ["centre"]
     assert [m.id for m in found.models] == ["none", "centre", "scales", "full", "misalignment"]
+    assert [m.of for m in found.models[:-1]] == ["distance from the ellipsoid"] * 4
+    assert found.models[-1].of.startswith("vector of the field in the level frame; ")
+    assert {m.unit for m in found.models} == {"uT"}
+    shown = run("calibrate", "compass", made.folder, "--sensor", "compass").out
+    assert "held out  unit  of" in shown
     turn = [found.parameter(f"misalignment_{a}") for a in "xyz"]
     assert [(t.value, t.sigma) for t in turn] == [(0.0, None)] * 3
 

@@ -74,7 +74,7 @@ def test_an_axis_without_a_number_has_words_and_a_path_one_scale() -> None:
         (2, 1, 1, 0.1, 0.1, 0),
         (3, 0, 1, 0.2, 0.1, 0.02),
     )
-    path = DrivenPath("inertial", 0.5, (0.0, 1.0), (1.0,), square, 3.0)
+    path = DrivenPath("inertial", 0.5, (0.0, 1.0), (1.0,), np.array(square), 3.0)
     drawn = motion_charts(Motion("log", 9, 10.0, states, 0.01, {}, {}, path=path))
     first, way, sigma = drawn
     assert isinstance(first, Chart)

@@ -22,6 +22,7 @@ from surveyapp.core.sensors.linear import alternate_blocks, correlation_inflatio
 from surveyapp.domain.calibration import Calibration, CalibrationModel, SensorParameter
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.domain.warning import ResultWarning
+from surveyapp.languages import said
 from surveyapp_models.arrays import Floats
 from surveyapp_models.compass.heading import level_field
 from surveyapp_models.rate.quaternions import from_rotation_vector, to_matrix
@@ -237,11 +238,18 @@ def _undetermined(
 def _model(attitude: Mapping[str, object] | None, *, chosen: bool) -> CalibrationModel:
     values = attitude or {}
     rms, held = values.get("rms_after"), values.get("held_out_after")
+    before = values.get("rms_before")
     return CalibrationModel(
         "misalignment",
         rms if isinstance(rms, float) else None,
         held if isinstance(held, float) and math.isfinite(held) else None,
         chosen,
+        "uT",
+        said("vector of the field in the level frame")
+        if before is None
+        else said(
+            "vector of the field in the level frame; {before:.4g} without the turn", before=before
+        ),
     )
 
 

@@ -7,6 +7,7 @@ predicts held-out blocks significantly better. The gate is the sigma of a level 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -232,10 +233,7 @@ def _result(
     fit, plain = trials[chosen].fit, trials[0]
     parameters = _parameters(fit, known, refused=verdict == "refused")
     undetermined = tuple(p.name for p in parameters if p.value is None)
-    models = tuple(
-        CalibrationModel(t.fit.model, t.fit.rms, t.held_rms, i == chosen and verdict != "refused")
-        for i, t in enumerate(trials)
-    )
+    models = _models(trials, None if verdict == "refused" else chosen)
     cells = coverage_cells(points - fit.offset)
     refused = verdict == "refused"
     return Calibration(
@@ -278,6 +276,14 @@ def _result(
         constants={} if refused else _constants(fit, dip, sigma) | _reach(log, verdict),
         notes=_notes(log, verdict),
         temperature_c=log.temperature_span_c(),
+    )
+
+
+def _models(trials: Sequence[ModelTrial], chosen: int | None) -> tuple[CalibrationModel, ...]:
+    of = said("distance from the ellipsoid")
+    return tuple(
+        CalibrationModel(trial.fit.model, trial.fit.rms, trial.held_rms, index == chosen, "uT", of)
+        for index, trial in enumerate(trials)
     )
 
 

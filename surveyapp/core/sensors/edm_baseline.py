@@ -243,6 +243,7 @@ def _result(
     temperature = log.columns.get("temperature_c")
     known = temperature is not None and bool(np.isfinite(temperature).all())
     parameters, undetermined = _parameters(readings, best, judged)
+    distances = said("distances of the baseline")
     return Calibration(
         kind="edm",
         source=log.id,
@@ -257,7 +258,8 @@ def _result(
             "mm",
         ),
         models=tuple(
-            CalibrationModel(m.id, rms[m.id] * MM, _mm(held[m.id]), m.id == chosen) for m in models
+            CalibrationModel(m.id, rms[m.id] * MM, _mm(held[m.id]), m.id == chosen, "mm", distances)
+            for m in models
         ),
         warnings=(*log.warnings, *_warnings(judged, len(sights), levelled=levelled)),
         n=log.size,

@@ -141,12 +141,13 @@ def _result(
     held, plain = _held_out(design, deviation, block), math.degrees(rms(deviation))
     after = math.degrees(fit.rms) if fit is not None and met else None
     cells = np.histogram(psi % (2.0 * np.pi), bins=12, range=(0.0, 2.0 * np.pi))[0]
+    of = said("known minus corrected heading")
     return Calibration(
         kind="swing",
         source=log.id,
         parameters=parameters,
         before=Misfit(plain, "deg", said("known minus shown heading")),
-        after=Misfit(after, "deg", said("known minus corrected heading")),
+        after=Misfit(after, "deg", of),
         geometry=Geometry(
             "good" if met else "refused",
             None if fit is None else fit.condition,
@@ -161,8 +162,8 @@ def _result(
             "deg",
         ),
         models=(
-            CalibrationModel("none", plain, plain, not met),
-            CalibrationModel("A_to_E", after, held, met),
+            CalibrationModel("none", plain, plain, not met, "deg", of),
+            CalibrationModel("A_to_E", after, held, met, "deg", of),
         ),
         warnings=(*log.warnings, *_warnings(log, fit, gate), *odd_headings(log, met=met)),
         met=met,

@@ -205,12 +205,13 @@ def _result(
         _finite(rms(np.array([item.held_after for item in fits]))),
         "arcsec",
     )
+    residuals = said("residuals of both axes")
     return Calibration(
         kind="tilt",
         source=log.id,
         parameters=tuple(parameters),
         before=Misfit(rms(raw), "arcsec", said("reading minus reference")),
-        after=Misfit(after, "arcsec", said("residuals of both axes")),
+        after=Misfit(after, "arcsec", residuals),
         geometry=Geometry(
             "restricted" if undetermined else "good",
             max(item.fit.condition for item in fits),
@@ -218,8 +219,8 @@ def _result(
         ),
         held_out=held,
         models=(
-            CalibrationModel("zero_and_scale", plain, held.before, False),
-            CalibrationModel("all_terms", after, held.after, True),
+            CalibrationModel("zero_and_scale", plain, held.before, False, "arcsec", residuals),
+            CalibrationModel("all_terms", after, held.after, True, "arcsec", residuals),
         ),
         warnings=(*log.warnings, *_warnings(log, fits, theta)),
         n=log.size,

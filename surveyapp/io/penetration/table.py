@@ -32,7 +32,8 @@ from surveyapp.domain.penetration import (
     WallRefraction,
 )
 from surveyapp.errors import Problem, nearest_names
-from surveyapp.io.tables import Findings, Table, as_number
+from surveyapp.io.findings import Findings, told_once
+from surveyapp.io.tables import Table, as_number
 from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, TWO_PI, AngleUnit
 
@@ -57,7 +58,7 @@ def read_penetration_table(
         findings.problems.append(Problem("penetration is no table", WHERE, "", "[penetration]"))
         raw = {}
     plan = read_penetration(Table(raw, WHERE, findings), instruments, unit)
-    return PenetrationTable(plan, tuple(findings.problems), tuple(findings.warnings))
+    return PenetrationTable(plan, tuple(told_once(findings.problems)), findings.told())
 
 
 def read_penetration(

@@ -29,8 +29,8 @@ from surveyapp.languages import said
 
 BLOCK_BYTES: Final = 2 * 1024 * 1024
 LONGEST_LINE: Final = 32 * 1024 * 1024
-MAPPED_VALUES: Final = 8_000_000
-"""Above this number of values the columns are mapped to disk (64 MB)."""
+MAPPED_VALUES: Final = 4_000_000
+"""Above this number of values the columns are mapped to disk (32 MB)."""
 
 _CLOCK: Final = re.compile(r"^\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}|^\d{1,2}:\d\d(:|$)")
 """A date or a time of day."""
@@ -181,13 +181,20 @@ def make_room(columns: int, rows: int) -> Array:
     """Room for so many columns, shape (columns, rows): in memory, or mapped to disk if large."""
     if columns * rows <= MAPPED_VALUES:
         return np.empty((columns, rows))
+    return make_mapped(columns, rows)
+
+
+def make_mapped(columns: int, rows: int) -> Array:
+    """Room for so many columns in a file without a name, shape (columns, rows)."""
     with tempfile.TemporaryFile() as handle:  # the mapping keeps what it needs of it
         return np.memmap(handle, dtype=np.float64, mode="w+", shape=(columns, rows))
 
 
-def room_for(size: int) -> Array:
-    """Room for one series, shape (size,); a ``columns.Room``."""
-    found: Array = make_room(1, size)[0]
+def room_for(size: int, *, beside: int = 0) -> Array:
+    """Room for one series, shape (size,), beside so many of its size; a ``columns.Room``."""
+    if (1 + beside) * size <= MAPPED_VALUES:
+        return np.empty(size)
+    found: Array = make_mapped(1, size)[0]
     return found
 
 

@@ -9,9 +9,10 @@ from typing import Final, Literal, cast
 from surveyapp.domain.shaft import CHECK_IDS, PlumbingCheck, Shaft, ShaftRowKind, ShaftTables
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.files import decode
+from surveyapp.io.findings import Findings, told_once
 from surveyapp.io.project_files import ProjectFiles, inside
 from surveyapp.io.shafts.book import parse_shaft_book
-from surveyapp.io.tables import Findings, Table
+from surveyapp.io.tables import Table
 from surveyapp.languages import either, said
 from surveyapp_models.angles import ARCSEC, AngleUnit
 
@@ -46,7 +47,7 @@ def read_shaft_tables(top: Table, files: ProjectFiles, unit: AngleUnit) -> Shaft
         for name in dict.fromkeys(names)
         if name and names.count(name) > 1
     ]
-    return ShaftTables(tuple(shafts), tuple(findings.problems), tuple(findings.warnings))
+    return ShaftTables(tuple(shafts), tuple(told_once(findings.problems)), findings.told())
 
 
 def read_shaft(table: Table) -> Shaft:

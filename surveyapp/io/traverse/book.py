@@ -15,8 +15,9 @@ from surveyapp.domain.traverse_book import Traverse, TraverseRow
 from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError, nearest_names
 from surveyapp.io.files import decode
+from surveyapp.io.findings import Findings
 from surveyapp.io.project_files import PROJECT_FILE, ProjectFiles, inside
-from surveyapp.io.tables import Findings, Table
+from surveyapp.io.tables import Table
 from surveyapp.io.traverse.rows import parse_traverse
 from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC, AngleUnit
@@ -49,7 +50,7 @@ def read_traverses(
         )
     if own is files:
         return found
-    files.findings.warnings += own.findings.warnings
+    files.findings.warnings += own.findings.told()
     files.findings.warnings += [
         ResultWarning("traverse_unusable", str(problem)) for problem in own.findings.problems
     ]

@@ -111,17 +111,22 @@ def parameter_table(parameters: Sequence[SensorParameter]) -> Table:
 
 
 def _models(result: Calibration) -> Table:
+    differ = len({model.of for model in result.models}) > 1
     rows = tuple(
         (
             named(model.id),
             four_digits(model.rms),
             four_digits(model.held_out_rms),
+            model.unit,
+            *((model.of,) if differ else ()),
             said("chosen") if model.chosen else "",
         )
         for model in result.models
     )
     chosen = frozenset(i for i, model in enumerate(result.models) if model.chosen)
-    return Table(said_each("model", "rms", "left out", ""), rows, "lrrl", strong=chosen)
+    of = said_each("of") if differ else ()
+    head = (*said_each("model", "rms", "left out", "unit"), *of, "")
+    return Table(head, rows, "lrrll" + "l" * differ, strong=chosen)
 
 
 def deviations(channel: AllanChannel) -> Table:

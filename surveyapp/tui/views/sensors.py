@@ -107,7 +107,9 @@ def card_details(shown: CardShown) -> tuple[Block, ...]:
         else texts.SENSOR_TEMPERATURES.format(low=span[0], high=span[1]),
         "notes": "; ".join(card.notes.values()),
     }
-    return (_facts(texts.SENSOR_FACTS_CARD, values), *refused, parameter_table(card.parameters))
+    odd = tuple(Paragraph(warning.text, "warning") for warning in card.warnings)
+    facts = _facts(texts.SENSOR_FACTS_CARD, values)
+    return (facts, *refused, *odd, parameter_table(card.parameters))
 
 
 def preview_blocks(preview: LogPreview) -> tuple[Block, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from surveyapp.domain.north import NorthResult
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.reading import LogFile, LogRequest, Need, open_log
+from surveyapp.workflows.north.card import Known, known_of
 from surveyapp.workflows.north.request import NorthRequest
 from surveyapp_models.arrays import Floats
 
@@ -40,8 +42,11 @@ def find(request: NorthRequest) -> NorthResult:
         elif indexed == "second":
             problems.append(Problem("there is no second log", "second", "", "a FILE"))
         across = tuple(name for name in GYROS if name != f"gyr_{axis}_rad_s")
-        log = turned.read(Need(columns=NEEDED, varying=across, optional=(*OPTIONAL, CYCLE)))
+        need = Need(columns=NEEDED, varying=across, optional=(*OPTIONAL, CYCLE))
+        log = request.read(need) if turned is request.file else turned.read(need)
         other_log = None if fixed is None else _fixed(fixed)
+        card = request.option("card")
+        known = Known() if card is None else known_of(str(card), log, problems)
     except SurveyError as error:
         raise SurveyError([*problems, *error.problems]) from None
     if problems or latitude is None:
@@ -52,9 +57,19 @@ def find(request: NorthRequest) -> NorthResult:
         bias_prior=prior,
         bias_prior_sigma=np.full(3, sigma),
         index_sigma=spread,
+        matrix=known.matrix,
     )
-    options = IndexingOptions(setting, bool(request.option("track")), other_log)
-    return find_heading(log, options)
+    options = IndexingOptions(
+        setting,
+        bool(request.option("track")),
+        other_log,
+        force_matrix=known.force_matrix,
+        force_bias=known.force_bias,
+        card=known.card,
+    )
+    # the biases are found here: what the card says of them is not asked
+    result = find_heading(log, options)
+    return replace(result, warnings=(*result.warnings, *known.told))
 
 
 def _fixed(file: LogFile) -> SensorLog:

@@ -3,30 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import replace
 from typing import Final, cast
 
-from surveyapp.core.sensors.rate.card_temperature import (
-    CHAMBER,
-    OWN,
-    model_of,
-)
-from surveyapp.core.sensors.rate.rotation import (
-    NEEDED,
-    RotationOptions,
-    card_matrix,
-    find_heading,
-)
+from surveyapp.core.sensors.rate.card_temperature import CHAMBER, OWN
+from surveyapp.core.sensors.rate.rotation import NEEDED, RotationOptions, find_heading
 from surveyapp.domain.north import NorthResult, Reference
-from surveyapp.domain.sensor_log import SensorLog
-from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.io.sensor_cards import read_sensor_card
 from surveyapp.io.sensor_logs.reading import Need
 from surveyapp.languages import either
+from surveyapp.workflows.north.card import Known, known_of
 from surveyapp.workflows.north.request import NorthRequest
-from surveyapp_models.arrays import Floats
 
 REFERENCES: Final = ("MAGNETIC", "ASTRONOMIC", "GRID")
 
@@ -53,11 +40,11 @@ def find(request: NorthRequest) -> NorthResult:
     declination, sigma = _declination(request, problems)
     latitude = request.latitude(problems, required=False)
     card = request.option("card")
-    known = _Known(*card_matrix({}))
+    known = Known()
     try:
         log = request.read(Need(columns=NEEDED, optional=(OWN, CHAMBER)))
         if card is not None:
-            known = _known(str(card), log, problems)
+            known = known_of(str(card), log, problems)
     except SurveyError as error:
         raise SurveyError([*problems, *error.problems]) from None
     if problems:
@@ -71,49 +58,13 @@ def find(request: NorthRequest) -> NorthResult:
         latitude=latitude,
         matrix=known.matrix,
         bias=known.bias,
+        force_matrix=known.force_matrix,
+        force_bias=known.force_bias,
         card=known.card,
         temperature_model=known.model,
     )
     result = find_heading(log, options)
     return replace(result, warnings=(*result.warnings, *known.told))
-
-
-@dataclass(frozen=True, slots=True)
-class _Known:
-    """What a card says of the gyros: matrix, bias [rad/s], its id, and by which model of them."""
-
-    matrix: Floats
-    bias: Floats
-    card: str = ""
-    model: str = ""
-    told: tuple[ResultWarning, ...] = ()
-
-
-def _known(name: str, log: SensorLog, problems: list[Problem]) -> _Known:
-    """A card's matrix and biases, these at the temperatures of the log where the card has them.
-
-    Raises
-    ------
-    SurveyError
-        If the card cannot be read, or the record was outside its nodes.
-    """
-    card = read_sensor_card(Path(name))
-    matrix, bias = card_matrix({p.name: p.value for p in card.parameters})
-    model = model_of(card.extra)
-    if model is not None:
-        biases, _ = model.at(log.columns, where=name)
-        if biases is not None:
-            return _Known(matrix, biases, card.id, model.model)
-    span = log.columns.get(OWN)
-    low_high = None if span is None else (float(span.min()), float(span.max()))
-    problems += card.refusals(on=None, temperature_c=low_high, where=name)
-    if model is None:
-        return _Known(matrix, bias, card.id)
-    text = (
-        "the card holds biases over temperature, and the log no temperature to which they belong: "
-        "the biases are those of the card's reference temperature"
-    )
-    return _Known(matrix, bias, card.id, told=(ResultWarning("no_temperature", text),))
 
 
 def _declination(

@@ -165,7 +165,7 @@ def motion_charts(result: Motion) -> tuple[Picture, ...]:
     ]
     if result.path is not None and len(result.path.points) > 1:
         path = result.path
-        places = pairs((p[1] for p in path.points), (p[2] for p in path.points))
+        places = pairs(path.points[:, 1].tolist(), path.points[:, 2].tolist())
         told = [joined("", (term(path.mode), f": {path.length_m:.2f} m"))]
         if path.closure_m is not None:
             told.append(
@@ -184,8 +184,8 @@ def motion_charts(result: Motion) -> tuple[Picture, ...]:
         found.append(
             Chart(said("Path"), said("east [m]"), said("north [m]"), series, square=True, note=note)
         )
-        sigma = [math.hypot(p[3], p[4]) for p in path.points]
-        along = pairs((p[0] for p in path.points), sigma)
+        sigma = np.hypot(path.points[:, 3], path.points[:, 4]).tolist()
+        along = pairs(path.points[:, 0].tolist(), sigma)
         title = said("Uncertainty of the place along the path")
         found.append(
             Chart(title, said("along [m]"), said("sigma [m]"), (Series(said("sigma"), along),))
@@ -201,7 +201,7 @@ def _ellipses(path: Path) -> tuple[Series, ...]:
     ring = np.array([np.cos(angle), np.sin(angle)])
     found = []
     for row in rows.tolist():
-        _, east, north, sigma_e, sigma_n, cross = path.points[row]
+        _, east, north, sigma_e, sigma_n, cross = path.points[row].tolist()
         covariance = np.array([[sigma_e**2, cross], [cross, sigma_n**2]])
         size, axes = np.linalg.eigh(covariance)
         edge = axes @ (np.sqrt(np.maximum(size, 0.0))[:, None] * ring) * PLANE_95

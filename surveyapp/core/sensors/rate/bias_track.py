@@ -63,7 +63,7 @@ class Tracked:
     alone : float or None
         What the set says by itself [rad/s]; None where it is not resolved.
     indexed : Indexed
-        Attitude of the set with the track as prior.
+        Attitude of the set with what the track foretold as prior.
     foretold : float or None
         What the track foretold [rad/s]; None before it begins.
     gate : float or None
@@ -130,6 +130,8 @@ def track_bias(groups: Sequence[StopSet], setting: Setting) -> list[Tracked]:
         foretold = bias if begun else None
         spread = CONTRADICTS * math.sqrt(own_variance + variance)
         gate = spread if begun and resolved is not None else None
+        # what was known before the set: with what it says itself its stops would count twice
+        held = _held(setting, axis, bias, variance)
         if not reason and begun:
             if own_variance > WEAK**2 * variance:
                 reason = "this attitude hardly tells the bias"
@@ -140,7 +142,6 @@ def track_bias(groups: Sequence[StopSet], setting: Setting) -> list[Tracked]:
         elif not reason:
             gain = variance / (variance + own_variance)
             bias, variance = bias + gain * (own - bias), (1.0 - gain) * variance
-        held = _held(setting, axis, bias, variance)
         indexed = alone if held is None else solve_indexing(group.stops, held)
         known = math.isfinite(variance)
         tracked.append(

@@ -17,6 +17,13 @@ from surveyapp_models.arrays import Floats
 TABLE: Final = "temperature_model"
 """Table of a card: ``model``, nodes ``chamber_c`` and ``sensor_c`` [C], ``bias_x/y/z`` [deg/h]."""
 OWN, CHAMBER = "temperature_c", "reference_temperature_c"
+NODE_KEYS: Final = ((CHAMBER, "chamber_c"), (OWN, "sensor_c"))
+"""Column of a log whose temperatures the nodes of a key are."""
+MODEL_KEYS: Final = (
+    "model",
+    *(key for _, key in NODE_KEYS),
+    *(f"bias_{axis}" for axis in "xyz"),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +46,7 @@ class TemperatureModel:
     def to_table(self) -> dict[str, Any]:
         """The table of a card."""
         found: dict[str, Any] = {"model": self.model}
-        for column, key in ((CHAMBER, "chamber_c"), (OWN, "sensor_c")):
+        for column, key in NODE_KEYS:
             if column in self.nodes:
                 found[key] = self.nodes[column].tolist()
         return found | {f"bias_{a}": self.bias[:, i].tolist() for i, a in enumerate("xyz")}
@@ -88,7 +95,7 @@ def model_of(extra: Mapping[str, object]) -> TemperatureModel | None:
         return None
     nodes = {
         column: numbers
-        for column, key in ((CHAMBER, "chamber_c"), (OWN, "sensor_c"))
+        for column, key in NODE_KEYS
         if (numbers := _numbers(table.get(key))) is not None
     }
     biases = [_numbers(table.get(f"bias_{a}")) for a in "xyz"]

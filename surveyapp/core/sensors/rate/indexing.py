@@ -67,7 +67,7 @@ def solve_indexing(stops: Sequence[Stop], setting: Setting) -> Indexed:
     force, force_sigma = (
         np.array([getattr(s, n) for s in stops]) for n in ("force", "force_sigma")
     )
-    scale = _scatter(turns, rate, rate_sigma, setting.axis)
+    scale = _scatter(setting.matrix @ turns, rate, rate_sigma, setting.axis)
     rate_sigma = _with_index_error(rate, rate_sigma * scale, setting)
     force_sigma = force_sigma * _scatter(turns, force, force_sigma, setting.axis)
     problem = _System(turns, rate, rate_sigma, force, force_sigma, setting)
@@ -208,15 +208,16 @@ class _System:
         force_bias[:, others] = linear[:, 3:]
         # [b, k]: navigation frame to the sensor at stop k
         to_sensor = self.turns[None] @ attitude.transpose(0, 2, 1)[:, None]
+        to_gyros = self.setting.matrix @ to_sensor
         design = np.zeros((many, 2, count, 3, _UNKNOWNS))
-        design[:, 0, :, :, ATTITUDE] = to_sensor @ _skew(earth)
+        design[:, 0, :, :, ATTITUDE] = to_gyros @ _skew(earth)
         design[:, 0, :, :, BIAS] = np.eye(3)
         design[:, 1, :, :, ATTITUDE] = to_sensor @ _skew(up)
         for column, k in enumerate(others):
             design[:, 1, :, k, 6 + column] = 1.0
         rest = np.stack(
             [
-                self.rate - to_sensor @ earth - bias[:, None],
+                self.rate - to_gyros @ earth - bias[:, None],
                 self.force - to_sensor @ up - force_bias[:, None],
             ],
             axis=1,
@@ -273,7 +274,8 @@ class _System:
         """Earth rate across the index axis from the two axes alone, and its sigma [rad/s]."""
         axis = self.setting.axis
         others = [k for k in range(3) if k != axis]
-        back = np.einsum("kji,kj->ki", self.turns, self.rate)[:, others]
+        rate = np.linalg.solve(self.setting.matrix, self.rate.T).T
+        back = np.einsum("kji,kj->ki", self.turns, rate)[:, others]
         offset = np.einsum("kji->kij", self.turns)[:, others][:, :, others]
         count = back.shape[0]
         rows = np.concatenate([np.tile(np.eye(2), (count, 1, 1)), offset], axis=2).reshape(-1, 4)

@@ -81,7 +81,7 @@ def index_problems(stops: Sequence[Stop], setting: Setting, where: str) -> list[
             axis,
             sense,
             _left(turns, force, axis, FORCE_BIAS) / size,
-            _left(turns, rate, axis, None),
+            _left(setting.matrix @ turns, rate, axis, None),
         )
 
     given = of(setting.axis, 1.0)
@@ -96,7 +96,7 @@ def index_problems(stops: Sequence[Stop], setting: Setting, where: str) -> list[
     if bad_force:
         found = _rearranged(turns, force / size, setting.axis, FORCE_BIAS / size)
         return [_exchanged("acc", found, where)] if found else []
-    found = _rearranged(turns, rate, setting.axis, None)
+    found = _rearranged(setting.matrix @ turns, rate, setting.axis, None)
     return [_exchanged("gyr", found, where)] if found else []
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -31,6 +31,7 @@ from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.languages import said
 from surveyapp_models.angles import ARCSEC
+from surveyapp_models.arrays import Floats
 from surveyapp_models.constants import EARTH_RATE
 from surveyapp_models.rate import quaternions
 from surveyapp_models.rate.attitude import azimuth_of, earth_rate
@@ -71,11 +72,18 @@ class IndexingOptions:
     track : bool
     fixed : SensorLog or None
         Log of a second unit that was not turned.
+    force_matrix, force_bias : ndarray, shape (3, 3), (3,)
+        Of the accelerometers: output = matrix force + bias [m/s2].
+    card : str
+        Where these and the matrix of the gyros come from; empty = nominal.
     """
 
     setting: Setting
     track: bool = False
     fixed: SensorLog | None = None
+    force_matrix: Floats = field(default_factory=lambda: np.eye(3))
+    force_bias: Floats = field(default_factory=lambda: np.zeros(3))
+    card: str = ""
 
 
 def find_heading(log: SensorLog, options: IndexingOptions) -> NorthResult:
@@ -86,7 +94,14 @@ def find_heading(log: SensorLog, options: IndexingOptions) -> NorthResult:
     SurveyError
     """
     stops, rows, warnings = stops_of(log)
-    stops, dof = with_sigmas(stops, options.setting.axis)
+    stops = [_true_force(stop, options) for stop in stops]
+    stops, dof = with_sigmas(stops, options.setting)
+    if not options.card:
+        text = (
+            "no sensor card: the axes of gyros and accelerometers are taken as perpendicular and "
+            "their scale factors as nominal; what they are off by is in no sigma (--card)"
+        )
+        warnings.append(ResultWarning("nominal_axes", text))
     groups = _groups(log, stops, rows)
     for group in groups:
         problems = index_problems(group.stops, options.setting, log.path)
@@ -126,6 +141,14 @@ def find_heading(log: SensorLog, options: IndexingOptions) -> NorthResult:
         raise SurveyError(problems)
     seen = Seen(warnings, used, student_quantile(0.975, dof))
     return _result(log, options, found, tracking, seen=seen)
+
+
+def _true_force(stop: Stop, options: IndexingOptions) -> Stop:
+    """The stop with the specific force that its card makes of the accelerometers."""
+    if not options.card:
+        return stop
+    force = np.linalg.solve(options.force_matrix, stop.force - options.force_bias)
+    return replace(stop, force=np.asarray(force))
 
 
 def _stood_differently(groups: Sequence[StopSet], together: Indexed, setting: Setting) -> bool:
@@ -192,6 +215,7 @@ def _result(
         "geometry": geometry,
         "tracking": [t.to_dict() for t in tracking],
         "stops": seen.stops,
+        "card": options.card or None,
         "fixed_gyro": None if options.fixed is None else _fixed(options.fixed, best, setting),
     }
     return NorthResult(

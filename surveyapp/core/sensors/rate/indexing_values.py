@@ -53,6 +53,9 @@ class Setting:
         [rad/s]; infinite = no prior of this axis.
     index_sigma : float
         Of every index angle [rad].
+    matrix : ndarray, shape (3, 3)
+        Output matrix of the gyros, output = matrix rate + bias: axes that are not perpendicular,
+        scale factors.
     """
 
     latitude: float
@@ -61,6 +64,7 @@ class Setting:
     bias_prior: Floats | None = None
     bias_prior_sigma: Floats = field(default_factory=lambda: np.zeros(3))
     index_sigma: float = 0.0
+    matrix: Floats = field(default_factory=lambda: np.eye(3))
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from surveyapp.core.sensors.rate.motion_pieces import ACCELEROMETERS, PIECE_ROWS, stacked
-from surveyapp.core.sensors.rate.still import Mask
+from surveyapp.core.sensors.rate.rests import Rests
+from surveyapp.domain.columns import PIECE, pieces, span
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem
@@ -25,11 +26,14 @@ def odometer_problems(log: SensorLog) -> list[Problem]:
     values = log.columns.get(ODOMETER)
     if values is None:
         return []
-    steps = np.diff(values)
-    back = float(-steps[steps < 0.0].sum())
+    back, first = 0.0, 0
+    for number, piece in enumerate(pieces(values, overlap=1)):
+        falls = np.minimum(np.diff(piece), 0.0)
+        if back == 0.0 and falls.any():
+            first = number * PIECE + int(np.argmax(falls < 0.0)) + 1
+        back -= float(falls.sum())
     if back <= FALLS_M:
         return []
-    first = int(np.argmax(steps < 0.0)) + 1
     return [
         Problem(
             said("the odometer counts back"),
@@ -41,28 +45,28 @@ def odometer_problems(log: SensorLog) -> list[Problem]:
     ]
 
 
-def _mean_of(log: SensorLog, rows: Mask) -> Floats:
-    """Mean force of the marked rows, (3,), piece by piece."""
-    total = np.zeros(3)
-    for begin in range(0, rows.size, PIECE_ROWS):
+def _mean_of(log: SensorLog, rests: Rests) -> Floats:
+    """Mean force at rest, (3,), piece by piece; of the whole record where it never rests."""
+    total, chosen = np.zeros(3), rests if rests.runs else Rests(((0, log.size),), log.size)
+    for begin in range(0, log.size, PIECE_ROWS):
         part = slice(begin, begin + PIECE_ROWS)
-        total = total + stacked(log, ACCELEROMETERS, part)[rows[part]].sum(axis=0)
-    return np.asarray(total / np.count_nonzero(rows))
+        rows = chosen.mask(begin, begin + PIECE_ROWS)
+        total = total + stacked(log, ACCELEROMETERS, part)[rows].sum(axis=0)
+    return np.asarray(total / chosen.count)
 
 
-def record_doubts(log: SensorLog, still: Mask, *, snapping: bool) -> list[ResultWarning]:
+def record_doubts(log: SensorLog, rests: Rests, *, snapping: bool) -> list[ResultWarning]:
     """What may be wrong although a result comes out.
 
     Parameters
     ----------
     log : SensorLog
-    still : ndarray of bool, shape (n,)
+    rests : Rests
     snapping : bool
         Whether the drift is to be laid back over the path.
     """
     found = []
-    rows = still if still.any() else np.ones(still.size, dtype=bool)
-    felt = _mean_of(log, rows)
+    felt = _mean_of(log, rests)
     size = float(np.linalg.norm(felt))
     if abs(felt[2]) < UPRIGHT * size:
         along = "xyz"[int(np.argmax(np.abs(felt)))]
@@ -78,8 +82,8 @@ def record_doubts(log: SensorLog, still: Mask, *, snapping: bool) -> list[Result
             text = "nothing was snapped: the drift is laid back over what an odometer counted"
             found.append(ResultWarning("no_odometer", text))
         return found
-    moving_s = float(np.count_nonzero(~still)) / (log.rate_hz or 100.0)
-    if float(np.ptp(odometer)) == 0.0 and moving_s > LEAST_MOVING_S:
+    moving_s = (log.size - rests.count) / (log.rate_hz or 100.0)
+    if span(odometer) == 0.0 and moving_s > LEAST_MOVING_S:
         text = said(
             "the odometer stands while the sensors move for {moving_s:.0f} s: the path is no path",
             moving_s=moving_s,

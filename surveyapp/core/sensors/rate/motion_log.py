@@ -20,13 +20,11 @@ from surveyapp.core.sensors.rate.motion_pieces import (
     states_of,
 )
 from surveyapp.core.sensors.rate.motion_states import Thresholds
-from surveyapp.core.sensors.rate.odometer_path import Driven, Reckoned, reckon, snap
-from surveyapp.core.sensors.rate.still import (
-    FALSE_ALARM,
-    Gate,
-    Mask,
-    runs_of,
-)
+from surveyapp.core.sensors.rate.odometer_drive import drive_of
+from surveyapp.core.sensors.rate.odometer_path import Driven, Reckoned, reckon
+from surveyapp.core.sensors.rate.rests import Rests
+from surveyapp.core.sensors.rate.snapping import snap
+from surveyapp.core.sensors.rate.still import FALSE_ALARM, Gate
 from surveyapp.core.sensors.rate.zero_velocity import (
     BOUND,
     TOLERATED,
@@ -34,7 +32,7 @@ from surveyapp.core.sensors.rate.zero_velocity import (
     Samples,
     inertial_path,
 )
-from surveyapp.domain.columns import let_go
+from surveyapp.domain.columns import Room, in_memory, let_go
 from surveyapp.domain.motion import Motion, MotionSegment, Path, Snapped
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.domain.warning import ResultWarning
@@ -80,8 +78,15 @@ class MotionOptions:
     power_cycle: Literal["previous", "current"] = "current"
 
 
-def judge_motion(log: SensorLog, options: MotionOptions) -> Motion:
+def judge_motion(log: SensorLog, options: MotionOptions, *, room: Room = in_memory) -> Motion:
     """States, path and test of a record.
+
+    Parameters
+    ----------
+    log : SensorLog
+    options : MotionOptions
+    room : callable
+        Where columns as long as the record lie.
 
     Raises
     ------
@@ -95,11 +100,11 @@ def judge_motion(log: SensorLog, options: MotionOptions) -> Motion:
         raise SurveyError(falls)
     interval = 1.0 / (log.rate_hz or 100.0)
     states = states_of(log, false_alarm=options.false_alarm, factor=options.still_gate_factor)
-    path, snapped, zero, warnings = _path(_Record(log, states, interval), options)
+    path, snapped, zero, warnings = _path(_Record(log, states, interval, room), options)
     time = log.columns["time_s"]
-    doubts = record_doubts(log, states.still, snapping=options.snap)
+    doubts = record_doubts(log, states.rests, snapping=options.snap)
     warnings = [*warnings, *doubts]
-    unseen = _unseen(time, states.still, interval) if path is not None else None
+    unseen = _unseen(time, states.rests, interval) if path is not None else None
     if unseen is not None:
         warnings = [*warnings, unseen]
     stands = any(w.code == "odometer_stands" for w in doubts)
@@ -125,14 +130,14 @@ def judge_motion(log: SensorLog, options: MotionOptions) -> Motion:
     )
 
 
-def _unseen(time: Floats, still: Mask, interval: float) -> ResultWarning | None:
+def _unseen(time: Floats, rests: Rests, interval: float) -> ResultWarning | None:
     """That a path runs over a gap in which the unit may have moved: it is not known there."""
     longest = max(LONGEST_GAP_S, 1.5 * interval)
     found = []
     for begin in range(0, time.size - 1, PIECE_ROWS):
         part = slice(begin, begin + PIECE_ROWS + 1)
-        wide, rests = np.diff(time[part]) > longest, still[part]
-        found.append(begin + np.flatnonzero(wide & ~(rests[:-1] & rests[1:])))
+        wide, still = np.diff(time[part]) > longest, rests.mask(begin, begin + PIECE_ROWS + 1)
+        found.append(begin + np.flatnonzero(wide & ~(still[:-1] & still[1:])))
         let_go(time)
     rows = np.concatenate(found)
     if rows.size == 0:
@@ -161,16 +166,17 @@ def _thresholds(gate: Gate, limits: Thresholds) -> dict[str, float]:
 
 @dataclass(frozen=True, slots=True)
 class _Record:
-    """A log, what was found of its states, and the interval [s]."""
+    """A log, what was found of its states, the interval [s], and room for further columns."""
 
     log: SensorLog
     states: States
     interval: float
+    room: Room
 
     @property
-    def still(self) -> Mask:
-        """Rows at rest."""
-        return self.states.still
+    def rests(self) -> Rests:
+        """Its rests."""
+        return self.states.rests
 
     def samples_from(self, begun: int) -> Samples:
         """Forces and rates of the rows from one on, read when they are asked for."""
@@ -189,15 +195,15 @@ def _path(
     asked = options.path or options.snap
     if not asked and options.still_gate_factor == 1.0:
         return None, [], None, []
-    if not record.still.any():
+    if not record.rests.runs:
         if not asked:
             return None, [], None, []
         hint = "stand still for some seconds before driving off: bias and level come from there"
         raise SurveyError(Problem("there is no stop in the record", record.log.path, hint=hint))
     if asked and "odometer_m" in record.log.columns:
-        path, snapped = _by_odometer(record, options)
-        return path, snapped, None, []
-    begun = int(np.argmax(record.still))
+        path, snapped, warnings = _by_odometer(record, options)
+        return path, snapped, None, warnings
+    begun = record.rests.runs[0][0]
     warnings = []
     if begun > 0:
         text = said(
@@ -205,9 +211,9 @@ def _path(
             value=begun * record.interval,
         )
         warnings.append(ResultWarning("before_first_stop", text))
-    still = record.still[begun:]
-    found = inertial_path(record.samples_from(begun), still, interval_s=record.interval)
-    return _inertial(found, still.size, options), [], _zero_velocity(found), warnings
+    rests = record.rests.behind(begun)
+    found = inertial_path(record.samples_from(begun), rests, interval_s=record.interval)
+    return _inertial(found, rests.size, options), [], _zero_velocity(found), warnings
 
 
 def _zero_velocity(found: InertialPath) -> dict[str, Any]:
@@ -237,11 +243,10 @@ def _inertial(found: InertialPath, size: int, options: MotionOptions) -> Path:
         closure = float(np.linalg.norm(end - begin))
     spread = np.sqrt(np.maximum(np.diag(level), 0.0))
     share = found.rows / max(size - 1, 1)
-    points = tuple(
-        (float(d), float(p[0]), float(p[1]),
-         float(spread[0] * math.sqrt(r)), float(spread[1] * math.sqrt(r)), float(level[0, 1] * r))
-        for d, p, r in zip(found.along, place, share.tolist(), strict=True)
-    )  # fmt: skip
+    grown = np.sqrt(share)
+    points = np.column_stack(
+        [found.along, place[:, :2], spread[0] * grown, spread[1] * grown, level[0, 1] * share]
+    )
     sides = _sides(_apart(list(stops)))
     return Path("inertial", closure, tuple(end.tolist()), sides, points, found.length)
 
@@ -269,63 +274,51 @@ def _sides(stops: list[Floats]) -> tuple[float, ...]:
     return tuple(float(np.linalg.norm(b - a)) for a, b in pairwise(stops))
 
 
-def _by_odometer(record: _Record, options: MotionOptions) -> tuple[Path, list[Snapped]]:
+def _by_odometer(
+    record: _Record, options: MotionOptions
+) -> tuple[Path, list[Snapped], list[ResultWarning]]:
     log = record.log
     begin = options.begin or (0.0, 0.0, 0.0)
-    driven = _driven(record, begin[2])
-    snapped: list[Snapped] = []
-    if options.snap:
-        driven, snapped, _ = snap(
-            driven, power_cycle=options.power_cycle, end=options.end, start=begin[:2]
-        )
-    speed = max(
-        float(driven.distance[-1] - driven.distance[0]) / float(np.ptp(log.columns["time_s"])), 0.01
+    time, noise = log.columns["time_s"], record.states.noise
+    driven = drive_of(
+        log,
+        record.rests,
+        azimuth=begin[2],
+        bias=float(noise.bias[2]),
+        interval_s=record.interval,
+        room=record.room,
     )
-    walk = float(record.states.noise.rate[2]) * math.sqrt(record.interval / speed)
+    snapped: list[Snapped] = []
+    warnings = []
+    if options.snap:
+        driven, snapped = snap(
+            driven,
+            power_cycle=options.power_cycle,
+            end=options.end,
+            start=begin[:2],
+            room=record.room,
+        )
+        if options.end is not None and not driven.known and not snapped:
+            text = "nothing was snapped: no drift of the heading brings the path to the stated end"
+            warnings.append(ResultWarning("end_not_met", text))
+    driven_m = float(driven.distance[-1] - driven.distance[0])
+    speed = max(driven_m / float(time[-1] - time[0]), 0.01)
+    walk = float(noise.rate[2]) * math.sqrt(record.interval / speed)
     found = reckon(driven, start=begin[:2], heading_walk=walk, heading_sigma=BEGIN_SIGMA)
     end = found.place[-1]
     target = options.end if options.end is not None else begin[:2]
     closure = math.hypot(float(end[0]) - target[0], float(end[1]) - target[1])
-    return _odometer_path(found, driven, closure), snapped
-
-
-def _driven(record: _Record, azimuth: float) -> Driven:
-    """Odometer and integrated heading; biases from every rest, so that the earth cancels too."""
-    log = record.log
-    up = 1.0 if float(np.median(log.columns[ACCELEROMETERS[2]])) >= 0.0 else -1.0
-    bias = _bias_at_rest(record)
-    turn = -up * (log.columns[GYROS[2]] - bias)
-    turn[record.still] = 0.0
-    heading = azimuth + np.concatenate([[0.0], np.cumsum(turn[:-1]) * record.interval])
-    known = log.columns.get("heading_deg", np.full(log.size, np.nan))
-    cycle = log.columns.get("power_cycle", np.zeros(log.size))
-    distance = np.maximum.accumulate(log.columns["odometer_m"])
-    return Driven(distance, heading, np.deg2rad(known), np.nan_to_num(cycle), record.still)
-
-
-def _bias_at_rest(record: _Record) -> Floats:
-    """Mean vertical rate of each rest, joined by straight lines, shape (n,)."""
-    runs = [r for r in runs_of(record.still) if r[1] - r[0] >= round(0.5 / record.interval)]
-    if not runs:
-        return np.full(record.still.size, float(record.states.noise.bias[2]))
-    middle = np.array([0.5 * (a + b) for a, b in runs])
-    means = np.array([float(record.log.columns[GYROS[2]][a:b].mean()) for a, b in runs])
-    return np.asarray(np.interp(np.arange(record.still.size), middle, means))
+    return _odometer_path(found, driven, closure), snapped, warnings
 
 
 def _odometer_path(found: Reckoned, driven: Driven, closure: float) -> Path:
-    zero = float(driven.distance[0])
-    stops: list[Floats] = []
-    for first, last in runs_of(driven.still):
-        along = float(driven.distance[(first + last) // 2]) - zero
-        here = np.array([np.interp(along, found.distance, found.place[:, i]) for i in range(2)])
-        if not stops or float(np.linalg.norm(here - stops[-1])) > SAME_STOP_M:
-            stops.append(here)
+    middle = [(first + last) // 2 for first, last in driven.rests.runs]
+    along = driven.distances(middle) - float(driven.distance[0])
+    at = np.column_stack([np.interp(along, found.distance, found.place[:, i]) for i in range(2)])
+    stops = _apart(list(at))
     sigma = np.sqrt(np.maximum(np.diagonal(found.covariance, axis1=1, axis2=2), 0.0))
-    points = tuple(
-        (float(d), float(p[0]), float(p[1]), float(s[0]), float(s[1]), float(c[0, 1]))
-        for d, p, s, c in zip(found.distance, found.place, sigma, found.covariance, strict=True)
-    )
+    cross = found.covariance[:, 0, 1]
+    points = np.column_stack([found.distance, found.place, sigma, cross])
     end = (float(found.place[-1, 0]), float(found.place[-1, 1]), 0.0)
     return Path("odometer", closure, end, _sides(stops), points, float(found.distance[-1]))
 

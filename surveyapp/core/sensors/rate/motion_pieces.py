@@ -19,22 +19,25 @@ from surveyapp.core.sensors.rate.motion_states import (
     segments_of,
     thresholds_of,
 )
+from surveyapp.core.sensors.rate.rests import Rests, Run
 from surveyapp.core.sensors.rate.smooth_motion import moving_smoothly
 from surveyapp.core.sensors.rate.still import (
     WINDOW_S,
     Gate,
-    Mask,
     RestNoise,
+    bias_tolerance,
     bridged,
     motion_gate,
     norm_and_rate,
     rest_noise,
+    runs_of,
     statistic,
 )
 from surveyapp.domain.columns import let_go
 from surveyapp.domain.motion import MotionSegment
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp_models.arrays import Floats
+from surveyapp_models.constants import EARTH_RATE
 
 GYROS = ("gyr_x_rad_s", "gyr_y_rad_s", "gyr_z_rad_s")
 ACCELEROMETERS = ("acc_x_m_s2", "acc_y_m_s2", "acc_z_m_s2")
@@ -56,7 +59,7 @@ class States:
     Parameters
     ----------
     segments : tuple of MotionSegment
-    still : ndarray of bool, shape (n,)
+    rests : Rests
     noise : RestNoise
         Of the quietest piece.
     gate : Gate
@@ -70,7 +73,7 @@ class States:
     """
 
     segments: tuple[MotionSegment, ...]
-    still: Mask
+    rests: Rests
     noise: RestNoise
     gate: Gate
     limits: Thresholds
@@ -92,6 +95,15 @@ class _Piece:
     def vectors(self, log: SensorLog, names: Sequence[str]) -> Floats:
         """Columns side by side, shape (k, 3)."""
         return stacked(log, names, slice(self.first, self.last))
+
+    def column(self, log: SensorLog, name: str) -> Floats | None:
+        """A column, shape (k,); None where the log has none."""
+        values = log.columns.get(name)
+        if values is None:
+            return None
+        found = np.array(values[self.first : self.last])
+        let_go(values)
+        return found
 
     @property
     def inner(self) -> slice:
@@ -136,43 +148,44 @@ def states_of(
     noises = _noises(log, pieces, 1.0 / interval)
     quietest = min(noises, key=_loudness)
     noises = _carried(noises, _loudness(quietest))
-    sample = _sampled(log, pieces, noises, window)
-    gate = motion_gate(sample, window=window, false_alarm=false_alarm, factor=factor)
-    still = np.zeros(log.size, dtype=bool)
+    sample = _sampled(log, pieces, noises, window=window, interval=interval)
+    gate = motion_gate(sample, window=window, false_alarm=false_alarm, factor=factor, own_means=6)
+    runs: list[Run] = []
     both, other_count = 0, 0
     segments: list[MotionSegment] = []
     limits: Thresholds | None = None
     for piece, noise in zip(pieces, noises, strict=True):
         force, rate = piece.vectors(log, ACCELEROMETERS), piece.vectors(log, GYROS)
-        values = statistic(force, rate, noise, window=window)
+        values = _statistic(force, rate, noise, window=window, interval=interval)
         rest = bridged(values <= gate.threshold, rate_hz=1.0 / interval)
-        rolled = log.columns.get("odometer_m")
         rest &= ~moving_smoothly(
             force,
             rate,
             rest,
             noise=noise,
             interval_s=interval,
-            odometer=None if rolled is None else rolled[piece.first : piece.last],
+            odometer=piece.column(log, "odometer_m"),
         )
         other = bridged(
             norm_and_rate(force, rate, noise, false_alarm=false_alarm), rate_hz=1.0 / interval
         )
         forward, turn = forward_and_turn(force, rate, rest, noise, interval_s=interval)
         own = thresholds_of(force, rate, rest, interval_s=interval, false_alarm=false_alarm)
-        time = log.columns["time_s"][piece.first : piece.last]
+        time = piece.column(log, "time_s")
+        assert time is not None
         found = segments_of(time, rest, forward, turn, limits=own)
         segments = _joined(segments, found, *_times(log, piece))
         let_go(log.columns["time_s"])
-        still[piece.begin : piece.end] = rest[piece.inner]
+        runs += [(piece.begin + a, piece.begin + b) for a, b in runs_of(rest[piece.inner])]
         both += int(np.count_nonzero(rest[piece.inner] & other[piece.inner]))
         other_count += int(np.count_nonzero(other[piece.inner]))
         limits = own if limits is None else limits
     assert limits is not None
-    count = int(np.count_nonzero(still))
+    rests = Rests.joined(runs, log.size)
+    count = rests.count
     return States(
         tuple(segments),
-        still,
+        rests,
         quietest,
         gate,
         limits,
@@ -215,15 +228,29 @@ def _carried(noises: Sequence[RestNoise], quietest: float) -> list[RestNoise]:
     return found
 
 
+def _statistic(
+    force: Floats, rate: Floats, noise: RestNoise, *, window: int, interval: float
+) -> Floats:
+    """Likelihood ratio of rest, whatever the earth turns in a unit that now points elsewhere."""
+    tolerance = bias_tolerance(rate, noise, rate_hz=1.0 / interval, least=2.0 * EARTH_RATE)
+    return statistic(force, rate, noise, window=window, tolerance=tolerance)
+
+
 def _sampled(
-    log: SensorLog, pieces: Sequence[_Piece], noises: Sequence[RestNoise], window: int
+    log: SensorLog,
+    pieces: Sequence[_Piece],
+    noises: Sequence[RestNoise],
+    *,
+    window: int,
+    interval: float,
 ) -> Floats:
     """Statistics of the record, of a long one a share of them evenly spread."""
     stride = max(-(-log.size // SAMPLED), 1)
     parts = []
     for piece, noise in zip(pieces, noises, strict=True):
         force, rate = piece.vectors(log, ACCELEROMETERS), piece.vectors(log, GYROS)
-        parts.append(statistic(force, rate, noise, window=window)[piece.inner][::stride])
+        values = _statistic(force, rate, noise, window=window, interval=interval)
+        parts.append(values[piece.inner][::stride].copy())
     return np.concatenate(parts)
 
 

@@ -45,47 +45,61 @@ def forward_and_turn(
 ) -> tuple[Floats, Floats]:
     """Forward acceleration [m/s2] and clockwise vertical rate [rad/s], smoothed, shape (n,).
 
-    The pitch is carried by the gyro and pulled to the accelerometer's with a long time constant,
-    at rest at once.
+    Up in the body is carried by the gyros and pulled to the accelerometers' with a long time
+    constant, at rest at once: its part along Y is what a tilted unit feels of gravity.
     """
-    pitch_rate = rate[:, 0] - noise.bias[0]
-    felt = np.arcsin(np.clip(force[:, 1] / noise.gravity, -1.0, 1.0))
-    pitch = _complementary(pitch_rate, felt, still, interval_s)
-    forward = force[:, 1] - noise.gravity * np.sin(pitch)
+    own = rate - noise.bias
+    along, turn = _complementary(own, force / noise.gravity, still, interval_s)
+    forward = force[:, 1] - noise.gravity * along
     forward = np.where(still, 0.0, forward)
-    up = np.where(np.median(force[:, 2]) >= 0.0, 1.0, -1.0)
-    turn = -up * (rate[:, 2] - noise.bias[2])
     width = max(round(SMOOTHED_S / interval_s), 1)
-    return smoothed(forward, width), smoothed(np.asarray(turn), width)
+    return smoothed(forward, width), smoothed(turn, width)
 
 
-def _complementary(rate: Floats, felt: Floats, still: Mask, interval_s: float) -> Floats:
-    """First-order complementary filter of an angle, piecewise between rests.
+def _complementary(
+    rate: Floats, felt: Floats, still: Mask, interval_s: float
+) -> tuple[Floats, Floats]:
+    """First-order complementary filter of up along Y, piecewise between rests; and the turning.
 
-    Within a motion the angle is the one of the rest before it plus the integrated rate, pulled
-    linearly to that of the rest after it: what the gyro drifted in between. A record without any
-    rest is pulled to the accelerometer with a long time constant.
+    Within a motion up is that of the rest before it carried by the rates, pulled linearly to that
+    of the rest after it: what the gyros drifted in between. A record without any rest is pulled to
+    the accelerometers with a long time constant. Where up is u, it moves by -w x u: along Y by
+    w_x u_z - w_z u_x, so that a unit that is mounted with a roll keeps its level in a curve.
     """
-    steps = np.concatenate([[0.0], np.cumsum(rate) * interval_s])
     width = max(round(0.5 / interval_s), 1)
     reach = max(round(REST_S / interval_s), 1)
-    result = smoothed(felt, width)
+    along = smoothed(felt[:, 1], width)
+    usual = _unit(np.median(felt, axis=0))
+    turn = np.asarray(-(rate @ usual))
     for first, last in runs_of(~still):
-        before, after = felt[max(first - reach, 0) : first], felt[last : last + reach]
-        carried = steps[first:last] - steps[first]
-        if before.size and after.size:
-            begin, end = float(np.mean(before)), float(np.mean(after))
-            drift = end - begin - float(steps[last] - steps[first])
-            carried = begin + carried + drift * np.linspace(0.0, 1.0, last - first)
-        elif before.size:
-            carried = float(np.mean(before)) + carried
-        elif after.size:
-            carried = float(np.mean(after)) - float(steps[last] - steps[first]) + carried
+        before = felt[max(first - reach, 0) : first].mean(axis=0) if first > 0 else None
+        after = felt[last : last + reach].mean(axis=0) if last < still.size else None
+        begin = _unit(before if before is not None else usual if after is None else after)
+        end = _unit(after) if after is not None else begin
+        share = np.linspace(0.0, 1.0, last - first)
+        up_x, up_z = (begin[k] + (end[k] - begin[k]) * share for k in (0, 2))
+        part = rate[first:last]
+        moved = (part[:, 0] * up_z - part[:, 2] * up_x) * interval_s
+        turn[first:last] = -(part[:, 0] * up_x + part[:, 2] * up_z)
+        whole = float(moved.sum())
+        carried = np.cumsum(moved) - moved
+        if before is not None and after is not None:
+            carried = before[1] + carried + (after[1] - before[1] - whole) * share
+        elif before is not None:
+            carried = before[1] + carried
+        elif after is not None:
+            carried = after[1] - whole + carried
         else:
             slow = max(round(LEVEL_S / interval_s), 1)
-            carried = carried + smoothed(felt[first:last] - carried, slow)
-        result[first:last] = carried
-    return result
+            carried = carried + smoothed(felt[first:last, 1] - carried, slow)
+        turn[first:last] -= part[:, 1] * carried
+        along[first:last] = carried
+    return along, turn
+
+
+def _unit(vector: Floats) -> Floats:
+    """The direction of a vector, shape (3,)."""
+    return np.asarray(vector / max(float(np.linalg.norm(vector)), 1e-300))
 
 
 def smoothed(values: Floats, width: int) -> Floats:

@@ -1,48 +1,81 @@
-"""Dead reckoning with an odometer: path in half-metre steps, its covariance, and snapping.
+"""Dead reckoning with an odometer: path in half-metre steps and its covariance.
 
-Between stops the heading drifts; where it is known again (a heading found at a stop, or the point
-at which the path ends), the drift is laid back linearly over what was driven since the stop before.
-After a power cycle the heading is off by a constant, and so is the correction.
+The rows of a drive are walked through piece by piece; only the points of the path are held.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from surveyapp.domain.motion import Snapped
-from surveyapp_models.angles import wrap_pi
+from surveyapp.core.sensors.rate.motion_pieces import PIECE_ROWS
+from surveyapp.core.sensors.rate.rests import Rests
+from surveyapp.domain.columns import let_go
 from surveyapp_models.arrays import Floats
 
 STEP_M = 0.5
 ODOMETER_SIGMA = 0.002
 """Relative scale error of a wheel: 2 mm in a metre, a tyre's wear; told with the result."""
+POINTS_AT_ONCE = 1 << 14
+ROWS_AT_ONCE = 100
+"""Rows far apart that are looked at together: a mapped column comes into memory around each."""
 
 
 @dataclass(frozen=True, slots=True)
 class Driven:
-    """A drive.
+    """A drive; its columns may be mapped.
 
     Parameters
     ----------
     distance : ndarray, shape (n,)
-        Of the odometer [m].
+        Of the odometer, never falling [m].
     heading : ndarray, shape (n,)
         Integrated, clockwise [rad].
-    known : ndarray, shape (n,)
-        Heading found at a stop [rad], NaN elsewhere.
-    cycle : ndarray, shape (n,)
-        Number of the power cycle.
-    still : ndarray of bool, shape (n,)
+    known : mapping of int to float
+        Row to the heading that was found there, at a stop [rad].
+    cycle : ndarray, shape (n,), or None
+        Number of the power cycle, NaN for 0; None where the power stayed.
+    rests : Rests
     """
 
     distance: Floats
     heading: Floats
-    known: Floats
-    cycle: Floats
-    still: np.ndarray
+    known: Mapping[int, float]
+    cycle: Floats | None
+    rests: Rests
+
+    @property
+    def size(self) -> int:
+        """Rows."""
+        return int(self.distance.size)
+
+    def cycles(self, first: int, last: int) -> Floats:
+        """Power cycles of the rows first to last (exclusive)."""
+        if self.cycle is None:
+            return np.zeros(last - first)
+        return np.asarray(np.nan_to_num(self.cycle[first:last]))
+
+    def cycle_at(self, row: int) -> float:
+        """Power cycle of a row."""
+        return float(self.cycles(row, row + 1)[0])
+
+    def distances(self, rows: Sequence[int]) -> Floats:
+        """Of rows here and there, shape (k,)."""
+        found = np.empty(len(rows))
+        for first in range(0, len(rows), ROWS_AT_ONCE):
+            few = np.array(rows[first : first + ROWS_AT_ONCE], dtype=np.intp)
+            found[first : first + few.size] = self.distance[few]
+            let_go(self.distance)
+        return found
+
+    def let_go(self) -> None:
+        """Give back the memory of what was walked through."""
+        for column in (self.distance, self.heading, self.cycle):
+            if column is not None:
+                let_go(column)
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,170 +113,55 @@ def reckon(
     length = float(driven.distance[-1] - driven.distance[0])
     count = max(math.ceil(length / STEP_M - 1e-9), 1)
     grid = driven.distance[0] + np.minimum(np.arange(count + 1) * STEP_M, length)
-    unique = np.concatenate([[True], np.diff(driven.distance) > 0.0])
-    heading = np.interp(
-        0.5 * (grid[1:] + grid[:-1]), driven.distance[unique], np.unwrap(driven.heading)[unique]
-    )
+    heading = _headings_at(driven, 0.5 * (grid[1:] + grid[:-1]))
     steps = np.diff(grid)[:, None] * np.column_stack([np.sin(heading), np.cos(heading)])
     place = np.vstack([np.zeros(2), np.cumsum(steps, axis=0)]) + np.array(start)
     covariance = _covariance(steps, heading_walk, heading_sigma)
     return Reckoned(grid - driven.distance[0], place, covariance)
 
 
-def _covariance(steps: Floats, walk: float, begin: float) -> Floats:
-    """Of each point: common heading, its random walk, and the odometer's scale, shape (m, 2, 2)."""
-    whole = np.vstack([np.zeros(2), np.cumsum(steps, axis=0)])
-    found = np.zeros((whole.shape[0], 2, 2))
-    across = np.column_stack([whole[:, 1], -whole[:, 0]])
-    found += begin**2 * across[:, :, None] * across[:, None, :]
-    found += ODOMETER_SIGMA**2 * whole[:, :, None] * whole[:, None, :]
-    if walk > 0.0 and steps.shape[0]:
-        # a heading kick before step j turns everything after it: sum over j of (P - P_j)(P - P_j)'
-        squares = np.einsum("ki,kj->kij", whole, whole)
-        count = np.arange(whole.shape[0])[:, None, None]
-        total = np.cumsum(squares, axis=0) - squares
-        first = np.cumsum(whole, axis=0) - whole
-        cross = whole[:, :, None] * first[:, None, :]
-        lever = count * squares - cross - np.swapaxes(cross, 1, 2) + total
-        turned = np.array([[0.0, 1.0], [-1.0, 0.0]])
-        found += walk**2 * STEP_M * np.einsum("ab,kbc,dc->kad", turned, lever, turned)
+def _headings_at(driven: Driven, places: Floats) -> Floats:
+    """Heading at rising places along the way, between the rows where the odometer moved, (k,)."""
+    found, done = np.empty(places.size), 0
+    along, angle = np.array(driven.distance[:1]), np.array(driven.heading[:1])
+    before = unwrapped = float(angle[0])
+    for begin in range(1, driven.size, PIECE_ROWS):
+        part = slice(begin, begin + PIECE_ROWS)
+        distance = np.concatenate([along[-1:], driven.distance[part]])
+        raw = np.concatenate([[before], driven.heading[part]])
+        turned = np.unwrap(raw)[1:] + (unwrapped - before)
+        before, unwrapped = float(raw[-1]), float(turned[-1])
+        moved = np.diff(distance) > 0.0
+        along = np.append(along[-1:], distance[1:][moved])
+        angle = np.append(angle[-1:], turned[moved])
+        ends = begin + PIECE_ROWS >= driven.size
+        stop = places.size if ends else int(np.searchsorted(places, along[-1]))
+        found[done:stop] = np.interp(places[done:stop], along, angle)
+        done = stop
+        driven.let_go()
     return found
 
 
-def snap(
-    driven: Driven, *, power_cycle: str, end: tuple[float, float] | None, start: tuple[float, float]
-) -> tuple[Driven, list[Snapped], Floats]:
-    """Correct the headings from those found at stops, or from the known end.
-
-    Parameters
-    ----------
-    driven : Driven
-    power_cycle : str
-        ``current``: the constant correction goes to what was driven since the power came back;
-        ``previous``: to what was driven since the stop before, under the power before.
-    end, start : tuple of float
-        East, north [m].
-
-    Returns
-    -------
-    driven : Driven
-        With corrected headings.
-    snapped : list of Snapped
-    """
-    heading = driven.heading.copy()
-    found: list[Snapped] = []
-    bounds = _stop_rows(driven)
-    has_known = bool(np.any(np.isfinite(driven.known)))
-    before = 0
-    for row in bounds:
-        if not math.isfinite(float(driven.known[row])):
-            continue
-        miss = wrap_pi(float(driven.known[row]) - float(heading[row]))
-        if row > 0:
-            found += _laid_back(driven, heading, before, row, miss=miss, power_cycle=power_cycle)
-        heading[row + 1 :] += miss
-        if row == 0:
-            heading[0] += miss
-        before = row
-    if not has_known and end is not None:
-        before = _last_stop(driven, bounds)
-        miss = _miss_to_end(driven, heading, before, end, start=start, power_cycle=power_cycle)
-        found += _laid_back(
-            driven, heading, before, heading.size - 1, miss=miss, power_cycle=power_cycle
-        )
-    changed = Driven(driven.distance, heading, driven.known, driven.cycle, driven.still)
-    return changed, found, heading - driven.heading
-
-
-def _stop_rows(driven: Driven) -> list[int]:
-    """Last row of each rest, and the last row of all."""
-    ends = np.flatnonzero(driven.still[:-1] & ~driven.still[1:]).tolist()
-    return sorted({*ends, driven.still.size - 1})
-
-
-def _last_stop(driven: Driven, bounds: list[int]) -> int:
-    """Row of the last stop from which something was driven.
-
-    Where the power was switched during that stop, the one before: the constant correction parts
-    what lies before the switch from what lies behind it.
-    """
-    final = float(driven.distance[-1])
-    rows = [r for r in bounds if float(driven.distance[r]) < final - 1e-6]
-    if not rows:
-        return 0
-    moving = np.flatnonzero(~driven.still[: rows[-1] + 1])
-    arrived = int(moving[-1]) + 1 if moving.size else 0
-    if float(driven.cycle[min(arrived, rows[-1])]) == float(driven.cycle[rows[-1]]):
-        return rows[-1]
-    return rows[-2] if len(rows) > 1 else 0
-
-
-def _weights(driven: Driven, first: int, last: int, power_cycle: str) -> tuple[Floats, str]:
-    """Share of the correction that each row from first to last takes, and its kind."""
-    rows = np.arange(first, last + 1)
-    cycles = driven.cycle[rows]
-    if float(cycles[0]) != float(cycles[-1]):
-        current = cycles == cycles[-1]
-        return np.where(current if power_cycle == "current" else ~current, 1.0, 0.0), "constant"
-    if first > 0 and float(driven.cycle[first - 1]) != float(cycles[0]):
-        return np.ones(rows.size), "constant"
-    length = float(driven.distance[last] - driven.distance[first])
-    if length <= 0.0:
-        return np.ones(rows.size), "linear"
-    return (driven.distance[rows] - driven.distance[first]) / length, "linear"
-
-
-def _laid_back(
-    driven: Driven, heading: Floats, first: int, last: int, *, miss: float, power_cycle: str
-) -> list[Snapped]:
-    share, kind = _weights(driven, first, last, power_cycle)
-    heading[first : last + 1] += miss * share
-    rows = np.flatnonzero(share > 0.0)
-    begin = first + int(rows[0]) if rows.size else first
-    finish = first + int(rows[-1]) if rows.size else last
-    zero = float(driven.distance[0])
-    if kind == "linear":
-        begin = first
-        if float(driven.distance[finish]) <= float(driven.distance[begin]):
-            return []
-    return [
-        Snapped(
-            float(driven.distance[begin]) - zero,
-            float(driven.distance[finish]) - zero,
-            "constant" if kind == "constant" else "linear",
-            math.degrees(miss),
-        )
-    ]
-
-
-def _miss_to_end(
-    driven: Driven,
-    heading: Floats,
-    first: int,
-    end: tuple[float, float],
-    *,
-    start: tuple[float, float],
-    power_cycle: str,
-) -> float:
-    """Heading correction at the end that brings the path to the known point, across it."""
-    share, _ = _weights(driven, first, heading.size - 1, power_cycle)
-    steps = np.diff(driven.distance)
-    miss = 0.0
-    for _ in range(8):
-        turned = heading.copy()
-        turned[first:] += miss * share
-        middle = turned[:-1]
-        place = np.array([float(steps @ np.sin(middle)), float(steps @ np.cos(middle))])
-        off = np.array(end) - np.array(start) - place
-        weight = steps[first:] * share[:-1]
-        slope = np.array(
-            [float(weight @ np.cos(middle[first:])), -float(weight @ np.sin(middle[first:]))]
-        )
-        size = float(slope @ slope)
-        if size == 0.0:
-            break
-        step = float(slope @ off) / size
-        miss += step
-        if abs(step) < 1e-12:
-            break
-    return miss
+def _covariance(steps: Floats, walk: float, begin: float) -> Floats:
+    """Of each point: common heading, its random walk, and the odometer's scale, shape (m, 2, 2)."""
+    whole = np.vstack([np.zeros(2), np.cumsum(steps, axis=0)])
+    found = np.empty((whole.shape[0], 2, 2))
+    squares, places = np.zeros((2, 2)), np.zeros(2)
+    for first in range(0, whole.shape[0], POINTS_AT_ONCE):
+        part = whole[first : first + POINTS_AT_ONCE]
+        across = np.column_stack([part[:, 1], -part[:, 0]])
+        here = begin**2 * across[:, :, None] * across[:, None, :]
+        here += ODOMETER_SIGMA**2 * part[:, :, None] * part[:, None, :]
+        if walk > 0.0:
+            # a kick before step j turns everything after it: sum over j of (P - P_j)(P - P_j)'
+            square = np.einsum("ki,kj->kij", part, part)
+            total = np.cumsum(np.concatenate([squares[None], square]), axis=0)
+            gone = np.cumsum(np.concatenate([places[None], part]), axis=0)
+            count = np.arange(first, first + part.shape[0])[:, None, None]
+            cross = part[:, :, None] * gone[:-1, None, :]
+            lever = count * square - cross - np.swapaxes(cross, 1, 2) + total[:-1]
+            turned = np.array([[0.0, 1.0], [-1.0, 0.0]])
+            here += walk**2 * STEP_M * np.einsum("ab,kbc,dc->kad", turned, lever, turned)
+            squares, places = total[-1], gone[-1]
+        found[first : first + POINTS_AT_ONCE] = here
+    return found

@@ -18,6 +18,12 @@ from surveyapp.core.sensors.declination import told_unstated, unstated_sigma
 from surveyapp.core.sensors.rate.carried import Carried, Rest, Run, carry, tilt_of
 from surveyapp.core.sensors.rate.level_phase import still_ends
 from surveyapp.core.sensors.rate.parameters import DEG_H
+from surveyapp.core.sensors.rate.rotation_checks import (
+    LONGEST_STEP,
+    clipped_problems,
+    gap_sigma,
+    gravity_problems,
+)
 from surveyapp.core.statistics.distributions import NORMAL_95, student_tail
 from surveyapp.domain.calibration import SensorParameter
 from surveyapp.domain.north import NorthDirection, NorthResult, Reference
@@ -76,6 +82,8 @@ class RotationOptions:
     matrix, bias : ndarray
         Output matrix M of the card (output = M rate + bias), shape (3, 3), and bias [rad/s], (3,)
         or one for each row of the log.
+    force_matrix, force_bias : ndarray, shape (3, 3), (3,)
+        The same of the accelerometers [m/s2].
     card : str
         Its id, for the result.
     temperature_model : str
@@ -90,6 +98,8 @@ class RotationOptions:
     latitude: float | None = None
     matrix: Floats = field(default_factory=lambda: np.eye(3))
     bias: Floats = field(default_factory=lambda: np.zeros(3))
+    force_matrix: Floats = field(default_factory=lambda: np.eye(3))
+    force_bias: Floats = field(default_factory=lambda: np.zeros(3))
     card: str = ""
     temperature_model: str = ""
 
@@ -113,6 +123,7 @@ def find_heading(log: SensorLog, options: RotationOptions) -> NorthResult:
     rates = np.column_stack([log.columns[c] for c in GYROS])
     rates = np.asarray(np.linalg.solve(options.matrix, (rates - options.bias).T).T)
     forces = np.column_stack([log.columns[c] for c in ACCELEROMETERS])
+    forces = np.asarray(np.linalg.solve(options.force_matrix, (forces - options.force_bias).T).T)
     interval = 1.0 / (log.rate_hz or 100.0)
     warm = _warm_up(rates[phases == "warm-up"], interval)
     level_rows = np.flatnonzero(phases == "level")
@@ -121,30 +132,45 @@ def find_heading(log: SensorLog, options: RotationOptions) -> NorthResult:
     rest_rows = np.union1d(filter_rows, np.union1d(level_rows[before], level_rows[after]))
     rest, rest_sigma, gained = _filtered(rates[rest_rows])
     levelling, levelled = _levelling(forces[level_rows][before]), forces[level_rows][after]
+    run_rows = np.flatnonzero(phases == "run")
+    run = _run_of(log, rates, forces, run_rows)
+    known = Rest(
+        rest,
+        rest_sigma,
+        np.std(np.diff(rates[rest_rows], axis=0), axis=0) / math.sqrt(2.0),
+        tilt_of(levelled.mean(axis=0)),
+        float(np.mean(levelled.std(axis=0, ddof=1))),
+    )
+    problems = clipped_problems(log, GYROS, run_rows)
+    denied, told_gravity = ([], []) if problems else gravity_problems(run, known, log.path)
+    if problems or denied:
+        raise SurveyError([*problems, *denied])
+    log = replace(log, warnings=(*log.warnings, *told_gravity))
     carried = carry(
-        _run_of(log, rates, forces, np.flatnonzero(phases == "run")),
-        Rest(
-            rest,
-            rest_sigma,
-            np.std(np.diff(rates[rest_rows], axis=0), axis=0) / math.sqrt(2.0),
-            tilt_of(levelled.mean(axis=0)),
-            float(np.mean(levelled.std(axis=0, ddof=1))),
-        ),
+        run,
+        known,
         heading=options.heading + (options.declination or 0.0),
         latitude=options.latitude,
     )
     added = options.declination_sigma or 0.0
-    sigma = math.hypot(carried.sigma, options.heading_sigma or 0.0, added)
+    sigma = math.hypot(carried.sigma, options.heading_sigma or 0.0, added, gap_sigma(run))
     turned = before != after
     return _result(log, options, carried, sigma, found=(warm, levelling, rest, gained, turned))
 
 
 def _run_of(log: SensorLog, rates: Floats, forces: Floats, rows: np.ndarray) -> Run:
-    """Samples of the run and how long each lasts: to the next row, wherever that belongs."""
+    """Samples of the run and how long each lasts: to the next row, wherever that belongs.
+
+    Over a gap the rate is the mean of those about it.
+    """
     time = log.columns["time_s"]
     usual = float(np.median(np.diff(time[rows])))
     until = np.append(np.diff(time), usual)[rows]
-    return Run(rates[rows], forces[rows], np.where(until > 0.0, until, usual))
+    intervals = np.where(until > 0.0, until, usual)
+    held = rates[rows].copy()
+    before = np.flatnonzero(intervals[:-1] > LONGEST_STEP * usual)
+    held[before] = 0.5 * (rates[rows[before]] + rates[rows[before] + 1])
+    return Run(held, forces[rows], intervals)
 
 
 def _phase_problems(phases: np.ndarray, where: str) -> list[Problem]:
@@ -364,24 +390,3 @@ def _steps(
         113: {"rows": int(sum(word.strip() == "run" for word in log.texts["phase"]))},
     }
     return [{"step": n, "title": title, **told.get(n, {})} for n, title in STEP_TITLES]
-
-
-def card_matrix(values: Mapping[str, float | None]) -> tuple[Floats, Floats]:
-    """Output matrix and bias [rad/s] of a card's parameters; what it lacks is nominal.
-
-    Source 002 numbers its matrix K_ij from input i to output j; the card's ``misalignment_xy`` is
-    the output x for a rate about y, so that its matrix is the source's transposed.
-
-    Parameters
-    ----------
-    values : mapping of str to float or None
-        ``scale_factor_x`` [ppm], ``misalignment_xy`` [arcsec], ``bias_x`` [deg/h].
-    """
-    matrix, bias = np.eye(3), np.zeros(3)
-    for i, a in enumerate("xyz"):
-        scale = 1.0 + (values.get(f"scale_factor_{a}") or 0.0) * 1e-6
-        for j, b in enumerate("xyz"):
-            own = 1.0 if i == j else (values.get(f"misalignment_{a}{b}") or 0.0) * ARCSEC
-            matrix[i, j] = scale * own
-        bias[i] = (values.get(f"bias_{a}") or 0.0) * DEG_H
-    return matrix, bias

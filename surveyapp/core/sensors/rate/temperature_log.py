@@ -170,6 +170,7 @@ def _calibration(
     parameters = tuple(predicted(nodes, model, at))
     missing = _missing(nodes, log)
     rms = {c.model: c.held_out_rms for c in comparison}
+    biases = said("biases at left-out nodes")
     return Calibration(
         kind="temperature",
         source=log.id,
@@ -185,7 +186,8 @@ def _calibration(
             said("one inner node after the other"), rms.get("none"), rms.get(model), "deg/h"
         ),
         models=tuple(
-            CalibrationModel(c.model, None, c.held_out_rms, c.model == model) for c in comparison
+            CalibrationModel(c.model, None, c.held_out_rms, c.model == model, "deg/h", biases)
+            for c in comparison
         ),
         warnings=(*log.warnings, *warnings, *_warnings(log, comparison, options)),
         met=not missing,

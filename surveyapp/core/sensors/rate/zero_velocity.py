@@ -9,14 +9,14 @@ of such innovations is the test, not the closure.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import chain, pairwise, repeat
+from itertools import chain, repeat
 from typing import Protocol
 
 import numpy as np
 
-from surveyapp.core.sensors.rate.still import Mask, runs_of
+from surveyapp.core.sensors.rate.rests import Rests, Run
 from surveyapp.core.sensors.rate.strapdown import (
     PLACE,
     TURN,
@@ -113,26 +113,27 @@ def in_memory(force: Floats, rate: Floats) -> Samples:
     return lambda first, last: (force[first:last], rate[first:last])
 
 
-def inertial_path(samples: Samples, still: Mask, *, interval_s: float) -> InertialPath:
+def inertial_path(samples: Samples, rests: Rests, *, interval_s: float) -> InertialPath:
     """Integrate with zero-velocity updates; bias, gravity and level from the first rest.
 
     Parameters
     ----------
     samples : callable
         Rows of the record; it is read in pieces, and no more than one is held.
-    still : ndarray of bool, shape (n,)
-        At rest at the beginning.
+    rests : Rests
+        The first of them at the beginning.
     interval_s : float
     """
-    unit = _unit_of(samples, still, interval_s)
+    unit = _unit_of(samples, rests, interval_s)
     now = Navigation(
         unit.level,
         np.zeros(3),
         np.zeros(3),
         np.diag([1e-8] * 3 + [1e-6] * 3 + [1e-5, 1e-5, 1e-8]),
     )
+    ends = {last for _, last in rests.runs}
     way, beyond, updates = _Way(), 0, 0
-    for first, last, resting in _stretches(still):
+    for first, last, resting in _stretches(rests):
         force, rate = samples(first, last)
         stretch = integrate(
             now, force, rate - unit.bias, gravity=unit.gravity, interval_s=interval_s
@@ -143,7 +144,7 @@ def inertial_path(samples: Samples, still: Mask, *, interval_s: float) -> Inerti
             updates, beyond = updates + more, beyond + out
         else:
             place = _moved(now, stretch, unit)
-        way.add(place, first, still)
+        way.add(place, first, resting=resting, ends=last in ends)
     share = beyond / updates if updates else None
     return way.path(now.covariance[:3, :3].copy(), share, updates)
 
@@ -162,11 +163,11 @@ class _Unit:
     moving: tuple[float, float]
 
 
-def _unit_of(samples: Samples, still: Mask, interval_s: float) -> _Unit:
-    rest = _first_rest(still)
-    force, rate = samples(rest.start, min(rest.stop, rest.start + MOVING_ROWS))
+def _unit_of(samples: Samples, rests: Rests, interval_s: float) -> _Unit:
+    first, last = rests.runs[0] if rests.runs else (0, 1)
+    force, rate = samples(first, min(last, first + MOVING_ROWS))
     felt = force.mean(axis=0)
-    of_force, of_rate = _white_while(samples, ~still)
+    of_force, of_rate = _white_while(samples, rests.moving)
     at_rest, turning = _white(force), _white(rate)
     return _Unit(
         _levelled(felt),
@@ -177,12 +178,10 @@ def _unit_of(samples: Samples, still: Mask, interval_s: float) -> _Unit:
     )
 
 
-def _stretches(still: Mask) -> Iterator[tuple[int, int, bool]]:
+def _stretches(rests: Rests) -> Iterator[tuple[int, int, bool]]:
     """Rows first to last (exclusive) that are all at rest or all moving, none too long."""
-    edges = np.flatnonzero(np.diff(still.astype(np.int8))) + 1
-    bounds = [0, *edges.tolist(), still.size]
-    for first, last in pairwise(bounds):
-        resting = bool(still[first])
+    bounds = [(*run, True) for run in rests.runs] + [(*run, False) for run in rests.moving]
+    for first, last, resting in sorted(bounds):
         sizes = chain(RESTING_ROWS, repeat(RESTING_ROWS[-1])) if resting else repeat(MOVING_ROWS)
         for size in sizes:
             stop = min(first + size, last)
@@ -275,8 +274,8 @@ class _Way:
         self._gone, self._last = 0.0, np.zeros(3)
         self._next, self._spacing = 0, POINT_M
 
-    def add(self, place: Floats, first: int, still: Mask) -> None:
-        """Places of the rows from ``first`` on; a rest and a motion never share a piece."""
+    def add(self, place: Floats, first: int, *, resting: bool, ends: bool) -> None:
+        """Places of the rows from ``first`` on, all at rest or all moving; ``ends`` the rest."""
         before = np.vstack([self._last if first else place[0], place])
         along = self._gone + np.cumsum(np.linalg.norm(np.diff(before[:, :2], axis=0), axis=1))
         count = math.floor(along[-1] / self._spacing) + 1
@@ -292,11 +291,11 @@ class _Way:
             self._spacing *= 2.0
             self._next = math.floor(along[-1] / self._spacing) + 1
         self._gone, self._last = float(along[-1]), place[-1]
-        last = first + place.shape[0]
-        if still[first]:
+        if resting:
             taken = sum(part.shape[0] for part in self._here)
-            self._here.append(place[: max(PLACE_ROWS - taken, 0)])
-            if last == still.size or not still[last]:
+            if taken < PLACE_ROWS:
+                self._here.append(place[: PLACE_ROWS - taken])
+            if ends:
                 self.stops.append(np.median(np.concatenate(self._here), axis=0))
                 self._here = []
 
@@ -335,10 +334,10 @@ def _white(values: Floats) -> float:
     return float(np.std(np.diff(values, axis=0), axis=0).max() / math.sqrt(2.0))
 
 
-def _white_while(samples: Samples, moving: Mask) -> tuple[float, float]:
-    """The same of forces and rates of the marked rows, piece by piece."""
+def _white_while(samples: Samples, moving: Sequence[Run]) -> tuple[float, float]:
+    """The same of forces and rates of these rows, piece by piece."""
     count, total, squares = 0, np.zeros(6), np.zeros(6)
-    for first, last in runs_of(moving):
+    for first, last in moving:
         for begin in range(first, last, MOVING_ROWS):
             piece = np.hstack(samples(begin, min(begin + MOVING_ROWS, last)))
             steps = np.diff(piece, axis=0)
@@ -348,12 +347,6 @@ def _white_while(samples: Samples, moving: Mask) -> tuple[float, float]:
         return 0.0, 0.0
     spread = np.sqrt((squares / count - (total / count) ** 2) / 2.0)
     return float(spread[:3].max()), float(spread[3:].max())
-
-
-def _first_rest(still: Mask) -> slice:
-    start = int(np.argmax(still)) if still.any() else 0
-    stop = start + int(np.argmin(still[start:])) if not still[start:].all() else still.size
-    return slice(start, max(stop, start + 1))
 
 
 def _levelled(felt: Floats) -> Floats:
