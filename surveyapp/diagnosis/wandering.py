@@ -16,9 +16,9 @@ from surveyapp.diagnosis.fits import Fit
 from surveyapp.diagnosis.stochastic import best_noises, effect_gain
 
 ODDS = 2.0
-"""An effect stands against noise of a kind instead of it where it is so many times likelier: of the
-walks of the size that is mistaken most .12 to .19 are named a drift then. By simulation of ramps and
-walks of three gyros (bench ``rate_walk``, docs/explanation/sensors.md)."""
+"""An effect stands against noise of a kind instead of it where it is so many times likelier: of
+walks of the size that is mistaken most .12 to .19 are named a drift then. By simulation of ramps
+and walks of three gyros (bench ``rate_walk``, docs/explanation/sensors.md)."""
 
 
 def stands(problem: Case, fit: Fit, rival: Fit) -> bool:

@@ -88,11 +88,38 @@ def test_odds_tell_drifts_from_walks() -> None:
 
 
 def test_a_shape_is_charged_beforehand_and_a_named_effect_is_not() -> None:
-    """The BIC of a step is that of its residuals, its parameters and the odds against it."""
+    """A step costs what its drawn coefficients do, the search for its place, and the odds."""
     case = rests(1e-4 * np.random.default_rng(3).normal(size=(STOPS, 3)))
     pool = {c.id: c for c in all_candidates(case, None)}
     assert pool["bias_ramp"].odds == pool["gross_error"].odds == 0.0
-    fit = fit_members(case, [Member(pool["step"], 4)])
-    n, p = case.size, fit.parameters
-    plain = n * np.log(fit.sum_of_squares / n / case.scale**2) + p * np.log(n)
-    assert fit.bic == pytest.approx(plain + SHAPE_ODDS)
+    base = fit_members(case, [])
+    for name, place, odds in (("step", 4, SHAPE_ODDS), ("bias_ramp", 0, 0.0)):
+        member = Member(pool[name], place)
+        fit = fit_members(case, [member])
+        gain = effect_gain(base.design, member.columns, base.residual, each=STOPS, floor=1e-18)
+        searched = fit.parameters - base.parameters - 3
+        assert searched == (name == "step")
+        expected = base.bic - gain + searched * np.log(case.size) + odds
+        assert fit.bic == pytest.approx(expected)
+
+
+def test_nine_coefficients_are_not_beaten_by_one_that_was_looked_for() -> None:
+    """A sensitivity that is plain to an F test goes before a gross error of any row."""
+    rng = np.random.default_rng(12)
+    before = by_counting = 0
+    for _ in range(60):
+        case = rests(np.zeros((STOPS, 3)))
+        force = np.column_stack([case.columns[f"force_{a}"] for a in "xyz"])[::3]
+        pull = 9e-6 * rng.normal(size=(3, 3))
+        case = rests(1e-4 * rng.normal(size=(STOPS, 3)) + force @ pull.T)
+        pool = {c.id: c for c in all_candidates(case, None)}
+        one = fit_members(case, [Member(pool["g_sensitivity"], 0)])
+        gross = pool["gross_error"]
+        rivals = [fit_members(case, [Member(gross, g)]) for g in range(len(gross.points))]
+        other = min(rivals, key=lambda fit: fit.bic)
+        before += one.bic < other.bic
+        n = case.size
+        plain = n * np.log(one.sum_of_squares / n / case.scale**2) + one.parameters * np.log(n)
+        by_counting += plain < other.bic
+    assert before >= 46  # .92 of 400: fewer have p = 5e-5
+    assert by_counting < 46  # .60 of 400 by a charge for each
