@@ -10,7 +10,11 @@ from typing import Any, Literal
 
 import numpy as np
 
-from surveyapp.core.sensors.rate.motion_doubts import odometer_problems, record_doubts
+from surveyapp.core.sensors.rate.motion_doubts import (
+    CONTRADICTIONS,
+    odometer_problems,
+    record_doubts,
+)
 from surveyapp.core.sensors.rate.motion_pieces import (
     ACCELEROMETERS,
     GYROS,
@@ -107,8 +111,8 @@ def judge_motion(log: SensorLog, options: MotionOptions, *, room: Room = in_memo
     unseen = _unseen(time, states.rests, interval) if path is not None else None
     if unseen is not None:
         warnings = [*warnings, unseen]
-    stands = any(w.code == "odometer_stands" for w in doubts)
-    consistent = unseen is None and not stands and (zero is None or zero["verdict"] == "consistent")
+    wrong = any(w.code in CONTRADICTIONS for w in doubts)
+    consistent = unseen is None and not wrong and (zero is None or zero["verdict"] == "consistent")
     return Motion(
         source=log.id,
         n=log.size,
