@@ -22,21 +22,27 @@ PROFILE = (
 RATE_HZ = 50.0
 
 
-def drive(path: Path, *, pitch: float, roll: float) -> list[str]:
-    """A level drive with one curve of 90 degrees to the right; the state of each row."""
+def drive(
+    path: Path, *, pitch: float, roll: float, noise: float = 5e-4, earth: float = 0.0
+) -> list[str]:
+    """A level drive with one curve of 90 degrees to the right; the state of each row.
+
+    ``noise`` of a sample of the gyros, level part of the earth's rate [rad/s].
+    """
     rng = np.random.default_rng(31)
     c, s, d, t = math.cos(pitch), math.sin(pitch), math.cos(roll), math.sin(roll)
     mounted = np.array([[1, 0, 0], [0, c, -s], [0, s, c]]) @ np.array(
         [[d, 0, t], [0, 1, 0], [-t, 0, d]]
     )
-    states, forces, rates, speed = [], [], [], 0.0
+    states, forces, rates, speed, heading = [], [], [], 0.0, 0.4
     for state, seconds, size in PROFILE:
         push = {"accelerating": size, "braking": -size}.get(state, 0.0)
         turn = math.radians(size) if state == "turning" else 0.0
         for _ in range(round(seconds * RATE_HZ)):
             states.append(state)
             forces.append([speed * turn, push, 9.80665])
-            rates.append([0.0, 0.0, -turn])
+            rates.append([-earth * math.sin(heading), earth * math.cos(heading), -turn])
+            heading += turn / RATE_HZ
             speed += push / RATE_HZ
     moving = np.array([state != "stationary" for state in states])[:, None]
     shape = (len(states), 3)
@@ -49,7 +55,7 @@ def drive(path: Path, *, pitch: float, roll: float) -> list[str]:
     table = np.column_stack(
         [
             np.arange(shape[0]) / RATE_HZ,
-            rate @ mounted + rng.normal(0.0, 5e-4, shape) + [1e-3, -2e-3, 5e-4],
+            rate @ mounted + rng.normal(0.0, noise, shape) + [1e-3, -2e-3, 5e-4],
             force @ mounted + rng.normal(0.0, 0.01, shape) + [0.03, -0.02, 0.01],
         ]
     )
@@ -74,3 +80,16 @@ def test_a_tilted_unit_keeps_its_level_in_a_curve(
         assert np.mean(found[states == state] == state) >= share
     for state in ("accelerating", "braking"):
         assert np.mean(found[states == state] == state) >= 0.95
+
+
+def test_a_gyro_that_sees_the_earth_turn_rests_at_every_heading(tmp_path: Path) -> None:
+    """Turned by 90 degrees a unit of .0006 deg/s a sample sees the earth by seven sigmas elsewhere.
+
+    The bias of the first stop then called the second one motion.
+    """
+    path = tmp_path / "drive.csv"
+    states = np.array(drive(path, pitch=0.02, roll=0.01, noise=1e-5, earth=7.3e-5))
+    time = np.arange(states.size) / RATE_HZ
+    last = [s for s in api.motion(path).segments if s.state == "stationary"][-1]
+    assert last.end_s == pytest.approx(float(time[-1]), abs=0.1)
+    assert last.end_s - last.start_s > 9.0

@@ -26,6 +26,9 @@ PARAMETERS = {"bias_scale": 4, "three_scales": 6, "misalignment": 9}
 _ITERATIONS = 40
 _STOP_NOISE = 0.005
 """Of the size of gravity at a stop where its residuals do not tell a smaller one [m/s2]."""
+LEAST_SPHERE = 4
+FAR_OFF = 3.0
+"""Gravities from which a centre of the stops is the middle of a converter's range."""
 _CONVERGED = 1e-7
 """Of the residuals: a step that moves them by less ends the fit."""
 
@@ -75,6 +78,15 @@ def _parts(level: str, vector: Floats) -> tuple[Floats, Floats]:
     return bias, out
 
 
+def expanded(model: ForceModel) -> ForceModel:
+    """The same model with all nine parameters, those that it omits at their nominal value."""
+    if model.level == "misalignment":
+        return model
+    scales = model.vector[3:6] if model.level == "three_scales" else np.full(3, model.vector[3])
+    vector = np.concatenate([model.bias, scales, np.zeros(3)])
+    return replace(model, level="misalignment", vector=vector)
+
+
 def shifted_forces(model: ForceModel, covariance: Floats) -> list[ForceModel]:
     """The model with each parameter off by its standard deviation, in turn.
 
@@ -109,6 +121,17 @@ def fit_forces(
     start : ndarray, shape (p,), optional
         Parameters to begin with.
     """
+    offset = converter_zero(forces, gravity)
+    if np.any(offset):
+        at = np.zeros(PARAMETERS[level])
+        at[:3] = offset
+        found = fit_forces(
+            forces - offset,
+            level=level,
+            gravity=gravity,
+            start=None if start is None else start - at,
+        )
+        return replace(found, bias=found.bias + offset, vector=found.vector + at)
     dof = forces.shape[0] - PARAMETERS[level]
     vector = _from_nothing(forces, level, gravity) if start is None else start
     rest, _ = _misfit(forces, level, vector, gravity)
@@ -156,6 +179,18 @@ def _fitted(forces: Floats, level: str, vector: Floats, gravity: float, *, noise
         else:
             damping = min(damping * 10.0, 1e3)
     return vector
+
+
+def converter_zero(forces: Floats, gravity: float) -> Floats:
+    """Zero of a converter whose counts begin in the middle of its range, shape (3,) [m/s2].
+
+    Of the sphere through the stops the centre, where it lies farther out than any unit's zero and
+    than the mirrored centre of a circle of stops, two gravities away; else none.
+    """
+    if forces.shape[0] < LEAST_SPHERE:
+        return np.zeros(3)
+    centre, _ = _sphere(forces, gravity)
+    return centre if float(np.linalg.norm(centre)) > FAR_OFF * gravity else np.zeros(3)
 
 
 def _from_nothing(forces: Floats, level: str, gravity: float) -> Floats:
@@ -206,9 +241,7 @@ def covariance_with_omitted(forces: Floats, model: ForceModel, *, gravity: float
     """
     if model.level == "misalignment":
         return model.covariance
-    scales = model.vector[3:6] if model.level == "three_scales" else np.full(3, model.vector[3])
-    vector = np.concatenate([model.bias, scales, np.zeros(3)])
-    rest, jacobian = _misfit(forces, "misalignment", vector, gravity)
+    rest, jacobian = _misfit(forces, "misalignment", expanded(model).vector, gravity)
     noise = math.sqrt(max(float(rest @ rest) / max(model.dof, 1), 1e-20))
     prior = np.zeros((6, 9))
     prior[:3, 3:6] = np.eye(3) * (NORMAL_95 / SCALE_TOLERANCE)
@@ -248,15 +281,24 @@ def _misfit(forces: Floats, level: str, vector: Floats, gravity: float) -> tuple
 
 def _first_guess(forces: Floats, level: str, gravity: float) -> Floats:
     """Centre and radius of the sphere through the stops, by linear least squares."""
-    design = np.column_stack([2.0 * forces, np.ones(forces.shape[0])])
-    solution, *_ = np.linalg.lstsq(design, np.sum(forces**2, axis=1), rcond=None)
-    centre = solution[:3]
-    radius = math.sqrt(max(float(solution[3] + centre @ centre), 1e-6))
-    if np.linalg.cond(design / np.linalg.norm(design, axis=0)) > 1e8:
-        centre, radius = np.zeros(3), gravity
+    centre, radius = _sphere(forces, gravity)
     scale = radius / gravity
     tail = {"bias_scale": [scale], "three_scales": [scale] * 3}.get(level, [scale] * 3 + [0.0] * 3)
     return np.concatenate([centre, tail])
+
+
+def _sphere(forces: Floats, gravity: float) -> tuple[Floats, float]:
+    """Centre and radius [m/s2]; about zero where the stops tell neither."""
+    middle = forces.mean(axis=0)
+    about = forces - middle
+    design = np.column_stack([2.0 * about, np.ones(forces.shape[0])])
+    solution, *_ = np.linalg.lstsq(design, np.sum(about**2, axis=1), rcond=None)
+    size = np.maximum(np.linalg.norm(design, axis=0), 1e-300)
+    if np.linalg.cond(design / size) > 1e8:
+        return np.zeros(3), gravity
+    centre = solution[:3]
+    radius = math.sqrt(max(float(solution[3] + centre @ centre), 1e-6))
+    return np.asarray(centre + middle), radius
 
 
 def left_out(forces: Floats, model: ForceModel, *, gravity: float) -> float | None:

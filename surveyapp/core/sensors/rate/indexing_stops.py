@@ -28,6 +28,11 @@ MOVING_SHARE = 0.2
 """A stop with more of them is not used."""
 BUMPED_SHARE = 0.01
 """A stop with more of them is told."""
+FLICKER_ROWS, FLICKER_SHARE, FLICKER_SIGMAS = 8, 0.5, 8.0
+"""Rows over which an index that rests comes back; the share of its way that may be left, and of
+the rows that must rest; and standard deviations of what is left that are still rest."""
+FLICKER_LEAST = 0.2
+"""Share of the stretches with a changing angle that must come back: else every change is a turn."""
 SHAKEN = 4.0
 """A stop whose samples scatter so many times as much as those of the middle stop is not used."""
 LEAST_COMPARED, LEAST_SAMPLED = 3, 8
@@ -45,6 +50,8 @@ def stops_of(log: SensorLog) -> tuple[list[Stop], list[int], list[ResultWarning]
     unnumbered = _unnumbered(log)
     if unnumbered:
         raise SurveyError(unnumbered)
+    steady = steadied(log.columns["index_angle_deg"])
+    log = replace(log, columns={**log.columns, "index_angle_deg": steady})
     edges = _edges(log)
     lengths = np.diff(edges).tolist()
     problems = [*saturated(log, GYROS), *turning_problems(log, lengths)]
@@ -91,6 +98,42 @@ def _unnumbered(log: SensorLog) -> list[Problem]:
             what = said("{name} has rows without a number", name=name)
             rows = said("{rows} rows", rows=missing)
             found.append(Problem(what, log.path, rows, "a number in each row"))
+    return found
+
+
+def steadied(angles: Floats) -> Floats:
+    """Index angles of which each rest has one value, its median; those of a turn stay [deg].
+
+    An encoder's last digits flicker. They do so about one value, where an index that turns goes
+    on: over a few rows the way back and forth is longer than what is left of it.
+
+    Parameters
+    ----------
+    angles : ndarray, shape (n,)
+        Without flicker they are returned as they are.
+    """
+    steps = np.diff(angles)
+    if angles.size <= 2 * FLICKER_ROWS:
+        return angles
+    path = np.convolve(np.abs(steps), np.ones(FLICKER_ROWS), "valid")
+    net = np.abs(angles[FLICKER_ROWS:] - angles[:-FLICKER_ROWS])
+    moved = path > 1e-9
+    flickers = moved & (net < FLICKER_SHARE * path)
+    rests = float(np.mean(flickers | ~moved))
+    if rests < FLICKER_SHARE or np.count_nonzero(flickers) < FLICKER_LEAST * np.count_nonzero(
+        moved
+    ):
+        return angles
+    usual, largest = np.quantile(net[flickers], [0.5, 0.95])
+    limit = max(FLICKER_SIGMAS * 1.4826 * float(usual), 2.0 * float(largest))
+    resting = np.concatenate(
+        [np.full(FLICKER_ROWS // 2, net[0] <= limit), net <= limit,
+         np.full(FLICKER_ROWS - FLICKER_ROWS // 2, net[-1] <= limit)]
+    )  # fmt: skip
+    found = np.array(angles, dtype=np.float64)
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], resting.astype(np.int8), [0]])))
+    for first, last in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+        found[first:last] = np.median(angles[first:last])
     return found
 
 

@@ -25,6 +25,7 @@ from surveyapp.core.sensors.rate.still import (
     WINDOW_S,
     Gate,
     RestNoise,
+    bias_tolerance,
     bridged,
     motion_gate,
     norm_and_rate,
@@ -36,6 +37,7 @@ from surveyapp.domain.columns import let_go
 from surveyapp.domain.motion import MotionSegment
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp_models.arrays import Floats
+from surveyapp_models.constants import EARTH_RATE
 
 GYROS = ("gyr_x_rad_s", "gyr_y_rad_s", "gyr_z_rad_s")
 ACCELEROMETERS = ("acc_x_m_s2", "acc_y_m_s2", "acc_z_m_s2")
@@ -146,15 +148,15 @@ def states_of(
     noises = _noises(log, pieces, 1.0 / interval)
     quietest = min(noises, key=_loudness)
     noises = _carried(noises, _loudness(quietest))
-    sample = _sampled(log, pieces, noises, window)
-    gate = motion_gate(sample, window=window, false_alarm=false_alarm, factor=factor)
+    sample = _sampled(log, pieces, noises, window=window, interval=interval)
+    gate = motion_gate(sample, window=window, false_alarm=false_alarm, factor=factor, own_means=6)
     runs: list[Run] = []
     both, other_count = 0, 0
     segments: list[MotionSegment] = []
     limits: Thresholds | None = None
     for piece, noise in zip(pieces, noises, strict=True):
         force, rate = piece.vectors(log, ACCELEROMETERS), piece.vectors(log, GYROS)
-        values = statistic(force, rate, noise, window=window)
+        values = _statistic(force, rate, noise, window=window, interval=interval)
         rest = bridged(values <= gate.threshold, rate_hz=1.0 / interval)
         driven = moving_smoothly(
             force,
@@ -227,15 +229,29 @@ def _carried(noises: Sequence[RestNoise], quietest: float) -> list[RestNoise]:
     return found
 
 
+def _statistic(
+    force: Floats, rate: Floats, noise: RestNoise, *, window: int, interval: float
+) -> Floats:
+    """Likelihood ratio of rest, whatever the earth turns in a unit that now points elsewhere."""
+    tolerance = bias_tolerance(rate, noise, rate_hz=1.0 / interval, least=2.0 * EARTH_RATE)
+    return statistic(force, rate, noise, window=window, tolerance=tolerance)
+
+
 def _sampled(
-    log: SensorLog, pieces: Sequence[_Piece], noises: Sequence[RestNoise], window: int
+    log: SensorLog,
+    pieces: Sequence[_Piece],
+    noises: Sequence[RestNoise],
+    *,
+    window: int,
+    interval: float,
 ) -> Floats:
     """Statistics of the record, of a long one a share of them evenly spread."""
     stride = max(-(-log.size // SAMPLED), 1)
     parts = []
     for piece, noise in zip(pieces, noises, strict=True):
         force, rate = piece.vectors(log, ACCELEROMETERS), piece.vectors(log, GYROS)
-        parts.append(statistic(force, rate, noise, window=window)[piece.inner][::stride].copy())
+        values = _statistic(force, rate, noise, window=window, interval=interval)
+        parts.append(values[piece.inner][::stride].copy())
     return np.concatenate(parts)
 
 

@@ -14,7 +14,9 @@ from surveyapp.core.sensors.rate.hand_forces import (
     LEVELS,
     PARAMETERS,
     ForceModel,
+    converter_zero,
     covariance_with_omitted,
+    expanded,
     fit_forces,
     left_out,
     shifted_forces,
@@ -45,6 +47,7 @@ from surveyapp.core.sensors.rate.needed import (
 from surveyapp.core.sensors.rate.still import (
     FALSE_ALARM,
     WINDOW_S,
+    bias_tolerance,
     bridged,
     gate_of,
     rest_noise,
@@ -93,8 +96,9 @@ def held_stops(log: SensorLog) -> list[HeldStop]:
     hz = log.rate_hz or 100.0
     noise = rest_noise(force, rate, rate_hz=hz)
     window = max(round(WINDOW_S * hz), 3)
-    values = statistic(force, rate, noise, window=window)
-    gate = gate_of(values, window=window, false_alarm=FALSE_ALARM)
+    tolerance = bias_tolerance(rate, noise, rate_hz=hz)
+    values = statistic(force, rate, noise, window=window, tolerance=tolerance)
+    gate = gate_of(values, window=window, false_alarm=FALSE_ALARM, own_means=6)
     still = bridged(values <= gate.threshold, rate_hz=hz, least_s=LEAST_STOP_S)
     guard = round(GUARD_S * hz)
     found: list[HeldStop] = []
@@ -165,7 +169,9 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
     if problems:
         raise SurveyError(problems)
     bias, sigma_bias = _bias(stops, chosen, options)
-    gyro = _fitted(stops, chosen, turns) if len(turns) >= LEAST_TURNS else None
+    gyro = None
+    if len(turns) >= LEAST_TURNS:
+        gyro = _fitted(stops, chosen, turns, gravity=options.gravity)
     parameters = (
         *needed(force_parameters(chosen, covariance), len(stops), "stops"),
         *needed(rate_parameters(gyro, bias, sigma_bias), len(turns), "turns"),
@@ -174,12 +180,15 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
     parameters = with_reasons(parameters, why)
     missing = tuple(p.name for p in parameters if p.value is None)
     raw = np.linalg.norm(forces, axis=1) - options.gravity
+    before = math.sqrt(float(np.mean(raw**2)))
+    if np.any(converter_zero(forces, options.gravity)):
+        before = models[0].rms  # counts from the middle of a range: their size says nothing
     size = said("size of gravity at the stops")
     return Calibration(
         kind="multi-position",
         source=log.id,
         parameters=parameters,
-        before=Misfit(math.sqrt(float(np.mean(raw**2))), "m/s2", size),
+        before=Misfit(before, "m/s2", size),
         after=Misfit(chosen.rms, "m/s2", size),
         geometry=Geometry("good" if not missing else "restricted", None, missing),
         held_out=HeldOut(
@@ -207,29 +216,40 @@ def calibrate_multi_position(log: SensorLog, options: MultiPositionOptions) -> C
     )
 
 
-def _fitted(stops: Sequence[HeldStop], model: ForceModel, turns: Sequence[Turn]) -> RateModel:
-    """The gyros from their turns, with the accelerometers' own uncertainty."""
+def _fitted(
+    stops: Sequence[HeldStop], model: ForceModel, turns: Sequence[Turn], *, gravity: float
+) -> RateModel:
+    """The gyros from their turns, with the accelerometers' own uncertainty.
+
+    What their model omits bends the frame of the gyros as what it has does.
+    """
     gyro = fit_rates(turns)
     if model.dof < 1:
         return gyro
     forces = np.array([s.force for s in stops])
-    covariance = _with_tolerances(model)
+    whole = expanded(model)
+    covariance = _with_tolerances(
+        covariance_with_omitted(forces, model, gravity=gravity), PARAMETERS[model.level]
+    )
     shifted = []
-    for other in shifted_forces(model, covariance):
+    for other in shifted_forces(whole, covariance):
         ups = other.corrected(forces)
         shifted.append(ups / np.linalg.norm(ups, axis=1)[:, None])
     spread = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
     return with_frame(gyro, turns, shifted, covariance / np.outer(spread, spread))
 
 
-def _with_tolerances(model: ForceModel) -> Floats:
-    """Covariance of the accelerometers, which are never worse than their makers leave them."""
+def _with_tolerances(covariance: Floats, count: int) -> Floats:
+    """Covariance of the accelerometers, which are never worse than their makers leave them.
+
+    ``count``: parameters of the model; what it omits has its tolerance in ``covariance`` already.
+    """
     kinds = [ZERO_TOLERANCE] * 3 + [SCALE_TOLERANCE] * 3 + [CROSS_TOLERANCE] * 3
-    if model.level == "bias_scale":
-        kinds = kinds[:4]
-    sigma = np.array(kinds[: model.vector.size]) / NORMAL_95
-    unit = np.linalg.inv(model.covariance / np.outer(sigma, sigma) + 1e-12 * np.eye(sigma.size))
-    return np.asarray(np.linalg.inv(unit + np.eye(sigma.size)) * np.outer(sigma, sigma))
+    sigma = np.array(kinds) / NORMAL_95
+    held = np.zeros(sigma.size)
+    held[: {4: 3}.get(count, count)] = 1.0
+    unit = np.linalg.inv(covariance / np.outer(sigma, sigma) + 1e-12 * np.eye(sigma.size))
+    return np.asarray(np.linalg.inv(unit + np.diag(held)) * np.outer(sigma, sigma))
 
 
 def _directions(gyro: RateModel, turns: Sequence[Turn], pulled: Sequence[Turn]) -> dict[str, Any]:

@@ -23,6 +23,10 @@ QUIET_SHARE = 0.10
 """Of the pieces that are taken for rest at first."""
 QUIET_FACTOR = 1.6
 """Standard deviations up to this multiple of the quiet ones belong to the same rest."""
+BIAS_SIGMAS = 5.0
+"""Spreads of the mean rates of quiet pieces that belong to a rest still."""
+LEAST_TURNED = math.radians(0.1)
+"""A unit in a hand that turns this slowly lies on something [rad/s]."""
 WINDOW_S = 0.15
 """Of the likelihood ratio."""
 FALSE_ALARM = 0.01
@@ -119,17 +123,42 @@ class Gate:
     inflation: float
 
 
-def statistic(force: Floats, rate: Floats, noise: RestNoise, *, window: int) -> Floats:
+def bias_tolerance(
+    rate: Floats, noise: RestNoise, *, rate_hz: float, least: float = LEAST_TURNED
+) -> Floats:
+    """By how much the mean rate of a rest may differ from that of all rests, shape (3,) [rad/s].
+
+    Gravity, temperature and time move a bias by more than the noise of a good gyro's samples: what
+    the quiet pieces show, and no less than ``least`` [rad/s].
+    """
+    size = max(round(QUIET_S * rate_hz), 5)
+    count = max(rate.shape[0] // size, 1)
+    pieces = rate[: count * size].reshape(count, -1, 3)
+    quiet = np.all(pieces.std(axis=1) <= QUIET_FACTOR * noise.rate, axis=1)
+    if not quiet.any():
+        return np.full(3, least)
+    off = np.abs(pieces[quiet].mean(axis=1) - noise.bias)
+    spread = 1.4826 * np.median(off, axis=0)
+    return np.asarray(np.maximum(BIAS_SIGMAS * spread, least))
+
+
+def statistic(
+    force: Floats, rate: Floats, noise: RestNoise, *, window: int, tolerance: Floats
+) -> Floats:
     """Likelihood-ratio statistic of each sample's window, shape (n,).
 
-    Mean square of force about its window's mean and of rate about the bias, each in units of its
-    noise, over 6 - 3/window degrees of freedom a sample (Skog et al. 2010 with unknown direction).
+    Mean square of force and rate about their window's mean, each in units of its noise, over
+    6 - 6/window degrees of freedom a sample (Skog et al. 2010 with unknown direction and unknown
+    biases); of the rate's mean counts what lies beyond ``tolerance`` [rad/s], shape (3,).
     """
     f, w = force / noise.force, (rate - noise.bias) / noise.rate
     square = np.sum(f**2, axis=1) + np.sum(w**2, axis=1)
-    means = np.column_stack([_windowed(f[:, i], window) for i in range(3)])
-    total = window * _windowed(square, window) - window * np.sum(means**2, axis=1)
-    return np.asarray(total / (6.0 * window - 3.0))
+    total = window * _windowed(square, window)
+    for i in range(3):
+        mean = _windowed(w[:, i], window)
+        beyond = np.maximum(np.abs(mean) - tolerance[i] / noise.rate[i], 0.0)
+        total += window * (beyond**2 - mean**2 - _windowed(f[:, i], window) ** 2)
+    return np.asarray(total / (6.0 * (window - 1)))
 
 
 def _windowed(values: Floats, window: int) -> Floats:
@@ -144,7 +173,9 @@ def _windowed(values: Floats, window: int) -> Floats:
     return np.concatenate([np.full(left, means[0]), means, np.full(right, means[-1])])
 
 
-def gate_of(values: Floats, *, window: int, false_alarm: float, factor: float = 1.0) -> Gate:
+def gate_of(
+    values: Floats, *, window: int, false_alarm: float, factor: float = 1.0, own_means: int = 3
+) -> Gate:
     """Threshold from a stated false-alarm rate and the quiet part of the statistic itself.
 
     Parameters
@@ -155,8 +186,10 @@ def gate_of(values: Floats, *, window: int, false_alarm: float, factor: float = 
     false_alarm : float
     factor : float
         Multiplies the threshold.
+    own_means : int
+        Channels that are taken about their window's mean.
     """
-    dof = 6.0 * window - 3.0
+    dof = 6.0 * window - own_means
     middle = chi_square_quantile(0.5, dof) / dof
     low = np.sort(values)[: max(values.size // 2, 1)]
     quiet = low[low < 4.0 * max(float(np.quantile(values, 0.05)), middle)]
@@ -167,7 +200,9 @@ def gate_of(values: Floats, *, window: int, false_alarm: float, factor: float = 
     return Gate(factor * middle * spread * inflation, window, false_alarm, inflation)
 
 
-def motion_gate(values: Floats, *, window: int, false_alarm: float, factor: float = 1.0) -> Gate:
+def motion_gate(
+    values: Floats, *, window: int, false_alarm: float, factor: float = 1.0, own_means: int = 3
+) -> Gate:
     """Threshold between rest as it is in this record and motion.
 
     A vehicle at rest shakes: its engine runs, hands lie on it. The logarithm of the statistic is
@@ -182,8 +217,10 @@ def motion_gate(values: Floats, *, window: int, false_alarm: float, factor: floa
     false_alarm : float
     factor : float
         Multiplies the threshold.
+    own_means : int
+        As of ``gate_of``.
     """
-    plain = gate_of(values, window=window, false_alarm=false_alarm)
+    plain = gate_of(values, window=window, false_alarm=false_alarm, own_means=own_means)
     logs = np.log(np.maximum(values[:: max(window // 2, 1)], 1e-6))
     lower = _lower_cluster(logs)
     if lower is None:

@@ -25,6 +25,8 @@ NOTICED: Final = math.radians(10.0)
 factor 5 % off misses 6 degrees after 120."""
 BETTER: Final = 3.0
 """Another arrangement must miss so many times less."""
+DENIED: Final = math.radians(30.0)
+"""From here on no calibration starts, although no arrangement is found that mends it [rad]."""
 UNITS: Final = (("deg/s", math.radians(1.0)), ("deg/h", math.radians(1.0) / 3600.0))
 
 
@@ -55,7 +57,7 @@ def axes_problems(turns: Sequence[Turn], where: str) -> list[Problem]:
     left = [_missed(turns, np.eye(3)[list(o)] * np.array(s)[:, None]) for o, s in every]
     best = int(np.argmin(left))
     if BETTER * left[best] >= given:
-        return []
+        return [_unexplained(given, where)] if given > DENIED else []
     return [
         Problem(
             said("gyros and accelerometers are not seen in the same axes"),
@@ -92,6 +94,16 @@ def _of_another_unit(name: str, where: str) -> Problem:
         said("their turns carry gravity along only if they are in {unit}", unit=name),
         "rad/s",
         "`unit` COLUMN=UNIT; counts take `scale` COLUMN=VALUE",
+    )
+
+
+def _unexplained(given: float, where: str) -> Problem:
+    return Problem(
+        "the turns of the gyros do not carry gravity along",
+        where,
+        said("the turns miss gravity by {angle:.0f} degrees", angle=math.degrees(given)),
+        "10 degrees at most of a unit that was never calibrated",
+        "is one column in another unit, or the sampling rate another? no order or sign mends it",
     )
 
 
