@@ -63,7 +63,7 @@ def test_a_contradicted_drive_ends_with_exit_one_and_says_what_to_do() -> None:
     log = spoilt(drive(ROADS["level"], np.random.default_rng(4)), "rates_in_degrees")
     found = judge_motion(log, MotionOptions())
     (warning,) = [w for w in found.warnings if w.code == "rates_in_degrees"]
-    assert "`units`" in warning.text
+    assert "state that unit" in warning.text
     assert not found.met
 
 
