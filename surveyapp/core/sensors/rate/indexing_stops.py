@@ -131,12 +131,14 @@ def steadied(angles: Floats) -> Floats:
     )  # fmt: skip
     found = np.array(angles, dtype=np.float64)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], resting.astype(np.int8), [0]])))
-    begin, before = 0, math.nan
+    begin, before, near = 0, math.nan, FLICKER_ROWS
     for first, last in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
         own = float(np.median(angles[first:last]))
         if not abs(own - before) <= limit:  # else the same rest, after a larger flicker
-            begin, before = first, own
-        found[begin:last] = before
+            ahead = np.abs(angles[max(first - near, 0) : first] - own) <= limit
+            begin, before = first - int(np.cumprod(ahead[::-1]).sum()), own
+        behind = np.abs(angles[last : last + near] - before) <= limit
+        found[begin : last + int(np.cumprod(behind).sum())] = before
     return found
 
 
