@@ -220,3 +220,23 @@ def test_a_card_of_another_kind_is_refused(
     code, found = asked(capsys, path, *words, "--card", str(card))
     assert code == 2
     assert found["problems"][0]["what"] == "the card is of another kind"  # type: ignore[index]
+
+
+def test_a_declination_and_options_of_another_method_are_not_passed_over(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A heading from the earth's rotation takes no declination, whatever reference is stated."""
+    card = str(card_of(tmp_path))
+    words = [str(indexed_log(tmp_path)), "--method", "indexing", f"--latitude={LATITUDE}"]
+    words += ["--card", card]
+    magnetic = ("--initial-reference", "MAGNETIC", "--declination", "2.5")
+    code, found = asked(capsys, *words, *magnetic)
+    assert code == 2
+    assert found["problems"][0]["where"] == "--declination"  # type: ignore[index]
+    _, told = asked(capsys, *words, "--constant-deg", "171")
+    warnings = told["warnings"]
+    assert isinstance(warnings, list)
+    warning = warnings[0]
+    assert len(warnings) == 1
+    assert warning["code"] == "option_not_used"
+    assert "--constant-deg" in warning["text"]
