@@ -122,7 +122,7 @@ def test_it_is_told_of_lines_far_from_the_determinations(
 
 
 def test_a_line_without_a_date_leaves_the_days_to_the_others() -> None:
-    """The far line is as if it stood alone, but for the steps that may lie between the two."""
+    """The far line is as if it stood alone; of the others' five states it knows nothing."""
     constant, dated = determined([0.0, 20.0, 40.0, 60.0, 80.0, 100.0])
     facts = {key: replace(item, order=float(k)) for k, (key, item) in enumerate(dated.items())}
     told = {"elapsed_days": 7000.0, "temperature_c": 10.0}
@@ -131,7 +131,8 @@ def test_a_line_without_a_date_leaves_the_days_to_the_others() -> None:
     undated = Wanted(StationLine("C", "D"), ((1.0, near),))
     [alone] = predict_constants(constant, facts, [far]).lines
     found = predict_constants(constant, facts, [far, undated])
-    assert found.lines[0].sigma == pytest.approx(alone.sigma, rel=0.1)
+    assert found.lines[0].sigma == pytest.approx(alone.sigma, rel=1e-9)
+    assert found.lines[0].interval95 == pytest.approx(alone.interval95, rel=1e-9)
     [note] = [w for w in found.warnings if w.code == "covariate_missing"]
     assert "line C-D: elapsed_days not told" in note.text
 

@@ -7,7 +7,6 @@ its contributions: what determinations share, their scatter, and what not knowin
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -117,19 +116,15 @@ def predict_constants(
         UNIT_OF_EFFECT[e.id] for e in constant.instrument.effects if e.id in UNIT_OF_EFFECT
     )
     priors = priors.without(named)
-    every = [visit for line in wanted for _, visit in line.visits]
-    alike = frozenset(telling(columns_of([*known, *every], time=counted_in(known))))
-    average: Uncertain | None = None
+    first, _, warnings = base.predicted([], base.told_by([]), priors)
+    average = _uncertain(constant.instrument.id, first, base.sources, 0)[0]
     lines: list[Uncertain] = []
-    warnings: list[ResultWarning] = []
-    found: Predicted | None = None
-    for start in range(0, max(len(wanted), 1), TOGETHER):
+    for start in range(0, len(wanted), TOGETHER):
         part = wanted[start : start + TOGETHER]
-        chosen = None if found is None else found.counting
-        more, gaps, told = base.predicted(part, alike, chosen, priors)
-        found = more if found is None else found
+        more, gaps, told = base.predicted(part, base.told_by(part), priors)
+        more = base.each_alone(part, more.with_targets({0: 0}, first), priors)
         values = _uncertain(constant.instrument.id, more, base.sources, start)
-        average = values[0] if average is None else average
+        average = average if start else values[0]
         lines += values[1:]
         warnings += [w for w in told if w not in warnings]
         warnings += told_of(constant.instrument.id, part, known, gaps)
@@ -137,11 +132,9 @@ def predict_constants(
     drifting = if_drifting(wanted, known, lines, values=base.values, sigmas=stated, priors=priors)
     warnings += drift_notes(constant.instrument.id, wanted, lines, drifting, priors=priors)
     warnings += one_block(constant.instrument.id, known, bool(wanted))
-    assert found is not None
-    assert average is not None
-    scatter = RunScatter(found.excess if base.stated else 0.0, round(found.dof), None)
+    scatter = RunScatter(first.excess if base.stated else 0.0, round(first.dof), None)
     return PredictedConstants(
-        average, tuple(lines), drifting, found.weights, scatter, tuple(warnings)
+        average, tuple(lines), drifting, first.weights, scatter, tuple(warnings)
     )
 
 
@@ -171,22 +164,45 @@ class _Base:
         """Whether every determination states one."""
         return bool(np.all(np.isfinite(self.sigmas) & (self.sigmas > 0.0)))
 
+    def told_by(self, part: Sequence[Wanted]) -> frozenset[str]:
+        """Columns that vary at all over the determinations and the visits of some lines."""
+        visits = [visit for line in part for _, visit in line.visits]
+        return frozenset(telling(columns_of([*self.known, *visits], time=counted_in(self.known))))
+
     def predicted(
-        self,
-        part: Sequence[Wanted],
-        alike: frozenset[str],
-        chosen: frozenset[int] | None,
-        priors: Priors,
+        self, part: Sequence[Wanted], read: frozenset[str], priors: Priors
     ) -> tuple[Predicted, frozenset[str], list[ResultWarning]]:
-        """Predict the average and some lines with the members that count."""
+        """Predict the average and some lines from the columns that are read.
+
+        Returns
+        -------
+        predicted, gaps, warnings
+            Gaps are the columns that a visit does not tell.
+        """
         visits = [visit for line in part for _, visit in line.visits]
         columns, gaps, told = _columns(self.constant.instrument.id, self.known, visits)
-        columns = {name: values for name, values in columns.items() if name in alike}
-        gaps = gaps & alike
+        columns = {name: values for name, values in columns.items() if name in read}
+        gaps = gaps & read
         n, sigmas = len(self.used), self.sigmas if self.stated else None
         columns, targets, states = _scenarios(columns, _targets(part, n, sigmas), gaps, n)
-        data = Determinations(self.values, sigmas, columns, targets, self.carried, states, chosen)
+        data = Determinations(self.values, sigmas, columns, targets, self.carried, states)
         return predict(data, priors), gaps, told
+
+    def each_alone(self, part: Sequence[Wanted], together: Predicted, priors: Priors) -> Predicted:
+        """Lines as each of them is without the others; only what they share is of all together.
+
+        Another line may be the first to tell of a column in which the determinations do not vary.
+        That adds causes, which take their weight from those that this line knows.
+        """
+        everything = self.told_by(part)
+        kinds = [self.told_by([line]) for line in part]
+        found = together
+        for kind in set(kinds) - {everything}:
+            places = [place for place, own in enumerate(kinds) if own == kind]
+            alone, _, _ = self.predicted([part[place] for place in places], kind, priors)
+            rows = {1 + place: row for row, place in enumerate(places, start=1)}
+            found = found.with_targets(rows, alone)
+        return found
 
 
 def _latest(
@@ -332,15 +348,9 @@ def _uncertain(
     it as far as the average says so.
     """
     quantile = student_quantile(0.975, found.dof)
-    wanted = []
-    for t, mixture in enumerate(found.mixtures):
-        half = found.half_width(t) / quantile
-        total = mixture.variance
-        cause = max(half**2 - float(found.readings[t]) ** 2, 0.0)
-        wanted.append(math.sqrt(cause / total) if total > 0.0 else 0.0)
-    factor = np.array(wanted)
-    values, vectors = np.linalg.eigh(found.causes * factor[:, None] * factor[None, :])
-    root = vectors * np.sqrt(np.maximum(values, 0.0))
+    halves = np.array([found.half_width(t) / quantile for t in range(found.values.size)])
+    wanted = np.sqrt(np.maximum(halves**2 - found.readings**2, 0.0))
+    root = wanted[:, None] * _shared_root(found)
     result = []
     for t, value in enumerate(found.values):
         parts = {
@@ -353,3 +363,19 @@ def _uncertain(
         kept = {source: part for source, part in parts.items() if part != 0.0}
         result.append(Uncertain(float(value), kept, Spread(CAUSE, found.mixtures[t])))
     return tuple(result)
+
+
+def _shared_root(found: Predicted) -> Floats:
+    """Root of the correlations of what not knowing the cause adds; each row has length 1.
+
+    Where members that know the cause have less scatter than the base, the difference to the base's
+    scatter is no covariance any more: what is nearest to one is taken, and no row grows by it.
+    """
+    own = [mixture.variance for mixture in found.mixtures]
+    size = np.sqrt(np.maximum(np.abs(np.diagonal(found.causes)), own))
+    size = np.where(size > 0.0, size, 1.0)
+    alike = np.clip(found.causes / (size[:, None] * size[None, :]), -1.0, 1.0)
+    np.fill_diagonal(alike, 1.0)
+    values, vectors = np.linalg.eigh(alike)
+    root = vectors * np.sqrt(np.maximum(values, 0.0))
+    return np.asarray(root / np.linalg.norm(root, axis=1)[:, None])

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -45,8 +45,6 @@ class Predicted:
     excess : float
         Standard deviation that every determination has beside its stated one, or 0 [rad]: what the
         next one will have too.
-    counting : frozenset of int
-        Members that are not negligible: enough for further visits.
     """
 
     values: Floats
@@ -57,12 +55,25 @@ class Predicted:
     weights: Mapping[str, float]
     dof: float
     excess: float
-    counting: frozenset[int]
 
     def half_width(self, target: int = 0, beside: float = 0.0) -> float:
         """Half-width of the 95 % interval [rad] beside an independent variance [rad^2]."""
         own = float(self.readings[target]) ** 2
         return self.mixtures[target].half_width(own + beside)
+
+    def with_targets(self, rows: Mapping[int, int], other: Predicted) -> Predicted:
+        """The same with some targets as another prediction has them; ``rows`` tells where.
+
+        What is common to two targets (``causes``) stays.
+        """
+        values, readings, carried = (x.copy() for x in (self.values, self.readings, self.carried))
+        mixtures = list(self.mixtures)
+        for place, own in rows.items():
+            values[place], readings[place] = other.values[own], other.readings[own]
+            carried[place], mixtures[place] = other.carried[own], other.mixtures[own]
+        return replace(
+            self, values=values, readings=readings, carried=carried, mixtures=tuple(mixtures)
+        )
 
 
 def predict(data: Determinations, priors: Priors) -> Predicted:
@@ -99,7 +110,6 @@ def averaged(found: Members) -> Predicted:
         carried=unit * np.einsum("m,mtr->tr", w, found.carried),
         weights=shares,
         dof=found.dof,
-        counting=found.counting,
         excess=unit * math.sqrt(max(float(w @ found.noise) - 1.0, 0.0)),
     )
 

@@ -30,7 +30,6 @@ GROSS_VARIANCE = 36.0
 """A gross error is about six standard deviations."""
 LEAST_NOISE = 1e-6
 """Bound below the noise of a determination, in squares of the median sigma."""
-NEGLIGIBLE = 1e-5
 CHUNK = 64
 """Members that are factored at once: as many as fit into the cache."""
 
@@ -55,8 +54,6 @@ class Determinations:
     scenarios : int
         Equally likely states of what later visits do not tell: the targets are those of the first
         state, then those of the second ...
-    chosen : frozenset of int or None
-        Numbers of the members that count, of those of the same determinations; None = all.
     """
 
     values: Floats
@@ -65,7 +62,6 @@ class Determinations:
     targets: Floats
     carried: Floats
     scenarios: int = 1
-    chosen: frozenset[int] | None = None
 
     @property
     def size(self) -> int:
@@ -86,8 +82,6 @@ class _Terms:
     units : tuple of str
     sizes : tuple of int
         Which of ``AMPLITUDES``; -1 where a member has no size of its own.
-    numbers : tuple of int
-        By which ``Determinations.chosen`` knows a member; -1 where it always counts.
     causes : tuple of tuple of str
         What is in it: of a pair both.
     """
@@ -98,7 +92,6 @@ class _Terms:
     prior_cov: Floats
     units: tuple[str, ...]
     sizes: tuple[int, ...]
-    numbers: tuple[int, ...]
     causes: tuple[tuple[str, ...], ...]
 
 
@@ -111,8 +104,6 @@ class Members:
     units : tuple of str
     sizes : tuple of int
         Which of ``AMPLITUDES``; -1 where a member has no size of its own.
-    numbers : tuple of int
-        By which ``Determinations.chosen`` knows a member; -1 where it always counts.
     log_evidence : ndarray, shape (m,)
         Without the prior.
     log_prior : ndarray, shape (m,)
@@ -129,7 +120,6 @@ class Members:
 
     units: tuple[str, ...]
     sizes: tuple[int, ...]
-    numbers: tuple[int, ...]
     log_evidence: Floats
     log_prior: Floats
     means: Floats
@@ -146,12 +136,6 @@ class Members:
         log = self.log_evidence + self.log_prior
         found = np.exp(log - log.max())
         return np.asarray(found / found.sum())
-
-    @property
-    def counting(self) -> frozenset[int]:
-        """Numbers of the members that are not negligible, for further visits."""
-        kept = self.weights > NEGLIGIBLE
-        return frozenset(n for n, keep in zip(self.numbers, kept.tolist(), strict=True) if keep)
 
 
 def members(data: Determinations, priors: Priors) -> Members:
@@ -187,7 +171,6 @@ def members(data: Determinations, priors: Priors) -> Members:
     found = Members(
         units=terms.units,
         sizes=terms.sizes,
-        numbers=terms.numbers,
         log_evidence=evidence,
         log_prior=terms.log_prior,
         means=centre / unit + means,
@@ -208,7 +191,6 @@ def _in_every_state(found: Members, count: int) -> Members:
     return Members(
         units=found.units * count,
         sizes=found.sizes * count,
-        numbers=found.numbers * count,
         log_evidence=np.tile(found.log_evidence, count),
         log_prior=np.tile(found.log_prior, count) - np.log(count),
         means=np.concatenate([found.means[:, k] for k in rows]),
@@ -237,7 +219,6 @@ def _joined(parts: list[_Terms]) -> _Terms:
         np.concatenate([p.prior_cov for p in parts]),
         tuple(u for p in parts for u in p.units),
         tuple(k for p in parts for k in p.sizes),
-        tuple(k for p in parts for k in p.numbers),
         tuple(c for p in parts for c in p.causes),
     )
 
@@ -289,7 +270,6 @@ def _rank_one(
         variance[:, None, None] * both,
         (unit,) * len(x),
         (size,) * len(x),
-        (-1,) * len(x),
         ((unit,),) * len(x),
     )
 
@@ -301,16 +281,11 @@ def _dense(data: Determinations, priors: Priors, d: Floats, fixed: Floats) -> It
     own = np.stack([k.matrix[:n, :n] for k in found])
     cross = np.stack([targets @ k.matrix[:, :n] for k in found])
     ends = np.stack([targets @ k.matrix @ targets.T for k in found])
-    whole = [*singles(found, priors), *pairs(found, priors)]
-    plan = [
-        (number, item)
-        for number, item in enumerate(whole)
-        if data.chosen is None or number in data.chosen
-    ]
+    plan = [*singles(found, priors), *pairs(found, priors)]
     for start in range(0, len(plan), CHUNK):
         part = plan[start : start + CHUNK]
         mix = np.zeros((len(part), len(found)))
-        for row, (_, item) in enumerate(part):
+        for row, item in enumerate(part):
             for place, variance in item.causes:
                 mix[row, place] = variance
         a = np.tensordot(mix, own, axes=1)
@@ -318,14 +293,13 @@ def _dense(data: Determinations, priors: Priors, d: Floats, fixed: Floats) -> It
         k = np.tensordot(mix, cross, axes=1)
         log_det, products = _bordered(a, k, fixed)
         yield _Terms(
-            np.log(np.array([item.prior for _, item in part])),
+            np.log(np.array([item.prior for item in part])),
             log_det,
             products,
             np.tensordot(mix, ends, axes=1),
-            tuple(item.unit for _, item in part),
-            tuple(item.size for _, item in part),
-            tuple(number for number, _ in part),
-            tuple(tuple(found[place].unit for place, _ in item.causes) for _, item in part),
+            tuple(item.unit for item in part),
+            tuple(item.size for item in part),
+            tuple(tuple(found[place].unit for place, _ in item.causes) for item in part),
         )
 
 

@@ -23,10 +23,10 @@ NEAR = 1e-5
 STEPS = 60
 TIGHT, CLOSE = 1e-9, 1e-9
 """Relative width of a half-width, and its probability, at which its search ends."""
-MOST_MEMBERS = 600
 LEAST_WEIGHT = 1e-6
-"""Of the largest: members below it are left out of an interval. Hundreds of unlikely wide ones make
-a part of its tails (at 1e-4 half of one per cent was missing from the five of both)."""
+"""Of the largest: members below it are left out of an interval, however many remain. Hundreds of
+unlikely wide ones make a part of its tails: at 1e-4 half of one per cent was missing from the five
+of both, and of the six hundred heaviest alone a line in five states was 7 to 11 % too narrow."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,7 +53,7 @@ class Mixture:
 
     def main(self) -> Mixture:
         """The same without the members that no interval shows, the others taking their weight."""
-        order = np.argsort(-self.weights)[:MOST_MEMBERS]
+        order = np.argsort(-self.weights)
         kept = order[self.weights[order] > LEAST_WEIGHT * self.weights[order[0]]]
         weights = self.weights[kept] / self.weights[kept].sum()
         return Mixture(weights, self.offsets[kept], self.variances[kept], self.dof)
