@@ -135,8 +135,7 @@ def orient_project(
     positions = {station.name: position_of(station, grid) for station in project.stations}
     stations = {s.name: _with_position(s, positions[s.name]) for s in project.stations}
     warnings = [*project.warnings, *check_adopted(project)]
-    tested = sum(session.method != "automatic" for session in project.sessions)
-    judge = Judge(sessions=tested, asked=judged)
+    judge = Judge(sessions=sum(s.method != "automatic" for s in project.sessions), asked=judged)
     setting = _Setting(project, positions, stations, judge, estimator, run_model)
     reduced, sigmas = _reduce_all(setting, advance)
     measured = reduced = with_pooled_weights(with_pooled_tape_zeros(reduced))
