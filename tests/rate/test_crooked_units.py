@@ -82,7 +82,8 @@ def asked(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, dict[st
     return code, found
 
 
-def indexed_log(folder: Path) -> Path:
+def indexed_log(folder: Path, *, flicker: float = 0.0) -> Path:
+    """Four positions of 30 s; ``flicker`` of the encoder [deg], its readings from 0 to 360."""
     rng = np.random.default_rng(8)
     angles = np.repeat([0.0, 90.0, 180.0, 270.0], 60)
     rates, forces = [], []
@@ -95,8 +96,26 @@ def indexed_log(folder: Path) -> Path:
     columns |= vectors(
         np.array(rates) + noise[0] * 0.02 * DEG_H, np.array(forces) + noise[1] * 1e-4
     )
-    columns["index_angle_deg"] = angles
+    read = (angles + flicker * rng.normal(0.0, 1.0, angles.size)) % 360.0
+    columns["index_angle_deg"] = np.round(read, 2)
     return written(folder / "index.csv", columns)
+
+
+@pytest.mark.parametrize("flicker", [0.003, 0.02, 0.2])
+def test_an_encoder_that_flickers_stands_in_four_positions(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], flicker: float
+) -> None:
+    """Each row had an angle of its own, and no position was at rest; about north 359.99 is 0."""
+    words = ("--method", "indexing", f"--latitude={LATITUDE}", "--card", str(card_of(tmp_path)))
+    _, still = asked(capsys, str(indexed_log(tmp_path)), *words)
+    code, found = asked(capsys, str(indexed_log(tmp_path, flicker=flicker)), *words)
+    assert code == 0
+    assert found["stops"] == still["stops"] == 4
+    one, other = still["heading"], found["heading"]
+    assert isinstance(one, dict)
+    assert isinstance(other, dict)
+    # the median of sixty readings turns the body by a sixth of the flicker
+    assert abs(other["deg"] - one["deg"]) < 0.01 + flicker
 
 
 def test_a_card_takes_out_what_crooked_axes_turn_the_heading_by(
@@ -201,3 +220,23 @@ def test_a_card_of_another_kind_is_refused(
     code, found = asked(capsys, path, *words, "--card", str(card))
     assert code == 2
     assert found["problems"][0]["what"] == "the card is of another kind"  # type: ignore[index]
+
+
+def test_a_declination_and_options_of_another_method_are_not_passed_over(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A heading from the earth's rotation takes no declination, whatever reference is stated."""
+    card = str(card_of(tmp_path))
+    words = [str(indexed_log(tmp_path)), "--method", "indexing", f"--latitude={LATITUDE}"]
+    words += ["--card", card]
+    magnetic = ("--initial-reference", "MAGNETIC", "--declination", "2.5")
+    code, found = asked(capsys, *words, *magnetic)
+    assert code == 2
+    assert found["problems"][0]["where"] == "--declination"  # type: ignore[index]
+    _, told = asked(capsys, *words, "--constant-deg", "171")
+    warnings = told["warnings"]
+    assert isinstance(warnings, list)
+    warning = warnings[0]
+    assert len(warnings) == 1
+    assert warning["code"] == "option_not_used"
+    assert "--constant-deg" in warning["text"]

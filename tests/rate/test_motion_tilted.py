@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from surveyapp import api
+from surveyapp.errors import SurveyError
 
 PROFILE = (
     ("stationary", 10.0, 0.0),
@@ -93,3 +94,20 @@ def test_a_gyro_that_sees_the_earth_turn_rests_at_every_heading(tmp_path: Path) 
     last = [s for s in api.motion(path).segments if s.state == "stationary"][-1]
     assert last.end_s == pytest.approx(float(time[-1]), abs=0.1)
     assert last.end_s - last.start_s > 9.0
+
+
+def test_a_gyro_at_the_end_of_its_range_is_no_rest_and_makes_no_path(tmp_path: Path) -> None:
+    """It has no noise there: the curve was taken for the quietest part of the record."""
+    path = tmp_path / "drive.csv"
+    states = np.array(drive(path, pitch=0.0, roll=0.0))
+    table = np.loadtxt(path, delimiter=",", skiprows=1)
+    table[:, 3] = np.clip(table[:, 3], -0.1, 0.1)
+    header = path.read_text().splitlines()[0]
+    np.savetxt(path, table, fmt="%.9g", delimiter=",", header=header, comments="")
+    time = np.arange(states.size) / RATE_HZ
+    found = [s for s in api.motion(path).segments if s.state == "stationary"]
+    turning = time[states == "turning"]
+    assert all(s.end_s <= turning[0] or s.start_s >= turning[-1] for s in found)
+    with pytest.raises(SurveyError) as refused:
+        api.motion(path, options={"path": True})
+    assert refused.value.problems[0].what == "gyr_z_rad_s is saturated"

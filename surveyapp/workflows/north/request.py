@@ -132,7 +132,8 @@ def _flag(name: str) -> str:
 def declination_problems(request: NorthRequest) -> list[Problem]:
     """A declination beside a heading that is not magnetic, whatever the method."""
     value = request.declination()
-    if value is None or request.option("initial_reference") == "MAGNETIC":
+    magnetic = request.option("initial_reference") == "MAGNETIC"
+    if value is None or (magnetic and request.method == "rotation"):
         return []
     if request.method == "rotation" and request.option("initial_reference") is None:
         found = "a heading without a reference"
@@ -145,7 +146,7 @@ def declination_problems(request: NorthRequest) -> list[Problem]:
             "a declination belongs to a magnetic heading only",
             "declination",
             found,
-            "`initial_reference` MAGNETIC",
+            "`initial_reference` MAGNETIC" if request.method == "rotation" else "no declination",
             "a gyro finds true north: with a declination the heading would be wrong by it",
         )
     ]

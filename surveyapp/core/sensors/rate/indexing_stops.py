@@ -112,18 +112,17 @@ def steadied(angles: Floats) -> Floats:
     angles : ndarray, shape (n,)
         Without flicker they are returned as they are.
     """
-    steps = np.diff(angles)
     if angles.size <= 2 * FLICKER_ROWS:
         return angles
-    path = np.convolve(np.abs(steps), np.ones(FLICKER_ROWS), "valid")
+    given, angles = angles, np.unwrap(angles, period=360.0)
+    path = np.convolve(np.abs(np.diff(angles)), np.ones(FLICKER_ROWS), "valid")
     net = np.abs(angles[FLICKER_ROWS:] - angles[:-FLICKER_ROWS])
     moved = path > 1e-9
     flickers = moved & (net < FLICKER_SHARE * path)
     rests = float(np.mean(flickers | ~moved))
-    if rests < FLICKER_SHARE or np.count_nonzero(flickers) < FLICKER_LEAST * np.count_nonzero(
-        moved
-    ):
-        return angles
+    least = FLICKER_LEAST * float(np.count_nonzero(moved))
+    if not flickers.any() or rests < FLICKER_SHARE or np.count_nonzero(flickers) < least:
+        return given
     usual, largest = np.quantile(net[flickers], [0.5, 0.95])
     limit = max(FLICKER_SIGMAS * 1.4826 * float(usual), 2.0 * float(largest))
     resting = np.concatenate(
@@ -132,8 +131,14 @@ def steadied(angles: Floats) -> Floats:
     )  # fmt: skip
     found = np.array(angles, dtype=np.float64)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], resting.astype(np.int8), [0]])))
+    begin, before, near = 0, math.nan, FLICKER_ROWS
     for first, last in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
-        found[first:last] = np.median(angles[first:last])
+        own = float(np.median(angles[first:last]))
+        if not abs(own - before) <= limit:  # else the same rest, after a larger flicker
+            ahead = np.abs(angles[max(first - near, 0) : first] - own) <= limit
+            begin, before = first - int(np.cumprod(ahead[::-1]).sum()), own
+        behind = np.abs(angles[last : last + near] - before) <= limit
+        found[begin : last + int(np.cumprod(behind).sum())] = before
     return found
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from surveyapp.core.sensors.rate.motion_axes import axes_doubts
 from surveyapp.core.sensors.rate.motion_pieces import ACCELEROMETERS, PIECE_ROWS, stacked
 from surveyapp.core.sensors.rate.rests import Rests
 from surveyapp.domain.columns import PIECE, pieces, span
@@ -19,6 +20,14 @@ FALLS_M = 0.5
 UPRIGHT = 0.7
 """Share of gravity along z from which z is up or down, within 45 degrees."""
 LEAST_MOVING_S = 5.0
+CONTRADICTIONS = (
+    "odometer_stands",
+    "forward_is_x",
+    "turning_reversed",
+    "rates_in_degrees",
+    "rates_too_small",
+)
+"""Doubts under which states or path are not what they say; a vehicle may back all the way."""
 
 
 def odometer_problems(log: SensorLog) -> list[Problem]:
@@ -76,6 +85,8 @@ def record_doubts(log: SensorLog, rests: Rests, *, snapping: bool) -> list[Resul
             along=along,
         )
         found.append(ResultWarning("z_not_up", text))
+    else:
+        found += axes_doubts(log, rests)
     odometer = log.columns.get(ODOMETER)
     if odometer is None:
         if snapping:

@@ -10,7 +10,11 @@ from typing import Any, Literal
 
 import numpy as np
 
-from surveyapp.core.sensors.rate.motion_doubts import odometer_problems, record_doubts
+from surveyapp.core.sensors.rate.motion_doubts import (
+    CONTRADICTIONS,
+    odometer_problems,
+    record_doubts,
+)
 from surveyapp.core.sensors.rate.motion_pieces import (
     ACCELEROMETERS,
     GYROS,
@@ -23,6 +27,7 @@ from surveyapp.core.sensors.rate.motion_states import Thresholds
 from surveyapp.core.sensors.rate.odometer_drive import drive_of
 from surveyapp.core.sensors.rate.odometer_path import Driven, Reckoned, reckon
 from surveyapp.core.sensors.rate.rests import Rests
+from surveyapp.core.sensors.rate.rotation_checks import clipped_problems
 from surveyapp.core.sensors.rate.snapping import snap
 from surveyapp.core.sensors.rate.still import FALSE_ALARM, Gate
 from surveyapp.core.sensors.rate.zero_velocity import (
@@ -96,6 +101,8 @@ def judge_motion(log: SensorLog, options: MotionOptions, *, room: Room = in_memo
         found = said("{size} rows", size=log.size)
         raise SurveyError(Problem("the record is too short", log.path, found, "100 rows or more"))
     falls = odometer_problems(log)
+    if options.path or options.snap:
+        falls += clipped_problems(log, GYROS, slice(None))
     if falls:
         raise SurveyError(falls)
     interval = 1.0 / (log.rate_hz or 100.0)
@@ -107,8 +114,8 @@ def judge_motion(log: SensorLog, options: MotionOptions, *, room: Room = in_memo
     unseen = _unseen(time, states.rests, interval) if path is not None else None
     if unseen is not None:
         warnings = [*warnings, unseen]
-    stands = any(w.code == "odometer_stands" for w in doubts)
-    consistent = unseen is None and not stands and (zero is None or zero["verdict"] == "consistent")
+    wrong = any(w.code in CONTRADICTIONS for w in doubts)
+    consistent = unseen is None and not wrong and (zero is None or zero["verdict"] == "consistent")
     return Motion(
         source=log.id,
         n=log.size,

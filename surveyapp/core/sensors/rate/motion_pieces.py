@@ -158,7 +158,7 @@ def states_of(
         force, rate = piece.vectors(log, ACCELEROMETERS), piece.vectors(log, GYROS)
         values = _statistic(force, rate, noise, window=window, interval=interval)
         rest = bridged(values <= gate.threshold, rate_hz=1.0 / interval)
-        rest &= ~moving_smoothly(
+        driven = moving_smoothly(
             force,
             rate,
             rest,
@@ -166,6 +166,7 @@ def states_of(
             interval_s=interval,
             odometer=piece.column(log, "odometer_m"),
         )
+        rest = bridged(rest & ~driven, rate_hz=1.0 / interval)
         other = bridged(
             norm_and_rate(force, rate, noise, false_alarm=false_alarm), rate_hz=1.0 / interval
         )

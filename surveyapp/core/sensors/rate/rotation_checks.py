@@ -30,16 +30,18 @@ LONGEST_STEP: Final = 2.5
 """Median intervals: a longer one is a gap."""
 
 
-def clipped_problems(log: SensorLog, columns: Sequence[str], rows: np.ndarray) -> list[Problem]:
-    """Gyros that stood at the end of their range while the heading was carried.
+def clipped_problems(
+    log: SensorLog, columns: Sequence[str], rows: np.ndarray | slice
+) -> list[Problem]:
+    """Gyros that stood at the end of their range while they were integrated.
 
     Parameters
     ----------
     log : SensorLog
     columns : sequence of str
         Of the gyros.
-    rows : ndarray of int
-        Of the run.
+    rows : ndarray of int, or slice
+        That are integrated.
     """
     problems = []
     for name in columns:
@@ -54,7 +56,7 @@ def clipped_problems(log: SensorLog, columns: Sequence[str], rows: np.ndarray) -
                 Problem(
                     said("{name} is saturated", name=name),
                     log.path,
-                    said("{rows} rows of the run are {end:.6g}", rows=count, end=end),
+                    said("{rows} rows stand at {end:.6g}", rows=count, end=end),
                     "rates within the range of the gyro",
                     "what it turned beyond is lost: turn more slowly, or choose another range",
                 )

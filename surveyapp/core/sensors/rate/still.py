@@ -82,11 +82,14 @@ def rest_noise(force: Floats, rate: Floats, *, rate_hz: float) -> RestNoise:
     scale_f, scale_w = (np.maximum(np.median(s, axis=0), 1e-12) for s in (sd_f, sd_w))
     score = np.log(np.maximum(sd_f / scale_f, 1e-9)).sum(axis=1)
     score = score + np.log(np.maximum(sd_w / scale_w, 1e-9)).sum(axis=1)
-    quiet = score <= np.quantile(score, QUIET_SHARE)
+    free = ~_stuck(f, w)
+    if not free.any():
+        free[:] = True
+    quiet = free & (score <= np.quantile(score[free], QUIET_SHARE))
     for _ in range(4):
         limit_f = QUIET_FACTOR * np.median(sd_f[quiet], axis=0)
         limit_w = QUIET_FACTOR * np.median(sd_w[quiet], axis=0)
-        wider = np.all(sd_f <= limit_f, axis=1) & np.all(sd_w <= limit_w, axis=1)
+        wider = free & np.all(sd_f <= limit_f, axis=1) & np.all(sd_w <= limit_w, axis=1)
         if not wider.any() or np.array_equal(wider, quiet):
             break
         quiet = wider
@@ -99,6 +102,18 @@ def rest_noise(force: Floats, rate: Floats, *, rate_hz: float) -> RestNoise:
         float(np.median(np.linalg.norm(f[quiet].mean(axis=1), axis=1))),
         float(np.mean(quiet)),
     )
+
+
+def _stuck(force: Floats, rate: Floats) -> Mask:
+    """Pieces throughout which a channel stands at an end of its range: no noise, and no rest."""
+    found = np.zeros(force.shape[0], dtype=bool)
+    for values in (force, rate):
+        low, high = values.min(axis=1), values.max(axis=1)
+        ends = (high == values.max(axis=(0, 1))) | (low == values.min(axis=(0, 1)))
+        stands = (low == high) & ends
+        # a channel that stands everywhere else, too, has coarse digits
+        found |= np.any(stands & (np.mean(low == high, axis=0) < 0.5), axis=1)
+    return found
 
 
 @dataclass(frozen=True, slots=True)
