@@ -33,12 +33,20 @@ STOPS = (12, 18, 30)
 PART = 50
 """Records of a stored part."""
 DEG = math.radians(1.0)
+TOGETHER = "temperature or bias_ramp"
+"""What cannot be told apart: right where just this is said."""
+WARM_K = 5.0
 CELLS: Mapping[str, tuple[str, Mapping[str, float]]] = {
     "none": ("", {}),
     "g-sensitivity .002 deg/s per m/s2": ("g_sensitivity", {"g_sensitivity": 0.002 * DEG}),
     "g-sensitivity .0008": ("g_sensitivity", {"g_sensitivity": 0.0008 * DEG}),
     "ramp .02 deg/s per min": ("bias_ramp", {"per_minute": 0.02 * DEG}),
     "ramp .008": ("bias_ramp", {"per_minute": 0.008 * DEG}),
+    "temperature .0015 deg/s per K, 5 K up and down": (
+        "temperature",
+        {"per_kelvin": 0.0015 * DEG, "cycles": 1.5},
+    ),
+    "the same, 5 K rising with time": (TOGETHER, {"per_kelvin": 0.0015 * DEG, "cycles": 0.0}),
     "scale asymmetry 4e-3": ("scale_asymmetry", {"scale_asymmetry": 4e-3}),
     "gross error .05 deg/s": ("gross_error", {"gross_error": 0.05 * DEG}),
     "gross error .025": ("gross_error", {"gross_error": 0.025 * DEG}),
@@ -53,7 +61,8 @@ def diagnosed(seed: int, stops: int, sizes: Mapping[str, float]) -> Diagnosis:
     """Diagnosis of one simulated record."""
     rng = np.random.default_rng([seed, stops])
     seconds = stops * 6.0 - 2.0
-    given = {k: v for k, v in sizes.items() if k not in ("per_minute", "step")}
+    beside = ("per_minute", "step", "per_kelvin", "cycles")
+    given = {k: v for k, v in sizes.items() if k not in beside}
     if "per_minute" in sizes:
         given["bias_ramp"] = sizes["per_minute"] * seconds / 60.0
     run = hand_run({**given, "stops": float(stops)}, rng)
@@ -63,6 +72,12 @@ def diagnosed(seed: int, stops: int, sizes: Mapping[str, float]) -> Diagnosis:
         after = log.columns["time_s"] > 6.0 * rng.integers(3, stops - 2)
         for a in "xyz":
             log.columns[f"gyr_{a}_rad_s"] += sizes["step"] * after
+    if "per_kelvin" in sizes:
+        share = log.columns["time_s"] / seconds
+        swing = np.sin(2.0 * np.pi * sizes["cycles"] * share) if sizes["cycles"] else share
+        log.columns["temperature_c"] += WARM_K * swing
+        for a in "xyz":
+            log.columns[f"gyr_{a}_rad_s"] += sizes["per_kelvin"] * WARM_K * swing
     rests, turns, _ = stops_of(as_read(log), latitude=run.latitude)
     return diagnose(rate_case(rests, turns, identity="unit"), advise=False)
 
@@ -75,7 +90,11 @@ def counts(name: str, stops: int, first: int, last: int) -> list[int]:
         found = diagnosed(seed, stops, sizes)
         names = {item.effect for item in found.adopted}
         detected += found.verdict != "adequate"
-        right += names == {wanted}
+        if wanted == TOGETHER:
+            told = {option for item in found.ambiguous for option in item.any_of}
+            right += not names and {"temperature", "bias_ramp"} <= told
+        else:
+            right += names == {wanted}
         wrong += bool(names - {wanted})
     return [detected, right, wrong]
 
