@@ -35,7 +35,6 @@ PART = 50
 DEG = math.radians(1.0)
 TOGETHER = "temperature or bias_ramp"
 """What cannot be told apart: right where just this is said."""
-WARM_K = 5.0
 CELLS: Mapping[str, tuple[str, Mapping[str, float]]] = {
     "none": ("", {}),
     "g-sensitivity .002 deg/s per m/s2": ("g_sensitivity", {"g_sensitivity": 0.002 * DEG}),
@@ -44,9 +43,12 @@ CELLS: Mapping[str, tuple[str, Mapping[str, float]]] = {
     "ramp .008": ("bias_ramp", {"per_minute": 0.008 * DEG}),
     "temperature .0015 deg/s per K, 5 K up and down": (
         "temperature",
-        {"per_kelvin": 0.0015 * DEG, "cycles": 1.5},
+        {"per_kelvin": 0.0015 * DEG, "kelvin": 5.0, "cycles": 1.5},
     ),
-    "the same, 5 K rising with time": (TOGETHER, {"per_kelvin": 0.0015 * DEG, "cycles": 0.0}),
+    "the same, 15 K rising with time": (
+        TOGETHER,
+        {"per_kelvin": 0.0015 * DEG, "kelvin": 15.0, "cycles": 0.0},
+    ),
     "scale asymmetry 4e-3": ("scale_asymmetry", {"scale_asymmetry": 4e-3}),
     "gross error .05 deg/s": ("gross_error", {"gross_error": 0.05 * DEG}),
     "gross error .025": ("gross_error", {"gross_error": 0.025 * DEG}),
@@ -61,7 +63,7 @@ def diagnosed(seed: int, stops: int, sizes: Mapping[str, float]) -> Diagnosis:
     """Diagnosis of one simulated record."""
     rng = np.random.default_rng([seed, stops])
     seconds = stops * 6.0 - 2.0
-    beside = ("per_minute", "step", "per_kelvin", "cycles")
+    beside = ("per_minute", "step", "per_kelvin", "kelvin", "cycles")
     given = {k: v for k, v in sizes.items() if k not in beside}
     if "per_minute" in sizes:
         given["bias_ramp"] = sizes["per_minute"] * seconds / 60.0
@@ -75,9 +77,10 @@ def diagnosed(seed: int, stops: int, sizes: Mapping[str, float]) -> Diagnosis:
     if "per_kelvin" in sizes:
         share = log.columns["time_s"] / seconds
         swing = np.sin(2.0 * np.pi * sizes["cycles"] * share) if sizes["cycles"] else share
-        log.columns["temperature_c"] += WARM_K * swing
+        warmth = sizes["kelvin"] * swing
+        log.columns["temperature_c"] += warmth
         for a in "xyz":
-            log.columns[f"gyr_{a}_rad_s"] += sizes["per_kelvin"] * WARM_K * swing
+            log.columns[f"gyr_{a}_rad_s"] += sizes["per_kelvin"] * warmth
     rests, turns, _ = stops_of(as_read(log), latitude=run.latitude)
     return diagnose(rate_case(rests, turns, identity="unit"), advise=False)
 
