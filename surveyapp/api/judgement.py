@@ -134,7 +134,7 @@ def diagnose(
     own = () if effects is None else load_effects(Path(effects), only_known_columns=True)
     keep = tuple(name for name in (session, confirm) if name)
     if isinstance(source, Project | str | PathLike):
-        found = oriented(source, keep=keep)
+        found = oriented(source, keep=keep, judged=False)
     else:
         found = source.oriented
     return diagnose_project(

@@ -98,7 +98,7 @@ def network(source: Source, *, traverse: str | None = None) -> Network:
         path = Path(source)
         if path.suffix.lower() in (".gkf", ".xml") or path.is_file():
             return read_gkf(path)
-    found = oriented(source, even_unfinished=True)
+    found = oriented(source, even_unfinished=True, judged=False)
     if found.orientation.sessions:
         refuse_unfit_grid(found.orientation.project)
     return found.network(traverse)

@@ -92,9 +92,10 @@ def oriented(
     estimator: str | None = None,
     keep: tuple[str, ...] = (),
     even_unfinished: bool = False,
+    judged: bool = True,
     advance: Advance = silent,
 ) -> OrientedProject:
-    """Orient a project without judging it.
+    """Orient a project without judging it yet.
 
     Parameters
     ----------
@@ -102,6 +103,8 @@ def oriented(
         Sessions that stay although they are not finished.
     even_unfinished : bool
         Whether a project may have no finished session at all; it has no line then.
+    judged : bool
+        Whether it will be judged.
     """
     from surveyapp.workflows.computing import oriented as oriented_project
 
@@ -117,6 +120,7 @@ def oriented(
         session=session,
         keep=keep,
         all_if_none=not even_unfinished,
+        judged=judged,
         advance=advance,
     )
 

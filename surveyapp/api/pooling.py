@@ -122,7 +122,7 @@ def _part(task: tuple[str, Wanted]) -> Part:
 
     path, wanted = task
     try:
-        return part_of(path, oriented(path).orientation, wanted)
+        return part_of(path, oriented(path, judged=False).orientation, wanted)
     except SurveyError as error:
         return Part(path, False, left_out=(f"{path}: {error.problems[0]}",))
 

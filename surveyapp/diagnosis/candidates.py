@@ -214,9 +214,9 @@ def _several(single: Candidate) -> list[Candidate]:
         combinations = list(itertools.combinations(range(count), several))
         index = np.array(combinations)
         columns = np.concatenate([single.columns[index[:, i]] for i in range(several)], axis=2)
-        names = tuple(single.points[0])
+        keys = [[(k, f"{k}_{i + 1}") for k in single.points[0]] for i in range(several)]
         points = tuple(
-            {f"{k}_{i + 1}": single.points[j][k] for i, j in enumerate(c) for k in names}
+            {name: single.points[j][k] for own, j in zip(keys, c, strict=True) for k, name in own}
             for c in combinations
         )
         charge = np.full(len(points), 2.0 * several)

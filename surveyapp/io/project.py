@@ -7,15 +7,16 @@ that a torn last line of a book is moved aside while nobody else writes.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
 from surveyapp.core.network.collector import paused_collection
 from surveyapp.domain.closing import Filing
-from surveyapp.domain.project import Centring, Project
+from surveyapp.domain.project import Centring, OrientationSession, Project
 from surveyapp.domain.rulebook import RuleBook
+from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.cards import is_path
@@ -41,7 +42,6 @@ from surveyapp.io.project_tables import (
 from surveyapp.io.rulebooks import read_rule_book
 from surveyapp.io.sensor_logs.tables import read_sensor_logs
 from surveyapp.io.session_books import read_sessions
-from surveyapp.io.session_sensors import with_declinations, with_sensors
 from surveyapp.io.shafts.table import read_shaft_tables
 from surveyapp.io.tables import Table, parse_toml
 from surveyapp.io.traverse.book import read_traverses
@@ -244,7 +244,7 @@ def _read_tables(top: _Top, repair: bool | None) -> Project:
     crs = table.text("crs", multiline=True)
     refuse_two_convergences(stations, sessions, files.findings)
     sensor_logs = read_sensor_logs(table, top.lines.get("sensor_log", ()))
-    sessions = with_sensors(sessions, orientations, files, sensor_logs, unit=unit)
+    sessions = _with_sensors(sessions, orientations, files, sensor_logs, unit=unit)
     stations, length = with_regional_deflection(table, stations)
     project = Project(
         name=table.text("name") or files.path.resolve().name,
@@ -269,7 +269,31 @@ def _read_tables(top: _Top, repair: bool | None) -> Project:
     )
     table.get("note")
     table.warn_unknown()
-    return with_declinations(project, files.findings)
+    return _with_declinations(project, files.findings)
+
+
+def _with_sensors(
+    sessions: list[OrientationSession],
+    tables: Sequence[Table],
+    files: ProjectFiles,
+    logs: Sequence[SensorLogEntry],
+    *,
+    unit: AngleUnit,
+) -> list[OrientationSession]:
+    """What level and compass logs say of sessions; few projects have any, and they cost imports."""
+    if not any("levelling" in table or "pre_orientation" in table for table in tables):
+        return sessions
+    from surveyapp.io.session_sensors import with_sensors
+
+    return with_sensors(sessions, tables, files, logs, unit=unit)
+
+
+def _with_declinations(project: Project, findings: Findings) -> Project:
+    if all(session.pre_orientation is None for session in project.sessions):
+        return project
+    from surveyapp.io.session_sensors import with_declinations
+
+    return with_declinations(project, findings)
 
 
 def _rules(top: _Top) -> tuple[str | None, RuleBook | None]:

@@ -136,6 +136,7 @@ def oriented(
     session: str | None = None,
     keep: Collection[str] = (),
     all_if_none: bool = True,
+    judged: bool = True,
     advance: Advance = silent,
 ) -> OrientedProject:
     """Orient the finished sessions of a project.
@@ -151,6 +152,8 @@ def oriented(
         Sessions that stay although they are not finished: their error is told.
     all_if_none : bool
         Where no session is finished, whether all are tried, so that what they lack is an error.
+    judged : bool
+        Whether it will be judged; without, no fit is tested, which takes half of the time.
     advance : callable
         Told how far it is.
 
@@ -173,6 +176,7 @@ def oriented(
         estimator=estimator,
         only=session,
         run_model=run_model,
+        judged=judged,
         advance=advance,
     )
     sides, constants, warnings = oriented_lines([line.result for line in found.lines])

@@ -10,7 +10,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from surveyapp.report.blocks import Anchor, Document, Heading, KeyValues, Label, Line, Table
+from surveyapp.report.blocks import (
+    Anchor,
+    Document,
+    Heading,
+    KeyValues,
+    Label,
+    Line,
+    Signature,
+    Table,
+)
 from surveyapp.report.blocks import Figure as Drawing
 from surveyapp.report.numbers import plain, signed_angle
 from surveyapp.report.pdf import write_pdf
@@ -132,6 +141,18 @@ def test_a_cell_taller_than_a_page_loses_no_word() -> None:
     found = " ".join(page.extract_text() for page in reader.pages).split()
     assert [found.count(f"w{index}") for index in (0, 1234, 2999)] == [2, 2, 2]
     assert "last" in found
+
+
+def test_the_heading_of_the_signatures_stands_with_its_lines() -> None:
+    """Wherever on a page the record ends: the last 36 lines of it are tried one by one."""
+    end = (Heading("Signatures"), Signature(("Observed", "Computed", "Checked")))
+    for lines in range(20, 56):
+        rows = tuple((f"row {k}",) for k in range(lines))
+        written = write_pdf(Document("t", "h", ("f",), (Table(("a",), rows), *end)))
+        pages = [page.extract_text() for page in pypdf.PdfReader(io.BytesIO(written.data)).pages]
+        (page,) = [text for text in pages if "Signatures" in text]
+        assert "Observed" in page, lines
+        assert "Checked" in page, lines
 
 
 @pytest.mark.parametrize("anchor", ["start", "middle", "end"])

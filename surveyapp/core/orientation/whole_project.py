@@ -104,6 +104,7 @@ def orient_project(
     estimator: str | None = None,
     only: str | None = None,
     run_model: RunModel | None = None,
+    judged: bool = True,
     advance: Advance = silent,
 ) -> Orientation:
     """Reduce every session, determine the constants, orient every line.
@@ -120,6 +121,8 @@ def orient_project(
         calibrations.
     run_model : callable or None
         Estimates runs with adopted effects.
+    judged : bool
+        Whether somebody will judge it; without, no fit is tested.
     advance : callable
         Told how many sessions are reduced.
 
@@ -132,8 +135,7 @@ def orient_project(
     positions = {station.name: position_of(station, grid) for station in project.stations}
     stations = {s.name: _with_position(s, positions[s.name]) for s in project.stations}
     warnings = [*project.warnings, *check_adopted(project)]
-    tested = sum(session.method != "automatic" for session in project.sessions)
-    judge = Judge(sessions=tested)
+    judge = Judge(sessions=sum(s.method != "automatic" for s in project.sessions), asked=judged)
     setting = _Setting(project, positions, stations, judge, estimator, run_model)
     reduced, sigmas = _reduce_all(setting, advance)
     measured = reduced = with_pooled_weights(with_pooled_tape_zeros(reduced))

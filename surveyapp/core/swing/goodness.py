@@ -50,10 +50,13 @@ class Judge:
         For the null distributions; None: seeded from the readings of each fit.
     sessions : int
         Sessions that are tested; the level of each test is divided by it (Bonferroni).
+    asked : bool
+        Whether anybody looks at the tests; without, none is made.
     """
 
     rng: np.random.Generator | None = None
     sessions: int = 1
+    asked: bool = True
 
     @property
     def significance(self) -> float:
@@ -147,12 +150,13 @@ def goodness_of_fit(
     Returns
     -------
     tuple of FitTest
-        Empty where there is no redundancy; the serial tests need at least 3 degrees of freedom.
+        Empty where there is no redundancy, or nobody asks; the serial tests need at least 3 degrees
+        of freedom.
     """
     count, parameters = jacobian.shape
     dof = count - parameters
     tests: list[FitTest] = []
-    if dof < 1:
+    if dof < 1 or not judge.asked:
         return ()
     squares = float(residuals @ residuals)
     known = sigma is not None and sigma > 0.0
@@ -219,7 +223,9 @@ def _serial_tests(
         """Residuals of so many runs that the model fits, shape (size, n)."""
         draws = rng.standard_normal((size, count)) * scale
         if resolution > 0.0:
-            draws = np.round(draws / resolution) * resolution
+            draws /= resolution
+            np.rint(draws, out=draws)
+            draws *= resolution
         draws -= (draws @ q) @ q.T
         return np.asarray(draws)
 

@@ -241,7 +241,7 @@ def _flowables(document: Document, faces: Faces) -> Iterator[list[Flowable]]:
     while index < len(blocks):
         block = blocks[index]
         following = blocks[index + 1] if index + 1 < len(blocks) else None
-        if isinstance(block, Heading) and isinstance(following, Figure | KeyValues):
+        if isinstance(block, Heading) and isinstance(following, Figure | KeyValues | Signature):
             yield [KeepTogether([*_block(block, faces), *_block(following, faces)])]
             index += 2
             continue
