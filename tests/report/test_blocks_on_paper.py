@@ -10,7 +10,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from surveyapp.report.blocks import Anchor, Document, Heading, KeyValues, Label, Line, Table
+from surveyapp.report.blocks import (
+    Anchor,
+    Document,
+    Heading,
+    KeyValues,
+    Label,
+    Line,
+    Signature,
+    Table,
+)
 from surveyapp.report.blocks import Figure as Drawing
 from surveyapp.report.numbers import plain, signed_angle
 from surveyapp.report.pdf import write_pdf
@@ -122,6 +131,22 @@ def test_odd_blocks_can_be_written() -> None:
     written = write_pdf(document)
     assert written.pages > 3
     assert write_pdf(document).data == written.data
+
+
+@pytest.mark.parametrize("lines", range(45, 51))
+def test_lines_to_sign_stand_under_their_heading(lines: int) -> None:
+    """However far down the page the heading comes."""
+    rows = tuple((f"key {i}", "value") for i in range(lines))
+    blocks = (
+        KeyValues(rows),
+        Heading("Signatures"),
+        Signature(("Observed", "Computed", "Checked")),
+    )
+    pages = pypdf.PdfReader(io.BytesIO(write_pdf(Document("t", "h", (), blocks, "s")).data)).pages
+    texts = [page.extract_text() for page in pages]
+    [place] = [i for i, text in enumerate(texts) if "Signatures" in text]
+    assert "Observed" in texts[place]
+    assert "Checked" in texts[place]
 
 
 def test_a_cell_taller_than_a_page_loses_no_word() -> None:
