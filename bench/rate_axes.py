@@ -25,7 +25,7 @@ from surveyapp_models.rate import quaternions
 from surveyapp_models.rate.attitude import sensed
 from surveyapp_models.rate.triad import Triad
 
-RUNS = int(os.environ.get("SURVEYAPP_BENCH_RUNS", "40"))
+RUNS = int(os.environ.get("SURVEYAPP_BENCH_RUNS", "20"))
 CLEAN = 5 * RUNS
 HZ = 50.0
 LATITUDE = math.radians(45.0)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from surveyapp import api
-from surveyapp.core.sensors.charts.north import north_charts
+from surveyapp.core.sensors.charts.north import _headings, north_charts
 from surveyapp.core.sensors.rate.bias_track import WALK, StopSet, track_bias
 from surveyapp.core.sensors.rate.indexing import solve_indexing
 from surveyapp.core.sensors.rate.indexing_values import Setting, Stop
@@ -173,3 +173,24 @@ def test_the_stops_of_a_set_count_once() -> None:
     # two independent values of the bias, the first older by three minutes of its walk
     older = math.hypot(spread[0], WALK * math.sqrt(180.0 / 3600.0))
     assert second == pytest.approx(1.0 / math.hypot(1.0 / older, 1.0 / spread[1]), rel=0.03)
+
+
+@pytest.mark.parametrize(
+    ("headings", "drawn", "style"),
+    [
+        ([359.0, 1.0, 3.0], [359.0, 361.0, 363.0], "line"),
+        ([147.0, 118.0, 270.0, 42.0], [147.0, 118.0, 270.0, 42.0], "dots"),
+    ],
+)
+def test_a_heading_is_drawn_through_north_but_not_around_the_circle(
+    headings: list[float], drawn: list[float], style: str
+) -> None:
+    """A unit that was set up anew in each set was drawn to 400 degrees."""
+    items = [
+        {"time_s": float(k), "heading_deg": h, "heading_sigma_deg": 0.1, "axis": "y"}
+        for k, h in enumerate(headings)
+    ]
+    (chart,) = _headings(items)
+    assert isinstance(chart, Chart)
+    assert [y for _, y in chart.series[0].points] == pytest.approx(drawn)
+    assert chart.series[0].style == style

@@ -133,22 +133,6 @@ def test_odd_blocks_can_be_written() -> None:
     assert write_pdf(document).data == written.data
 
 
-@pytest.mark.parametrize("lines", range(45, 51))
-def test_lines_to_sign_stand_under_their_heading(lines: int) -> None:
-    """However far down the page the heading comes."""
-    rows = tuple((f"key {i}", "value") for i in range(lines))
-    blocks = (
-        KeyValues(rows),
-        Heading("Signatures"),
-        Signature(("Observed", "Computed", "Checked")),
-    )
-    pages = pypdf.PdfReader(io.BytesIO(write_pdf(Document("t", "h", (), blocks, "s")).data)).pages
-    texts = [page.extract_text() for page in pages]
-    [place] = [i for i, text in enumerate(texts) if "Signatures" in text]
-    assert "Observed" in texts[place]
-    assert "Checked" in texts[place]
-
-
 def test_a_cell_taller_than_a_page_loses_no_word() -> None:
     words = " ".join(f"w{index}" for index in range(3000))
     blocks = (Table(("a", "b"), (("x", words), ("y", "last"))), KeyValues((("k", words),)))
@@ -157,6 +141,18 @@ def test_a_cell_taller_than_a_page_loses_no_word() -> None:
     found = " ".join(page.extract_text() for page in reader.pages).split()
     assert [found.count(f"w{index}") for index in (0, 1234, 2999)] == [2, 2, 2]
     assert "last" in found
+
+
+def test_the_heading_of_the_signatures_stands_with_its_lines() -> None:
+    """Wherever on a page the record ends: the last 36 lines of it are tried one by one."""
+    end = (Heading("Signatures"), Signature(("Observed", "Computed", "Checked")))
+    for lines in range(20, 56):
+        rows = tuple((f"row {k}",) for k in range(lines))
+        written = write_pdf(Document("t", "h", ("f",), (Table(("a",), rows), *end)))
+        pages = [page.extract_text() for page in pypdf.PdfReader(io.BytesIO(written.data)).pages]
+        (page,) = [text for text in pages if "Signatures" in text]
+        assert "Observed" in page, lines
+        assert "Checked" in page, lines
 
 
 @pytest.mark.parametrize("anchor", ["start", "middle", "end"])

@@ -234,10 +234,6 @@ def _draw_furniture(canvas: Canvas, document: Document, faces: Faces) -> None:
     canvas.restoreState()
 
 
-_TIED: Final = (Figure, KeyValues, Signature)
-"""What never stands on another page than its heading."""
-
-
 def _flowables(document: Document, faces: Faces) -> Iterator[list[Flowable]]:
     yield [Text(faces.markup(document.title), style_of(17.0, textColor=ACCENT, spaceAfter=5.0))]
     blocks = document.blocks
@@ -245,7 +241,7 @@ def _flowables(document: Document, faces: Faces) -> Iterator[list[Flowable]]:
     while index < len(blocks):
         block = blocks[index]
         following = blocks[index + 1] if index + 1 < len(blocks) else None
-        if isinstance(block, Heading) and isinstance(following, _TIED):
+        if isinstance(block, Heading) and isinstance(following, Figure | KeyValues | Signature):
             yield [KeepTogether([*_block(block, faces), *_block(following, faces)])]
             index += 2
             continue

@@ -44,6 +44,7 @@ def by_axis(columns: Columns, values: Floats) -> Floats:
 
 
 def own(columns: Columns, name: str) -> Floats:
-    """Of three columns ``name_x/y/z`` the one along the row's own axis, shape (n,)."""
+    """Of three columns ``name_x/y/z`` the one along the row's own axis, shape (n,); of a turn 0."""
     three = np.column_stack([columns[f"{name}_{a}"] for a in "xyz"])
+    three = np.column_stack([three, np.zeros((three.shape[0], 2))])
     return np.asarray(three[np.arange(three.shape[0]), columns["axis"].astype(np.intp)])

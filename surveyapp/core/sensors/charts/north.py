@@ -14,6 +14,9 @@ from surveyapp.domain.chart import Chart, Picture, Series
 from surveyapp.domain.north import NorthResult
 from surveyapp.languages import counted, joined, said
 
+MOST_DRIFT_DEG = 180.0
+"""A heading that changes by more was not followed: the unit was set up anew."""
+
 
 def north_charts(result: NorthResult) -> tuple[Picture, ...]:
     """Bias and heading from set to set where they were followed; else none."""
@@ -59,7 +62,7 @@ def _bias(tracking: Sequence[Mapping[str, Any]]) -> Chart:
 
 
 def _headings(tracking: Sequence[Mapping[str, Any]]) -> tuple[Picture, ...]:
-    """Headings with their 95 % interval; several windings of a circle are drawn through."""
+    """Headings with their 95 % interval: drawn through north, unless the unit was turned about."""
     axis = tracking[-1]["axis"]
     known = [
         dict(item) for item in tracking if item["heading_deg"] is not None and item["axis"] == axis
@@ -67,11 +70,14 @@ def _headings(tracking: Sequence[Mapping[str, Any]]) -> tuple[Picture, ...]:
     if len(known) < 2:
         return ()
     whole = np.unwrap([item["heading_deg"] for item in known], period=360.0)
+    drifting = float(np.ptp(whole)) < MOST_DRIFT_DEG
+    if not drifting:
+        whole = np.array([item["heading_deg"] for item in known])
     for item, heading in zip(known, whole.tolist(), strict=True):
         item["heading_deg"] = heading
     points = tuple((float(i["time_s"]), float(i["heading_deg"])) for i in known)
     series = (
-        Series(said("heading of the set"), points),
+        Series(said("heading of the set"), points, "line" if drifting else "dots"),
         *_bounds(known, "heading_deg", "heading_sigma_deg"),
     )
     title = said("Heading from set to set")
