@@ -146,6 +146,7 @@ def test_a_cell_taller_than_a_page_loses_no_word() -> None:
 def test_the_heading_of_the_signatures_stands_with_its_lines() -> None:
     """Wherever on a page the record ends: the last 36 lines of it are tried one by one."""
     end = (Heading("Signatures"), Signature(("Observed", "Computed", "Checked")))
+    counts = []
     for lines in range(20, 56):
         rows = tuple((f"row {k}",) for k in range(lines))
         written = write_pdf(Document("t", "h", ("f",), (Table(("a",), rows), *end)))
@@ -153,6 +154,10 @@ def test_the_heading_of_the_signatures_stands_with_its_lines() -> None:
         (page,) = [text for text in pages if "Signatures" in text]
         assert "Observed" in page, lines
         assert "Checked" in page, lines
+        counts.append(len(pages))
+    # on the page of what stands before, as long as there is room: 56 mm of 253 mm
+    assert counts == sorted(counts)
+    assert counts[0] == 1
 
 
 @pytest.mark.parametrize("anchor", ["start", "middle", "end"])

@@ -241,8 +241,14 @@ def _flowables(document: Document, faces: Faces) -> Iterator[list[Flowable]]:
     while index < len(blocks):
         block = blocks[index]
         following = blocks[index + 1] if index + 1 < len(blocks) else None
-        if isinstance(block, Heading) and isinstance(following, Figure | KeyValues | Signature):
-            yield [KeepTogether([*_block(block, faces), *_block(following, faces)])]
+        if isinstance(block, Heading) and isinstance(following, Signature):
+            room = _HEADING_ROOM + sum(_signature_heights(following))
+            yield [CondPageBreak(room), *_block(block, faces), _signature(following, faces)]
+            index += 2
+            continue
+        if isinstance(block, Heading) and isinstance(following, Figure | KeyValues):
+            # side by side: one such block within another asks for a page of its own
+            yield [KeepTogether([*_block(block, faces), *_whole(following, faces)])]
             index += 2
             continue
         yield _block(block, faces)
@@ -256,17 +262,26 @@ def _block(block: Block, faces: Faces) -> list[Flowable]:
         case Paragraph():
             return [_paragraph(block, faces)]
         case KeyValues():
-            return [_key_values(block, faces), Spacer(0, 2.0 * mm)]
+            return _whole(block, faces)
         case Table():
             return [table_flowable(block, faces), Spacer(0, 2.5 * mm)]
         case Figure():
-            return [KeepTogether([*figure_flowables(block, faces), Spacer(0, 2.0 * mm)])]
+            return [KeepTogether(_whole(block, faces))]
         case Signature():
             return [KeepTogether([_signature(block, faces)])]
         case ForWidth():
             return [flowable for item in block.page for flowable in _block(item, faces)]
         case PageBreak():
             return [NewPage()]
+
+
+def _whole(block: Figure | KeyValues, faces: Faces) -> list[Flowable]:
+    """What stands on one page with its heading."""
+    match block:
+        case Figure():
+            return [*figure_flowables(block, faces), Spacer(0, 3.0 * mm)]
+        case KeyValues():
+            return [_key_values(block, faces), Spacer(0, 2.0 * mm)]
 
 
 def _heading(block: Heading, faces: Faces) -> list[Flowable]:
@@ -335,13 +350,20 @@ def _key_values(block: KeyValues, faces: Faces) -> Flowable:
     return grid
 
 
+_HEADING_ROOM: Final = 15.0 * mm
+
+
+def _signature_heights(block: Signature) -> list[float]:
+    return [5.0 * mm, *[13.0 * mm] * len(block.roles)]
+
+
 def _signature(block: Signature, faces: Faces) -> Flowable:
     style = style_of(CELL + 0.5)
     labels = [shown(text) for text in said_each("role", "name and signature", "place and date")]
     quiet = style_of(SMALL, textColor=QUIET)
     rows: list[list[Flowable | str]] = [[Text(faces.markup(label), quiet) for label in labels]]
     rows += [[Text(faces.markup(role), style), "", ""] for role in block.roles]
-    heights = [5.0 * mm, *[13.0 * mm] * len(block.roles)]
+    heights = _signature_heights(block)
     grid = Grid(rows, colWidths=[0.28 * WIDTH, 0.44 * WIDTH, 0.28 * WIDTH], rowHeights=heights)
     grid.setStyle(
         [
