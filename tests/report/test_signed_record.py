@@ -100,13 +100,13 @@ def test_a_record_on_the_disk_is_called_out_of_date_wherever_it_is_met(
 def test_check_tells_a_record_that_is_out_of_date(tmp_path: Path) -> None:
     folder = make_calibrations(tmp_path / "p")
     write_record(folder)
-    assert [w.code for w in api.check(folder).warnings] == []
+    assert "record_outdated" not in [w.code for w in api.check(folder).warnings]
     api.close(folder, by="M. Weber", now=now)
-    told = api.check(folder).warnings
+    told = [w for w in api.check(folder).warnings if w.code.startswith("record")]
     assert [w.code for w in told] == ["record_outdated"]
     assert "results/record.pdf is out of date" in told[0].text
     write_record(folder)
-    assert [w.code for w in api.check(folder).warnings] == []
+    assert "record_outdated" not in [w.code for w in api.check(folder).warnings]
 
 
 def test_a_record_in_another_language_has_the_same_stamp(tmp_path: Path) -> None:

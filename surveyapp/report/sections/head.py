@@ -44,13 +44,17 @@ def blocks(
     broken = sum(c.passed is False and c.confirmed for c in result.checks)
     still = sum(check.passed is None for check in result.checks)
     verdict = said(
-        "{met} met, {broken} NOT MET, {warned} warnings, {still} open for want of data",
+        "{met} met, {broken} NOT MET, {warned} beyond a limit that is not confirmed, "
+        "{still} open for want of data",
         met=met,
         broken=broken,
         warned=warned,
         still=still,
     )
     facts.append((said("checks"), verdict))
+    if result.warnings:
+        text = said("{number}, behind the checks", number=len(result.warnings))
+        facts.append((said("warnings"), text))
     facts += signed
     answered = any(check.passed is not None and check.confirmed for check in result.checks)
     text = _verdict(broken, still) if answered else _nothing_judged(project)

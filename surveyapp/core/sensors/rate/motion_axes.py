@@ -8,7 +8,7 @@ odometer, it foretells the forward force as well. The residuals are compared by 
 
 A likelihood ratio of c against the columns as they stand comes by chance with a probability of at
 most 1/c: of any of K hypotheses with K/c. That holds for a known standard deviation and independent
-seconds; here the seconds are counted half. By simulation see bench motion_axes.
+seconds; here the seconds are counted half. By simulation see bench rate_axes.
 """
 
 from __future__ import annotations
