@@ -241,7 +241,7 @@ def _best_addition(
     g = int(np.argmin(bics))
     members = (*anchor.members, Member(candidate, int(item.index[g])))
     if is_drawn(problem, candidate):
-        gain = drawn_gain(problem, anchor.design, members[-1].columns, anchor.residual)
+        gain = drawn_gain(problem, anchor.design, [members[-1].columns], anchor.residual)
         searched = (members[-1].charge - candidate.size) * math.log(problem.size)
         return anchor.bic - gain + searched + candidate.odds, members
     return float(bics[g]) + odds_against(members), members

@@ -8,11 +8,13 @@ are drawn from a normal distribution of one unknown size, as the steps of a walk
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from surveyapp.diagnosis.candidates import Candidate
 from surveyapp.diagnosis.case import Case, unit_variance
-from surveyapp.diagnosis.stochastic import effect_gain
+from surveyapp.diagnosis.stochastic import effects_gain
 from surveyapp_models.arrays import Floats
 
 
@@ -24,8 +26,8 @@ def is_drawn(problem: Case, candidate: Candidate) -> bool:
     return candidate.size > 1 and not single
 
 
-def drawn_gain(problem: Case, J: Floats, columns: Floats, residual: Floats) -> float:
-    """BIC that an effect brings beside a design, its coefficients drawn.
+def drawn_gain(problem: Case, J: Floats, effects: Sequence[Floats], residual: Floats) -> float:
+    """BIC that effects bring beside a design, their coefficients drawn.
 
     Parameters
     ----------
@@ -33,8 +35,8 @@ def drawn_gain(problem: Case, J: Floats, columns: Floats, residual: Floats) -> f
         With channels.
     J : ndarray, shape (n, p)
         Design (weighted).
-    columns : ndarray, shape (n, k)
-        Of the effect (weighted).
+    effects : sequence of ndarray, shape (n, k)
+        Columns of each (weighted).
     residual : ndarray, shape (n,)
         Of the design alone.
     """
@@ -43,4 +45,4 @@ def drawn_gain(problem: Case, J: Floats, columns: Floats, residual: Floats) -> f
     channels = np.isfinite(problem.series)
     each = int(channels.sum()) // max(np.unique(problem.series[channels]).size, 1)
     floor = max(problem.noise_floor, 1e-6 * problem.scale) ** 2
-    return effect_gain(J, columns, residual, each=each, floor=floor)
+    return effects_gain(J, effects, residual, each=each, floor=floor)

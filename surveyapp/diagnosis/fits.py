@@ -190,22 +190,26 @@ def fit_members(problem: Case, members: Iterable[Member], start: Floats | None =
 def drawn_charge(
     problem: Case, members: Iterable[Member], X: Floats, *, linear: Floats, residual: Floats
 ) -> float:
-    """What members whose coefficients are drawn cost beyond a parameter for each of these [BIC]."""
-    charge, at = 0.0, problem.base.shape[1]
-    least = float(bic_of(problem, np.array(residual @ residual), 0.0))
+    """What members whose coefficients are drawn cost beyond a parameter for each of these [BIC].
+
+    All of them together: the order in which they came in decides nothing.
+    """
+    own, at = [], problem.base.shape[1]
     for member in members:
-        own = slice(at, at + member.candidate.size)
-        at = own.stop
-        if not is_drawn(problem, member.candidate):
-            continue
-        others = np.delete(X, own, axis=1)
-        without = residual + X[:, own] @ linear[own]
-        q, _ = np.linalg.qr(others)
-        without = without - q @ (q.T @ without)
-        worse = float(bic_of(problem, np.array(without @ without), 0.0)) - least
-        gain = drawn_gain(problem, others, X[:, own], without)
-        charge += worse - gain - member.candidate.size * math.log(problem.size)
-    return charge
+        if is_drawn(problem, member.candidate):
+            own.append(np.arange(at, at + member.candidate.size))
+        at += member.candidate.size
+    if not own:
+        return 0.0
+    drawn = np.concatenate(own)
+    others = np.delete(X, drawn, axis=1)
+    q, _ = np.linalg.qr(others)
+    without = residual + X[:, drawn] @ linear[drawn]
+    without = without - q @ (q.T @ without)
+    rss = np.array([without @ without, residual @ residual])
+    worse, least = bic_of(problem, rss, 0.0).tolist()
+    gain = drawn_gain(problem, others, [X[:, columns] for columns in own], without)
+    return float(worse - least - gain - drawn.size * math.log(problem.size))
 
 
 def _beside_courses(problem: Case, fit: Fit) -> Fit:

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from surveyapp.core.sensors.linear import alternate_blocks
 from surveyapp.core.sensors.rate.adopted import StopDatum, without_effects
-from surveyapp.diagnosis.case import Levels
 from surveyapp.diagnosis.long_records.interference import find_interference
 from surveyapp.diagnosis.long_records.lines import LEAST_FILLED, SpectralLine
 from surveyapp.diagnosis.result import Adoption, CandidateResult, Diagnosis, NamedCoefficient
@@ -30,10 +29,6 @@ from surveyapp_models.effects.rate.interference_line import EFFECT
 
 LINE_ALARM = 0.01
 """Probability of a false line in a log (``python -m bench rate_line_alarm``)."""
-LEVELS = Levels(first=0.04, further=0.01)
-"""Of the stops of a log whose samples are searched for lines beside: together one false alarm in
-twenty, and beside a right name two wrong ones in a hundred. An effect that would just pass one gate
-of .05 four times in five passes that of .01 three times in five: the price."""
 WAYS = 2
 """A line shows by itself or in a family: two looks."""
 NOTCH = 4.0

@@ -9,6 +9,7 @@ ratios and correlations; every covariance is factorised once per set of position
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -29,6 +30,8 @@ SHARES = (0.5, 2.0, 8.0, 1e4)
 SIGNALS = np.geomspace(0.05, 30.0, 12)
 """Mean square that a column of an effect adds to an observation relative to the white noise: where
 an effect can be seen at all, to where it cannot be missed."""
+MANY = 3
+"""Effects at once from which the grid of their sizes is thinned to every second value."""
 LARGE = 100
 """From this size on the grids are thinned to every second value."""
 NEGLIGIBLE = 0.005
@@ -272,17 +275,24 @@ def best_noises(
 
 
 def effect_gain(J: Floats, effect: Floats, residual: Floats, *, each: int, floor: float) -> float:
-    """What ``best_noises`` finds of an effect whose coefficients are drawn, in place of noise.
+    """``effects_gain`` of one effect, ``effect`` of shape (n, k)."""
+    return effects_gain(J, [effect], residual, each=each, floor=floor)
+
+
+def effects_gain(
+    J: Floats, effects: Sequence[Floats], residual: Floats, *, each: int, floor: float
+) -> float:
+    """What ``best_noises`` finds of effects whose coefficients are drawn, in place of noise.
 
     An effect of unknown size and a noise of unknown size are compared alike: the coefficients are
-    normal, independent and of one variance, which is averaged over a grid.
+    normal, independent and for each effect of one variance, which is averaged over a grid.
 
     Parameters
     ----------
     J : ndarray, shape (n, p)
-        Design beside which both stand (weighted).
-    effect : ndarray, shape (n, k)
-        Columns of the effect (weighted).
+        Design beside which all stand (weighted).
+    effects : sequence of ndarray, shape (n, k)
+        Columns of each effect (weighted).
     residual : ndarray, shape (n,)
         Of the design alone.
     each : int
@@ -296,22 +306,31 @@ def effect_gain(J: Floats, effect: Floats, residual: Floats, *, each: int, floor
         Decrease of -2 log marginal likelihood against white noise.
     """
     basis, _, _ = _independent(J)
-    left = effect - basis @ (basis.T @ effect)
-    sizes = np.sum(left**2, axis=0)
-    seen = sizes > 1e-12 * np.sum(effect**2, axis=0)
-    if not seen.any():
+    parts = []
+    for effect in effects:
+        left = effect - basis @ (basis.T @ effect)
+        sizes = np.sum(left**2, axis=0)
+        seen = sizes > 1e-12 * np.sum(effect**2, axis=0)
+        if seen.any():
+            parts.append(left[:, seen] * np.sqrt(each / float(np.mean(sizes[seen]))))
+    if not parts:
         return 0.0
-    u, s, _ = np.linalg.svd(
-        left[:, seen] * np.sqrt(each / float(np.mean(sizes[seen]))), full_matrices=False
-    )
-    along = (u.T @ residual) ** 2
-    variances = 1.0 + SIGNALS[:, None] * s**2
+    q, r = np.linalg.qr(np.hstack(parts))
+    member = np.repeat(np.arange(len(parts)), [part.shape[1] for part in parts])
+    sizes = SIGNALS if len(parts) < MANY else SIGNALS[::2]
+    grid = np.stack(np.meshgrid(*[sizes] * len(parts), indexing="ij"), axis=-1)
+    variances = grid.reshape(-1, len(parts))[:, member]
+    covariance = np.eye(r.shape[0]) + (r * variances[:, None, :]) @ r.T
+    along = q.T @ residual
     dof = residual.size - basis.shape[1]
     total = float(residual @ residual)
-    squares = np.append(total, total - np.sum((1.0 - 1.0 / variances) * along, axis=1))
+    explained = np.einsum(
+        "i,gi->g", along, np.linalg.solve(covariance, along[None, :, None])[..., 0]
+    )
+    squares = np.append(total, total - float(along @ along) + explained)
     white = np.maximum(squares / dof, floor)
     minus = dof * np.log(white) + squares / white
-    minus[1:] += np.log(variances).sum(axis=1)
+    minus[1:] += np.linalg.slogdet(covariance)[1]
     least = float(minus[1:].min())
     return float(minus[0] - least + 2.0 * np.log(np.exp(-0.5 * (minus[1:] - least)).mean()))
 

@@ -9,8 +9,9 @@ from functools import partial
 import numpy as np
 
 from surveyapp.core.sensors.rate.fog_station_log import GYRO, NEEDED, OPTIONAL, turned_sets
-from surveyapp.diagnosis.rate_lines import LEVELS, Stretch, with_lines_beside
+from surveyapp.diagnosis.rate_lines import Stretch, with_lines_beside
 from surveyapp.diagnosis.subjects.fog_station import FogTurn, fog_case
+from surveyapp.diagnosis.subjects.rate import LEVELS
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.io.sensor_logs.reading import LogFile, Need

@@ -13,7 +13,7 @@ import numpy as np
 from surveyapp.core.sensors.rate.position_log import ACCELEROMETERS, GYROS
 from surveyapp.diagnosis.crooked_seats import with_seats
 from surveyapp.diagnosis.engine import base_model
-from surveyapp.diagnosis.rate_lines import LEVELS, Stretch, with_lines_beside
+from surveyapp.diagnosis.rate_lines import Stretch, with_lines_beside
 from surveyapp.diagnosis.rate_stops import LOG_COLUMNS, stops_of
 from surveyapp.diagnosis.result import Diagnosis
 from surveyapp.diagnosis.subjects.rate import RateTurn, rate_case, seats_of
@@ -56,10 +56,8 @@ def case_of_log(log: SensorLog, entry: SensorLogEntry, own: tuple[Effect, ...] =
     if seats is not None:
         seated = partial(with_seats, seats=seats, before=base_model(made))
         made = rate_case(stops, turns, identity=entry.id, extra=own, seats=seats)
-    if not any(stop.known is None and stop.force is not None for stop in stops):  # held by hand
         # beside crooked seats, which are named, anything is a further effect
-        first = LEVELS.first if seats is None else LEVELS.further
-        made = replace(made, levels=replace(LEVELS, first=first))
+        made = replace(made, levels=replace(made.levels, first=made.levels.further))
     lines = partial(
         with_lines_beside,
         log=log,

@@ -18,7 +18,6 @@ from surveyapp.core.sensors.rate.multi_position_log import (
 from surveyapp.core.simulate.rate.log import SimulatedLog
 from surveyapp.core.simulate.rate.recipes import hand_run
 from surveyapp.core.simulate.rate.vehicle import hand_held_log
-from surveyapp.diagnosis.case import Levels
 from surveyapp.diagnosis.engine import diagnose
 from surveyapp.diagnosis.loop import search
 from surveyapp.diagnosis.rate_stops import stops_of
@@ -189,7 +188,7 @@ def test_an_asymmetric_scale_and_a_crooked_seat_on_a_table_are_named() -> None:
     rng = np.random.default_rng(1)
     case = rate_case(table_stops(rng, asymmetry=4e-5), identity="table")
     assert named(diagnose(case)) == ["scale_asymmetry"]
-    gates = search(replace(case, levels=Levels(0.04, 0.01)), draws=200, confirm=None).gates
+    gates = search(case, draws=200, confirm=None).gates
     assert [gate.level for gate in gates] == [0.04, 0.01]
     twice = [*table_stops(rng), *table_stops(rng, flip=120.0 * ARCSEC)]
     twice = [
