@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from typing import Final
 
@@ -20,10 +21,11 @@ from surveyapp.domain.columns import pieces, span
 from surveyapp.domain.motion import Motion
 from surveyapp.domain.sensor_entry import SensorLogEntry
 from surveyapp.domain.sensor_log import SensorLog
+from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
 from surveyapp.io.sensor_logs.blocks import room_for
 from surveyapp.io.sensor_logs.reading import LogFile, Need
-from surveyapp.languages import said
+from surveyapp.languages import listed, said
 from surveyapp.workflows.adopted_effects import read_without_adopted
 
 LONGEST_PATH_M: Final = 1e6
@@ -78,7 +80,22 @@ def find_motion(
         problems += _odometer_problems(log)
     if problems:
         raise SurveyError(problems)
-    return judge_motion(log, asked, room=partial(room_for, beside=len(log.columns)))
+    found = judge_motion(log, asked, room=partial(room_for, beside=len(log.columns)))
+    return replace(found, warnings=(*found.warnings, *_not_asked(asked, options)))
+
+
+def _not_asked(asked: MotionOptions, options: Mapping[str, object]) -> list[ResultWarning]:
+    """Options of a path that nobody asked for."""
+    if asked.path or asked.snap:
+        return []
+    names = {"begin": "--from", "end": "--to", "snap_power_cycle": "--snap-power-cycle"}
+    idle = [option for name, option in names.items() if options.get(name) is not None]
+    if not idle:
+        return []
+    text = said(
+        "without --path nothing asks for {options}: it was not looked at", options=listed(idle)
+    )
+    return [ResultWarning("option_not_used", text)]
 
 
 def _odometer_problems(log: SensorLog) -> list[Problem]:

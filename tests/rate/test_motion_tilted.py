@@ -111,3 +111,15 @@ def test_a_gyro_at_the_end_of_its_range_is_no_rest_and_makes_no_path(tmp_path: P
     with pytest.raises(SurveyError) as refused:
         api.motion(path, options={"path": True})
     assert refused.value.problems[0].what == "gyr_z_rad_s is saturated"
+
+
+def test_a_place_without_a_path_is_told(tmp_path: Path) -> None:
+    """It says where a path begins, and nobody asked for one."""
+    path = tmp_path / "drive.csv"
+    drive(path, pitch=0.0, roll=0.0)
+
+    def told(**options: object) -> set[str]:
+        return {w.code for w in api.motion(path, options=options).warnings}
+
+    assert "option_not_used" in told(begin="0,0,0")
+    assert "option_not_used" not in told(begin="0,0,0", path=True) | told()
