@@ -12,7 +12,7 @@ import importlib
 import os
 import re
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from types import ModuleType
 from typing import Any, NoReturn, Self
@@ -251,6 +251,13 @@ def parser_of(command: Command) -> Parser:
     return parser
 
 
+def _hint(word: str, names: Iterable[str]) -> str:
+    """What to call instead of a word that is no command."""
+    if os.path.isdir(word):  # noqa: PTH112 - pathlib is not loaded for this
+        return said("`surveyapp open {folder}` opens a project", folder=word)
+    return nearest_names(word, names)
+
+
 def main(arguments: Sequence[str]) -> int:
     """Run one command and return its exit code."""
     with safe_output():
@@ -317,7 +324,7 @@ def _run(arguments: list[str]) -> int:
                 what="there is no command of this name",
                 where="surveyapp",
                 found=first,
-                hint=nearest_names(first, names),
+                hint=_hint(first, names),
             )
         )
     command = names[first]
