@@ -234,6 +234,7 @@ def test_good_project_is_good(tmp_path: Path) -> None:
     ("arguments", "where", "found", "hint"),
     [
         (["oreint", "DIR"], "surveyapp", "oreint", "Did you mean orient"),
+        (["DIR"], "surveyapp", "project", "project` opens a project"),
         (["orient", "DIR", "--session", "rum"], "--session", "rum", "Did you mean run"),
         (["orient", "DIR", "--line", "A-C"], "--line", "A-C", "Did you mean A-B"),
         (["orient", "DIR", "--estimator", "shuler"], "--estimator", "shuler", "mean schuler"),
