@@ -107,7 +107,7 @@ def test_nine_coefficients_are_not_beaten_by_one_that_was_looked_for() -> None:
     """A sensitivity that is plain to an F test goes before a gross error of any row."""
     rng = np.random.default_rng(12)
     before = by_counting = 0
-    for _ in range(60):
+    for _ in range(24):
         case = rests(np.zeros((STOPS, 3)))
         force = np.column_stack([case.columns[f"force_{a}"] for a in "xyz"])[::3]
         pull = 9e-6 * rng.normal(size=(3, 3))
@@ -121,5 +121,5 @@ def test_nine_coefficients_are_not_beaten_by_one_that_was_looked_for() -> None:
         n = case.size
         plain = n * np.log(one.sum_of_squares / n / case.scale**2) + one.parameters * np.log(n)
         by_counting += plain < other.bic
-    assert before >= 46  # .92 of 400: fewer have p = 5e-5
-    assert by_counting < 46  # .60 of 400 by a charge for each
+    assert before >= 17  # .92 of 400: fewer have p = 4e-4
+    assert by_counting < before  # .60 of 400 by a charge for each

@@ -144,10 +144,10 @@ def test_a_cell_taller_than_a_page_loses_no_word() -> None:
 
 
 def test_the_heading_of_the_signatures_stands_with_its_lines() -> None:
-    """Wherever on a page the record ends: the last 36 lines of it are tried one by one."""
+    """Wherever on a page the record ends: every second of its last 36 lines is tried."""
     end = (Heading("Signatures"), Signature(("Observed", "Computed", "Checked")))
     counts = []
-    for lines in range(20, 56):
+    for lines in range(20, 56, 2):
         rows = tuple((f"row {k}",) for k in range(lines))
         written = write_pdf(Document("t", "h", ("f",), (Table(("a",), rows), *end)))
         pages = [page.extract_text() for page in pypdf.PdfReader(io.BytesIO(written.data)).pages]
