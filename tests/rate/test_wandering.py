@@ -8,7 +8,7 @@ import pytest
 from surveyapp.diagnosis.candidates import SHAPE_ODDS, all_candidates
 from surveyapp.diagnosis.case import Case
 from surveyapp.diagnosis.fits import Fit, Member, fit_members, with_noise
-from surveyapp.diagnosis.stochastic import SIGNALS, effect_gain
+from surveyapp.diagnosis.stochastic import SIGNALS, effect_gain, effects_gain
 from surveyapp.diagnosis.subjects.rate import RateStop, rate_case
 from surveyapp.diagnosis.wandering import ODDS, log_odds
 from surveyapp_models.arrays import Floats
@@ -59,6 +59,54 @@ def test_an_effect_of_unknown_size_is_weighed_as_the_covariance_that_it_is() -> 
     assert found == pytest.approx(expected, rel=1e-9)
     both = effect_gain(base, np.hstack([base, effect]), residual, each=each, floor=1e-18)
     assert both == pytest.approx(found, rel=1e-9)  # what the base has is not counted again
+
+
+def test_two_effects_are_weighed_as_the_sum_of_their_covariances() -> None:
+    """Every pair of sizes written out; their order decides nothing."""
+    rng = np.random.default_rng(6)
+    n, each = 24, 8
+    base, first, second = rng.normal(size=(n, 2)), rng.normal(size=(n, 3)), rng.normal(size=(n, 1))
+    y = rng.normal(size=n) + first[:, 1] + 1.5 * second[:, 0]
+    q, _ = np.linalg.qr(base)
+    out = np.eye(n) - q @ q.T
+    contrasts = np.linalg.svd(out)[0][:, : n - 2]
+    z = contrasts.T @ y
+    parts = []
+    for effect in (first, second):
+        about = contrasts.T @ effect
+        parts.append(about @ about.T * each / np.mean(np.sum(about**2, axis=0)))
+
+    def minus(covariance: Floats) -> float:
+        total = float(z @ np.linalg.solve(covariance, z))
+        return float((n - 2) * np.log(total) + np.linalg.slogdet(covariance)[1])
+
+    gains = [
+        minus(np.eye(n - 2)) - minus(np.eye(n - 2) + one * parts[0] + other * parts[1])
+        for one in SIGNALS
+        for other in SIGNALS
+    ]
+    expected = 2.0 * np.log(np.mean(np.exp(0.5 * np.array(gains))))
+    for effects in ([first, second], [second, first]):
+        found = effects_gain(base, effects, out @ y, each=each, floor=1e-18)
+        assert found == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_drift_beside_a_sensitivity_costs_what_both_do_together() -> None:
+    """Each charged beside the other, a drift beside a sensitivity went to a walk."""
+    force = np.random.default_rng(5).normal(size=(STOPS, 3))
+    force *= 9.8 / np.linalg.norm(force, axis=1)[:, None]
+    rng = np.random.default_rng(7)
+    minutes = 0.1 * np.arange(STOPS)[:, None]
+    outputs = 1e-4 * rng.normal(size=(STOPS, 3)) + 4e-4 * minutes
+    case = rests(outputs + force @ (4e-5 * rng.normal(size=(3, 3))))
+    pool = {c.id: c for c in all_candidates(case, None)}
+    members = [Member(pool["g_sensitivity"], 0), Member(pool["bias_ramp"], 0)]
+    base = fit_members(case, [])
+    gain = effects_gain(
+        base.design, [m.columns for m in members], base.residual, each=STOPS, floor=1e-18
+    )
+    for order in (members, members[::-1]):
+        assert fit_members(case, order).bic == pytest.approx(base.bic - gain)
 
 
 def test_odds_tell_drifts_from_walks() -> None:
