@@ -167,7 +167,7 @@ def test_rounding_stays_where_noise_does_not_dither_it() -> None:
 @pytest.mark.parametrize("kind", NOISES)
 def test_noise_of_any_kind_is_no_named_drift(kind: str) -> None:
     g = np.random.default_rng(9)
-    runs = 16  # of fewer samples than ``make bench`` has: they are as many blocks
+    runs = 8  # of fewer samples than ``make bench`` has: they are as many blocks
     results = [diagnose(rate_log(NOISES[kind](30_000, g)), draws=DRAWS) for _ in range(runs)]
     assert sum(bool(r.adopted) for r in results) <= most(runs)
     assert sum(bool(r.lines) for r in results) <= most(runs)
