@@ -112,6 +112,9 @@ def test_listings_have_the_json_of_their_command(tmp_path: Path) -> None:
     json.dumps(api.open_project(SAMPLE).to_dict(), allow_nan=False)
 
 
+UNITS = (("gyr", "rad_s"), ("acc", "m_s2"))
+
+
 def test_errors_of_arguments_name_the_argument() -> None:
     with pytest.raises(api.SurveyError) as caught:
         api.orient(SAMPLE, session="nowhere")
@@ -123,3 +126,15 @@ def test_errors_of_arguments_name_the_argument() -> None:
         api.plan(SAMPLE, station="nowhere")
     assert caught.value.problems[0].where == "station"
     assert not any("--" in str(problem) for problem in caught.value.problems)
+
+
+def test_errors_of_north_name_the_argument(tmp_path: Path) -> None:
+    names = [f"{sensor}_{a}_{unit}" for sensor, unit in UNITS for a in "xyz"]
+    rows = [",".join((f"{k / 10}", *["0.01"] * 5, "9.8", "run")) for k in range(50)]
+    path = tmp_path / "log.csv"
+    path.write_text("\n".join((",".join(("time_s", *names, "phase")), *rows)), encoding="utf-8")
+    with pytest.raises(api.SurveyError) as caught:
+        api.north(path, method="rotation", options={"latitude": "x"})
+    told = {problem.where for problem in caught.value.problems}
+    assert {"latitude", "initial_heading_deg", "initial_reference"} <= told
+    assert not any("--" in place for place in told)

@@ -62,10 +62,10 @@ class NorthRequest:
         if value is None:
             return None
         if isinstance(value, bool) or not isinstance(value, int | float):
-            problems.append(Problem("this is no number", _flag(name), str(value), "a number"))
+            problems.append(Problem("this is no number", name, str(value), "a number"))
             return None
         if not math.isfinite(value):
-            problems.append(Problem("this is no number", _flag(name), f"{value}", "a number"))
+            problems.append(Problem("this is no number", name, f"{value}", "a number"))
             return None
         return float(value)
 
@@ -73,7 +73,7 @@ class NorthRequest:
         """A standard deviation in degrees as radians; None where it is not stated."""
         value = self.number(name, problems)
         if value is not None and value < 0.0:
-            problems.append(Problem("a sigma is negative", _flag(name), f"{value:g}", "0 or more"))
+            problems.append(Problem("a sigma is negative", name, f"{value:g}", "0 or more"))
             return None
         return None if value is None else math.radians(value)
 
@@ -87,7 +87,7 @@ class NorthRequest:
                 problems.append(
                     Problem(
                         said("the {text} is not stated", text=text),
-                        _flag(name),
+                        name,
                         "",
                         "degrees",
                         hint,
@@ -123,10 +123,6 @@ class NorthRequest:
         if stated[0] is None:
             return None
         return ",".join(str(part) for part in stated if part is not None)
-
-
-def _flag(name: str) -> str:
-    return "--" + name.replace("_", "-")
 
 
 def declination_problems(request: NorthRequest) -> list[Problem]:
