@@ -17,7 +17,7 @@ from surveyapp.domain.columns import pieces
 from surveyapp.domain.sensor_log import Array, SensorLog
 from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem, SurveyError
-from surveyapp.languages import counted
+from surveyapp.languages import counted, said
 
 CLIPPED_ROWS: Final = 5
 CLIPPED_RATIO: Final = 3.0
@@ -112,3 +112,45 @@ def without_clipped(log: SensorLog, names: Sequence[str], *, most: int | None = 
     )
     warnings = (*log.warnings, ResultWarning("clipped_left_out", text))
     return replace(log, warnings=warnings).chosen(kept, most=most)
+
+
+def at_an_end(values: Array, rows: np.ndarray | slice) -> tuple[int, float]:
+    """How many of these rows stand at an end of the whole column, and at which.
+
+    None does where there is one alone: a sample has to be the largest of the record.
+    """
+    part = values[rows]
+    ends = (float(values.max()), float(values.min()))
+    count, end = max((int(np.count_nonzero(part == value)), value) for value in ends)
+    return (count, end) if count > 1 else (0, end)
+
+
+def clipped_problems(
+    log: SensorLog, columns: Sequence[str], rows: np.ndarray | slice
+) -> list[Problem]:
+    """Gyros that stood at the end of their range while they were integrated.
+
+    Parameters
+    ----------
+    log : SensorLog
+    columns : sequence of str
+        Of the gyros.
+    rows : ndarray of int, or slice
+        That are integrated.
+    """
+    problems = []
+    for name in columns:
+        if name not in log.clipped:
+            continue
+        count, end = at_an_end(log.columns[name], rows)
+        if count:
+            problems.append(
+                Problem(
+                    said("{name} is saturated", name=name),
+                    log.path,
+                    said("{rows} rows stand at {end:.6g}", rows=count, end=end),
+                    "rates within the range of the gyro",
+                    "what it turned beyond is lost: turn more slowly, or choose another range",
+                )
+            )
+    return problems

@@ -9,6 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from surveyapp.core.sensors.clipping import at_an_end
 from surveyapp.core.sensors.rate.hand_forces import ForceModel
 from surveyapp.core.sensors.rate.hand_held import (
     HeldStop,
@@ -52,27 +53,21 @@ def turns_between(
     turns = []
     for k, (one, other) in enumerate(pairwise(stops)):
         inside = slice(one.stop, other.start)
-        if other.start - one.stop < 2 or _broken(log, rate, one.stop, other.start):
+        if other.start - one.stop < 2 or _broken(log, one.stop, other.start):
             continue
         local = 0.5 * (rests[k] + rests[k + 1])  # a slow bias as the two rests show it
         turns.append(Turn(rate[inside] - local, ups[k], ups[k + 1], interval, k))
     return turns
 
 
-def _broken(log: SensorLog, rate: Floats, first: int, last: int) -> bool:
+def _broken(log: SensorLog, first: int, last: int) -> bool:
     """Whether samples are missing in a turn, or a gyro stands at the end of its range."""
     time = log.columns["time_s"]
     interval = 1.0 / (log.rate_hz or 100.0)
     if float(np.diff(time[first - 1 : last + 1]).max()) > LONGEST_STEP * interval:
         return True
-    for i, name in enumerate(GYROS):
-        if name in log.clipped:
-            ends = rate[:, i].max(), rate[:, i].min()
-            part = rate[first:last, i]
-            # one sample alone may be the largest of the record
-            if max(int((part == end).sum()) for end in ends) > 1:
-                return True
-    return False
+    rows = slice(first, last)
+    return any(at_an_end(log.columns[n], rows)[0] for n in GYROS if n in log.clipped)
 
 
 def ups_of(stops: Sequence[HeldStop], model: ForceModel) -> Floats:

@@ -10,6 +10,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from surveyapp.core.sensors.clipping import clipped_problems
 from surveyapp.core.sensors.rate.motion_doubts import (
     CONTRADICTIONS,
     odometer_problems,
@@ -27,7 +28,6 @@ from surveyapp.core.sensors.rate.motion_states import Thresholds
 from surveyapp.core.sensors.rate.odometer_drive import drive_of
 from surveyapp.core.sensors.rate.odometer_path import Driven, Reckoned, reckon
 from surveyapp.core.sensors.rate.rests import Rests
-from surveyapp.core.sensors.rate.rotation_checks import clipped_problems
 from surveyapp.core.sensors.rate.snapping import snap
 from surveyapp.core.sensors.rate.still import FALSE_ALARM, Gate
 from surveyapp.core.sensors.rate.zero_velocity import (

@@ -14,16 +14,12 @@ from typing import Any, Final, Literal
 
 import numpy as np
 
+from surveyapp.core.sensors.clipping import clipped_problems
 from surveyapp.core.sensors.declination import told_unstated, unstated_sigma
 from surveyapp.core.sensors.rate.carried import Carried, Rest, Run, carry, tilt_of
 from surveyapp.core.sensors.rate.level_phase import still_ends
 from surveyapp.core.sensors.rate.parameters import DEG_H
-from surveyapp.core.sensors.rate.rotation_checks import (
-    LONGEST_STEP,
-    clipped_problems,
-    gap_sigma,
-    gravity_problems,
-)
+from surveyapp.core.sensors.rate.rotation_checks import LONGEST_STEP, gap_sigma, gravity_problems
 from surveyapp.core.statistics.distributions import NORMAL_95, student_tail
 from surveyapp.domain.calibration import SensorParameter
 from surveyapp.domain.north import NorthDirection, NorthResult, Reference

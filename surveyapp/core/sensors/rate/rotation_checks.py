@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
 
 from surveyapp.core.sensors.rate.carried import Rest, Run, tilt_at_start
-from surveyapp.domain.sensor_log import SensorLog
 from surveyapp.domain.warning import ResultWarning
 from surveyapp.errors import Problem
 from surveyapp.languages import either, said
@@ -28,40 +26,6 @@ BLOCK_S: Final = 1.0
 MOST_TOLD: Final = 3
 LONGEST_STEP: Final = 2.5
 """Median intervals: a longer one is a gap."""
-
-
-def clipped_problems(
-    log: SensorLog, columns: Sequence[str], rows: np.ndarray | slice
-) -> list[Problem]:
-    """Gyros that stood at the end of their range while they were integrated.
-
-    Parameters
-    ----------
-    log : SensorLog
-    columns : sequence of str
-        Of the gyros.
-    rows : ndarray of int, or slice
-        That are integrated.
-    """
-    problems = []
-    for name in columns:
-        if name not in log.clipped:
-            continue
-        part = log.columns[name][rows]
-        ends = (float(log.columns[name].max()), float(log.columns[name].min()))
-        count, end = max((int(np.count_nonzero(part == value)), value) for value in ends)
-        # one sample alone may be the largest of the record
-        if count > 1:
-            problems.append(
-                Problem(
-                    said("{name} is saturated", name=name),
-                    log.path,
-                    said("{rows} rows stand at {end:.6g}", rows=count, end=end),
-                    "rates within the range of the gyro",
-                    "what it turned beyond is lost: turn more slowly, or choose another range",
-                )
-            )
-    return problems
 
 
 def gap_sigma(run: Run) -> float:
