@@ -123,3 +123,29 @@ def test_a_place_without_a_path_is_told(tmp_path: Path) -> None:
 
     assert "option_not_used" in told(begin="0,0,0")
     assert "option_not_used" not in told(begin="0,0,0", path=True) | told()
+
+
+@pytest.mark.parametrize(("pitch", "roll"), [(0.0, 0.0), (8.0, 5.0), (-4.0, -12.0)])
+def test_a_tilted_unit_turns_about_up(tmp_path: Path, pitch: float, roll: float) -> None:
+    """By the gyro along z alone a curve of 90 degrees is 90 cos(tilt) long, and the end 1.8 m off and more.
+
+    The path is that of the profile, summed here.
+    """
+    path = tmp_path / "drive.csv"
+    drive(path, pitch=math.radians(pitch), roll=math.radians(roll))
+    speed = heading = east = north = driven = 0.0
+    odometer = []
+    for state, seconds, size in PROFILE:
+        for _ in range(round(seconds * RATE_HZ)):
+            odometer.append(driven)
+            step = speed / RATE_HZ
+            driven += step
+            east, north = east + step * math.sin(heading), north + step * math.cos(heading)
+            speed += {"accelerating": size, "braking": -size}.get(state, 0.0) / RATE_HZ
+            heading += math.radians(size) / RATE_HZ if state == "turning" else 0.0
+    lines = path.read_text().splitlines()
+    whole = [f"{line},{d:.4f}" for line, d in zip(lines[1:], odometer, strict=True)]
+    path.write_text("\n".join([lines[0] + ",odometer_m", *whole]) + "\n")
+    found = api.motion(path, options={"path": True, "begin": "0,0,0"}).path
+    assert found is not None
+    assert found.end_m[:2] == pytest.approx((east, north), abs=0.3)

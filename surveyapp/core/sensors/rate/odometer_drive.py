@@ -1,9 +1,8 @@
-"""A drive by odometer: headings integrated from the vertical gyro, stop by stop, row after row."""
+"""A drive by odometer: headings integrated from the rate about up, stop by stop, row after row."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
@@ -32,44 +31,52 @@ def drive_of(
     azimuth : float
         At the beginning [rad].
     bias : float
-        Of the vertical gyro where no rest is long enough [rad/s].
+        Of the gyro along z where no rest is long enough [rad/s].
     interval_s : float
     room : callable
         Where the columns of the drive lie.
     """
-    up = (
-        1.0 if float(np.median(sampled(log.columns[ACCELEROMETERS[2]], LOOKED_AT))) >= 0.0 else -1.0
-    )
-    rate, odometer = log.columns[GYROS[2]], log.columns["odometer_m"]
-    middle, means = _bias_at_rest(rate, rests, bias, interval_s)
+    rates, odometer = [log.columns[name] for name in GYROS], log.columns["odometer_m"]
+    middle, biases, ups = _at_rest(log, rests, bias, interval_s)
     distance, heading = room(log.size), room(log.size)
     turned, farthest = 0.0, -math.inf
     for first in range(0, log.size, PIECE_ROWS):
         part = slice(first, min(first + PIECE_ROWS, log.size))
         rows = np.arange(part.start, part.stop)
-        turn = -up * (rate[part] - np.interp(rows, middle, means))
+        turn = np.zeros(rows.size)
+        for rate, mean, up in zip(rates, biases.T, ups.T, strict=True):
+            turn -= np.interp(rows, middle, up) * (rate[part] - np.interp(rows, middle, mean))
         turn[rests.mask(part.start, part.stop)] = 0.0
         angle = np.cumsum(np.concatenate([[turned], turn]))
         heading[part] = azimuth + angle[:-1] * interval_s
         distance[part] = np.maximum.accumulate(np.maximum(odometer[part], farthest))
         turned, farthest = float(angle[-1]), float(distance[part][-1])
-        for column in (rate, odometer, heading, distance):
+        for column in (*rates, odometer, heading, distance):
             let_go(column)
     return Driven(distance, heading, _known(log, rests), log.columns.get("power_cycle"), rests)
 
 
-def _bias_at_rest(
-    rate: Floats, rests: Rests, bias: float, interval_s: float
-) -> tuple[Floats, Sequence[float]]:
-    """Middle row and mean rate of each rest: the bias lies on straight lines between these."""
+def _at_rest(
+    log: SensorLog, rests: Rests, bias: float, interval_s: float
+) -> tuple[Floats, Floats, Floats]:
+    """Middle row (m,) of each rest, mean rates and direction of up in the body there, (m, 3).
+
+    Biases and up lie on straight lines between these. A unit that leans turns about up with all of
+    its gyros.
+    """
     runs = [r for r in rests.runs if r[1] - r[0] >= round(LEAST_BIAS_S / interval_s)]
     if not runs:
-        return np.zeros(1), [bias]
-    means = []
-    for first, last in runs:
-        total = sum(float(piece.sum()) for piece in pieces(rate[first:last]))
-        means.append(total / (last - first))
-    return np.array([0.5 * (a + b) for a, b in runs]), means
+        force = log.columns[ACCELEROMETERS[2]]
+        up = 1.0 if float(np.median(sampled(force, LOOKED_AT))) >= 0.0 else -1.0
+        return np.zeros(1), np.array([[0.0, 0.0, bias]]), np.array([[0.0, 0.0, up]])
+    biases = np.array([[_mean(log.columns[c], *run) for c in GYROS] for run in runs])
+    forces = np.array([[_mean(log.columns[c], *run) for c in ACCELEROMETERS] for run in runs])
+    ups = forces / np.linalg.norm(forces, axis=1)[:, None]
+    return np.array([0.5 * (a + b) for a, b in runs]), biases, ups
+
+
+def _mean(column: Floats, first: int, last: int) -> float:
+    return sum(float(piece.sum()) for piece in pieces(column[first:last])) / (last - first)
 
 
 def _known(log: SensorLog, rests: Rests) -> dict[int, float]:
