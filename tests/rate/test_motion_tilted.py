@@ -127,7 +127,7 @@ def test_a_place_without_a_path_is_told(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("pitch", "roll"), [(0.0, 0.0), (8.0, 5.0), (-4.0, -12.0)])
 def test_a_tilted_unit_turns_about_up(tmp_path: Path, pitch: float, roll: float) -> None:
-    """By the gyro along z alone a curve of 90 degrees is 90 cos(tilt) long, and the end 1.8 m off and more.
+    """By the gyro along z alone a curve of 90 degrees is 90 cos(tilt), and the end 1.8 m off.
 
     The path is that of the profile, summed here.
     """
